@@ -10,7 +10,7 @@ std::vector<double> lobatto_points(Eigen::Index count) {
   std::vector<double> points(static_cast<std::size_t>(count));
   const double last = static_cast<double>(count - 1);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    // Computed with the sine, the points are symmetric about 0 to the last bit.
+    // With the sine instead of the cosine, the points are symmetric about 0 to the last bit.
     points[i] = std::sin(0.5 * std::numbers::pi * (last - 2.0 * static_cast<double>(i)) / last);
   }
   return points;

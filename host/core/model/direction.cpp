@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kNearGrazingDeg = 90.0 - 1e-12;
 
-// Replaces cos(90 degrees) in the closed form of a mirror. It is far below 1 / |N|^2 for every refractive index N.
+// Cosine of a mirror at 90 degrees, because moments / 0 would be NaN. It is far below 1 / |N|^2 of every index N.
 constexpr double kNearGrazingCosine = 1e-100;
 
 constexpr double kSmallestSigma = 1e-28;

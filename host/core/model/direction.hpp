@@ -8,16 +8,16 @@ namespace dolp {
 /// How the program obtains the moments of a direction and a slope distribution.
 enum class Treatment {
   kIntegrated,  ///< an evaluator integrates them
-  /// Reflectances of the smooth surface. Used if sigma is so small that the slope density overflows a float.
+  /// Moments of a smooth surface. Used if sigma is so small that the slope density overflows a float.
   kMirror,
-  /// At 90 degrees the moments of a heavy-tailed distribution diverge. Only quotients such as r_q / r_i have limits.
+  /// Moments of a heavy-tailed distribution at 90 degrees. They diverge; only quotients such as r_q / r_i have limits.
   kDivergentLimit,
 };
 
 struct Direction {
   double theta_deg = 0.0;
   double cos_theta = 1.0;  ///< cosine of `used_deg`; for a mirror at 90 degrees a tiny positive number
-  double used_deg = 0.0;   ///< zenith that the evaluator gets: `theta_deg`, or just below 90 degrees for a limit
+  double used_deg = 0.0;   ///< zenith for the evaluator: `theta_deg`, or the result of zenith_before_limit_deg
   Treatment treatment = Treatment::kIntegrated;
 };
 
@@ -27,7 +27,7 @@ Direction direction_of(Distribution distribution, Masking masking, double theta_
 
 bool is_mirror(const SlopeShape& shape);
 
-/// `zenith_deg`, except at 90 degrees: if rho and f have a limit there with `masking`, a zenith just below 90.
+/// Replaces 90 degrees by a slightly smaller zenith if `masking` gives reflectances a limit at 90 degrees.
 double zenith_before_limit_deg(Masking masking, double zenith_deg);
 
 }  // namespace dolp

@@ -12,11 +12,11 @@ namespace dolp {
 
 struct Work {
   double evaluations = 0.0;  ///< number of evaluations of the integrand
-  double kernel_s = 0.0;     ///< time of the kernels: timestamps of the device, or time of the loop on the CPU
-  double sums_s = 0.0;       ///< host time to sum over slopes, interpolate, and combine responses (response_basis.hpp)
+  double kernel_s = 0.0;     ///< time of the kernels, from timestamps of the device or from a clock on the CPU
+  double sums_s = 0.0;       ///< host time to sum over slopes, interpolate, and add up responses (response_basis.hpp)
   std::uint64_t dispatches = 0;
-  std::uint64_t interpolated = 0;         ///< entries whose moments are interpolated or combined from other moments
-  std::uint64_t interpolation_nodes = 0;  ///< moments that a kernel computes so that other moments can be interpolated
+  std::uint64_t interpolated = 0;         ///< entries with moments from interpolation or from responses
+  std::uint64_t interpolation_nodes = 0;  ///< entries that a kernel integrates so that others can be interpolated
 
   Work& operator+=(const Work& other) {
     evaluations += other.evaluations;
@@ -54,7 +54,7 @@ class ModelEvaluator {
   /// Announces a later call of `scatter`. The evaluator may prepare for it in parallel with other calls.
   virtual void prepare(const ScatteringRequest& /*request*/) {}
   virtual bool has_double() const { return true; }
-  /// True if the evaluator must compute each entry separately. Then a run neither interpolates nor combines responses.
+  /// True if the evaluator must integrate each entry. Then a run neither interpolates nor uses responses.
   virtual bool computes_each_entry() const { return false; }
   /// Totals over all calls since the last clear_report.
   virtual EvaluationReport report() const = 0;

@@ -18,7 +18,7 @@ namespace dolp {
 class ResponseBasis;
 class SkyBasis;
 
-/// Tightest tolerance of a quadrature rule in float. At a tighter tolerance rounding errors would dominate.
+/// Tightest tolerance that a quadrature rule can meet in float. At a tighter one, rounding errors would dominate.
 inline constexpr double kLeastFloatTolerance = 2e-6;
 
 struct MomentsPoint {
@@ -28,12 +28,12 @@ struct MomentsPoint {
   friend bool operator==(const MomentsPoint&, const MomentsPoint&) = default;
 };
 
-/// Requests responses: moments in which polynomials of the local angle replace the reflectances (response_basis.hpp).
+/// Requests responses. A response is a moment with a polynomial instead of a reflectance (see response_basis.hpp).
 struct Response {
   enum class Of : std::uint8_t {
-    kReflected,  ///< r_i and r_q with these polynomials
-    kSky,        ///< r_i and r_q with these polynomials, weighted with the single function in MomentsRequest::sky
-    kDirect      ///< direct_i and direct_q with these polynomials
+    kReflected,  ///< responses for r_i and r_q
+    kSky,        ///< responses for r_i and r_q, weighted with the only function of MomentsRequest::sky
+    kDirect      ///< responses for direct_i and direct_q
   };
   std::size_t count = 0;
   double c0 = 1.0;
@@ -41,8 +41,8 @@ struct Response {
   Of of = Of::kReflected;
 };
 
-/// A grid has all combinations of `optics`, `theta_deg`, `sigma` and `q`; q varies fastest. In a list each of these
-/// four vectors has one value per entry. The position in this order identifies an entry.
+/// The entries form a grid or a list. A grid has all combinations of `optics`, `theta_deg`, `sigma` and `q`; q varies
+/// fastest. In a list each of these four vectors has one value per entry. The number of an entry is its position.
 struct MomentsRequest {
   enum class Layout { kGrid, kList };
 
@@ -50,13 +50,13 @@ struct MomentsRequest {
   Masking masking = Masking::kIntegral;
   Scattering scattering = Scattering::kSingle;  ///< kMultiple only with v-cavity
   bool wants_direct = false;                    ///< requests also direct_i and direct_q; only with v-cavity or smith
-  double tolerance = 1e-4;                      ///< tolerance of the integrals, relative to r_i
+  double tolerance = 1e-4;                      ///< allowed error of a moment, as a share of r_i
   Precision precision = Precision::kAuto;       ///< kAuto means float
   bool may_interpolate = true;                 ///< allows interpolation between slope distributions, within `tolerance`
-  bool has_extra_splits = false;               ///< integrates with more panels, to check a computation that has fewer
-  std::shared_ptr<const ResponseBasis> basis;  ///< responses from which all moments are computed; null: none
-  std::shared_ptr<const SkyBasis> sky;  ///< fills Moments::columns, one for each function of this sky; null: no sky
-  std::optional<Response> response;     ///< fills Moments::columns with responses
+  bool has_extra_splits = false;               ///< integrates with more panels than usual, to check another computation
+  std::shared_ptr<const ResponseBasis> basis;  ///< if set, moments are sums of these responses
+  std::shared_ptr<const SkyBasis> sky;  ///< if set, Moments::columns has one element for each function of this sky
+  std::optional<Response> response;     ///< if set, Moments::columns has one element for each response
   Layout layout = Layout::kGrid;
   std::vector<double> theta_deg;
   std::vector<FacetOptics> optics;  ///< bare facets, or facets with films
@@ -67,25 +67,26 @@ struct MomentsRequest {
   std::size_t size() const;
   bool is_wanted(std::size_t entry) const { return wanted.empty() || wanted[entry] != 0; }
   std::size_t wanted_count() const;
-  /// `share` times the tolerance. In float it is at least kLeastFloatTolerance, unless the tolerance itself is smaller.
+  /// `share` times the tolerance. Lower limit in float: kLeastFloatTolerance or `tolerance`, whichever is less.
   double finer_tolerance(double share) const;
   std::size_t shapes() const { return sigma.size() * q.size(); }
   MomentsPoint operator[](std::size_t entry) const;
-  /// The same request for only some directions of a grid, given by their positions in `theta_deg`.
+  /// This request for only some directions of a grid, given by their positions in `theta_deg`.
   MomentsRequest of_directions(std::span<const std::size_t> directions) const;
   void append(const MomentsPoint& point);  ///< adds an entry; the request becomes a list
 };
 
-/// Moments of one entry whose integrands contain a function g, |g| <= 1. If g is a function of a sky, it depends on the
-/// zenith of the reflected ray and multiplies the integrands of r_i and r_q. In a response, g depends on the local
-/// angle of incidence beta and replaces (R_s + R_p) / 2 in r_i and (R_s - R_p) / (2 sin^2(beta)) in r_q.
+/// Moments of one entry with an additional function g in the integrands, |g| <= 1.
+/// - Function of a sky: g depends on the zenith of the reflected ray and multiplies the integrands of r_i and r_q.
+/// - Response: g depends on the local angle of incidence beta. It replaces (R_s + R_p) / 2 in r_i and
+///   (R_s - R_p) / (2 sin^2(beta)) in r_q.
 struct ColumnMoments {
   double i = 0.0;
   double q = 0.0;
-  double error = 0.0;  ///< bound of the absolute errors of i and q; a response has more errors, below
-  // The other members are for responses. i_apart and q_apart are differences between the results of two quadrature
-  // rules. A weighted sum of responses has the error |sum of i_apart| + relative_error |sum of i| + sum of `error`, all
-  // weighted.
+  double error = 0.0;  ///< bound of the absolute errors of i and q; in a response, only a part of the error
+  // The next members are for responses. i_apart and q_apart are differences between the results of two quadrature
+  // rules. The sum of w i over responses with weights w has the error |sum of w i_apart| + relative_error |sum of w i|
+  // + sum of |w| error.
   double i_apart = 0.0;
   double q_apart = 0.0;
   double relative_error = 0.0;
@@ -96,12 +97,12 @@ struct ColumnMoments {
 struct Moments {
   double r_i = 0.0;      ///< rho_I cos(theta)
   double r_q = 0.0;      ///< rho_Q cos(theta)
-  double albedo = 0.0;   ///< A cos(theta): r_i of facets with R_s = R_p = 1
+  double albedo = 0.0;   ///< A cos(theta), where A is rho_I of facets that reflect all light (R_s = R_p = 1)
   double deficit = 0.0;  ///< cos(theta) - r_i, computed without cancellation where rho_I is near 1
   /// eps_I cos(theta) of the light that facets emit straight to the viewer. NaN if the request does not ask for it.
   double direct_i = std::numeric_limits<double>::quiet_NaN();
   double direct_q = std::numeric_limits<double>::quiet_NaN();  ///< eps_Q cos(theta); eps_s = eps_I + eps_Q
-  // Bounds of the absolute errors of these six moments. They include quadrature, masking tables and rounding.
+  // Bounds of the absolute errors of these six moments, with the errors of quadrature, masking tables and rounding.
   double r_i_error = 0.0;
   double r_q_error = 0.0;
   double albedo_error = 0.0;

@@ -12,13 +12,13 @@
 namespace dolp {
 namespace {
 
-// Choices of the cosine c0, below which polynomials resolve finest. Metals need the smallest, dielectrics the largest.
+// Choices of c0. Polynomials follow reflectances best at cosines below c0. Metals need a small c0, dielectrics a large.
 constexpr std::array<double, 5> kScales = {1.0, 0.3, 0.1, 0.03, 0.01};
 constexpr Eigen::Index kCoefficients = 65;  // Chebyshev coefficients that are computed for a reflectance curve
 constexpr Eigen::Index kLastOfCurve = 4;
-constexpr double kReach = 0.25;           // error of a reflectance curve as a sum, as a share of the tolerance
-constexpr double kTimeOfResponse = 0.08;  // time that one response adds to a kernel pass, relative to a pass without
-constexpr double kLeastGain = 1.25;       // least speed-up over separate indices with which a run uses responses
+constexpr double kReach = 0.25;           // allowed error of a sum of polynomials, as a share of the tolerance
+constexpr double kTimeOfResponse = 0.08;  // extra time per response, relative to a kernel pass without responses
+constexpr double kLeastGain = 1.25;       // responses are used if they make a run at least this many times faster
 // Allowed numbers of responses. They are few because a driver compiles separate kernels for each of them.
 constexpr std::array<std::size_t, 3> kCounts = {8, 16, kMostResponses};
 constexpr std::size_t kMostCandidates = 256;  // most indices of a run among which the reference index is chosen
@@ -44,7 +44,7 @@ Eigen::RowVector2d errors_of(const CurveCoefficients& all, Eigen::Index count) {
          kCoefficients * all.bottomRows<kLastOfCurve>().cwiseAbs().colwise().maxCoeff();
 }
 
-/// The fewest polynomials that represent the reflectance curves of an index; kMostResponses + 1 if more are needed.
+/// Number of polynomials with which the reflectances of an index meet the tolerance, at most kMostResponses + 1.
 std::size_t needed(const FacetOptics& index, double c0, double tolerance) {
   const CurveCoefficients all = coefficients_of(index, c0);
   const double most = kReach * tolerance * reflectance_level(index);
@@ -63,7 +63,6 @@ std::vector<FacetOptics> candidates_of(const std::vector<FacetOptics>& indices, 
   return candidates;
 }
 
-/// Distance in the complex plane from the cosines [0, 1] to the nearest singularity of the reflectances of `index`.
 double distance_of_bend(const OpticalConstants& index) {
   const std::complex<double> n(index.n, index.k);
   const std::complex<double> pole = 1.0 / std::sqrt(n * n + 1.0);
@@ -106,7 +105,7 @@ std::shared_ptr<const ResponseBasis> ResponseBasis::of(const std::vector<FacetOp
   for (const FacetOptics& index : candidates_of(indices, kMostCandidates)) {
     if (needed(index, basis->c0_, tolerance) > basis->count_) continue;
     basis->bend_ = std::min(basis->bend_, distance_of_bend(index));
-    // No index with total reflection is the reference: the kink of its reflectances would add errors to the responses.
+    // The reference must not have total reflection. The kink of its reflectances would add errors to the responses.
     if (critical_cosine(index) > 0.0 || reflectance_level(index) >= lowest) continue;
     lowest = reflectance_level(index);
     basis->reference_ = index;

@@ -1,6 +1,6 @@
-// Moments of many refractive indices as weighted sums of responses. A response is a moment in which a Chebyshev
-// polynomial of 2 u - 1 replaces the Fresnel reflectances. Here u = asinh(c / c0) / asinh(1 / c0), and c is the cosine
-// of the local angle of incidence. The weights are the Chebyshev coefficients of the reflectances of an index.
+// Computes moments of many refractive indices as weighted sums of a few responses. A response is a moment with a
+// Chebyshev polynomial of 2 u - 1 instead of the Fresnel reflectances, where u = asinh(c / c0) / asinh(1 / c0) with a
+// scale c0 and the cosine c of the local incidence. The weights are Chebyshev coefficients of the reflectances.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,19 +22,19 @@ struct ResponseWeights {
 class ResponseBasis {
  public:
   /// Approximates the reflectances of each index to `tolerance` times its reflectance_level. `passes`: number of kernel
-  /// passes that compute responses. Null if responses would take longer than integrating each index.
+  /// passes that compute responses. Null if responses would save too little time.
   static std::shared_ptr<const ResponseBasis> of(const std::vector<FacetOptics>& indices, double tolerance,
                                                  std::size_t passes);
 
-  /// The index with the lowest reflectance_level. Kernels integrate it besides the responses. The moments of another
-  /// index may be its moments plus a sum over responses, which is smaller and has less error.
+  /// The index with the lowest reflectance_level. Kernels integrate its moments besides the responses. Moments of
+  /// another index can then be the moments of the reference plus a small sum over responses, which has a small error.
   const FacetOptics& reference() const { return reference_; }
   std::size_t count() const { return count_; }
   double c0() const { return c0_; }
-  /// Distance in the complex plane from the cosines [0, 1] to the nearest singularity of polynomials or reflectances.
+  /// Distance from the cosines [0, 1] to the nearest complex cosine at which u or a reflectance is singular.
   double bend() const { return bend_; }
   const ResponseWeights& of_reference() const { return of_reference_; }
-  /// Nullopt if the index needs more than count() responses, for example because of total reflection.
+  /// Weights for moments of `index`; nullopt if it needs more than count() responses, as with total reflection.
   std::optional<ResponseWeights> weights_of(const FacetOptics& index) const;
 
  private:

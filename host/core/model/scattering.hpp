@@ -45,8 +45,8 @@ struct ScatteringRequest {
   std::vector<ScatteringEntry> entries;
 };
 
-/// The Mueller matrix f_s cos(theta_i) cos(theta_r) for k_s = 1, row by row. It is finite at grazing angles.
-/// Units: sr-1. Conventions: shaders/physics/README.md, section 1, defines the polarisation frames, Q, U and V.
+/// The Mueller matrix f_s cos(theta_i) cos(theta_r), row by row, with the specular pBRDF f_s for k_s = 1. It is finite
+/// at grazing angles. Units: sr-1. shaders/physics/README.md, section 1, defines the polarisation frames, Q, U and V.
 struct ScatteringMatrix {
   std::array<double, 16> m{};
   double error = 0.0;  ///< bound of the absolute error of each element
@@ -61,7 +61,7 @@ struct Scattered {
   double error = 0.0;  ///< bound of the absolute error of i, q, u and v
 };
 
-/// Bounds of the error of a ScatteringMatrix with rounding, relative to its first element (tests MuellerAccuracy.*).
+/// Bounds of the error of a ScatteringMatrix, with rounding, as a share of its first element (tests MuellerAccuracy.*).
 constexpr double kScatteringErrorFloat = 1e-5;
 constexpr double kScatteringErrorDouble = 1e-11;
 

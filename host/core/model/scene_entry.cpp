@@ -6,7 +6,7 @@
 namespace dolp {
 namespace {
 
-// A grid is cut along theta first, because the other entries of a direction share work of the kernels.
+// A grid is cut along theta first, because kernels share work among the entries of one direction.
 constexpr std::array kCuttingOrder = {Axis::kTheta, Axis::kMaterial,    Axis::kBand,  Axis::kWavelength, Axis::kN,
                                       Axis::kK,     Axis::kTemperature, Axis::kSigma, Axis::kQ};
 static_assert(kCuttingOrder.size() == kAxisCount);
@@ -189,7 +189,7 @@ std::vector<SceneEntries> SceneEntries::parts(std::size_t most) const {
 
 void for_each_run(const PerAxis& first, const PerAxis& count, const PerAxis& whole,
                   const std::function<void(const GridRun&)>& use) {
-  // A run covers the last axes of which the part has all values, and one axis more. The last axis varies fastest.
+  // A run goes over the last axes, which vary fastest, up to and including one that the part covers only partly.
   std::size_t slowest = count.size() - 1;
   while (slowest > 0 && count[slowest] == whole[slowest]) --slowest;
   const auto from = static_cast<std::ptrdiff_t>(slowest);

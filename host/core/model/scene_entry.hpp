@@ -22,7 +22,7 @@ namespace dolp {
 Axes axes_of(std::vector<double> theta_deg, std::vector<double> sigma, std::vector<double> q,
              std::vector<double> wavelength_um = {}, std::vector<double> n = {}, std::vector<double> k = {});
 
-/// The axes of a part: only the values first[axis], ..., first[axis] + count[axis] - 1. Empty axes stay empty.
+/// The axes of a part that has count[axis] values of each axis, from number first[axis]. Empty axes stay empty.
 Axes part_of(const Axes& axes, const PerAxis& first, const PerAxis& count);
 
 /// The position on each axis of entry number `position` in a table. `counts`: number of values on each axis.
@@ -64,7 +64,7 @@ void set_value(SceneVariant& variant, Axis axis, double value);
 
 std::vector<SceneVariant> variants_of(const Axes& axes);
 
-/// Entries that are consecutive both in a part of a grid and in the whole grid: first position in each, and number.
+/// `count` entries that are consecutive in a part of a grid (from `in_part`) and in the whole grid (from `in_whole`).
 struct GridRun {
   std::size_t in_part = 0;
   std::size_t in_whole = 0;
@@ -78,7 +78,7 @@ class SceneEntries {
   SceneEntries(std::vector<SceneEntry> points, std::vector<SceneVariant> variants = {{}})  // NOLINT: a list is entries
       : variants_(std::move(variants)), points_(std::move(points)) {}
   SceneEntries(std::initializer_list<SceneEntry> points) : points_(points) {}
-  /// `index`: index of the surface. A grid with only one of the axes n and k takes the other number from `index`.
+  /// `index`: index of the surface. If a grid has only one of the axes n and k, `index` gives the other value.
   static SceneEntries of_grid(Axes axes, const OpticalConstants& index);
   static SceneEntries grid(std::vector<double> theta_deg, std::vector<double> sigma, std::vector<double> q);
 
@@ -90,7 +90,7 @@ class SceneEntries {
     return std::views::iota(std::size_t{0}, size()) |
            std::views::transform([this](std::size_t i) { return (*this)[i]; });
   }
-  /// At least one variant. A grid has all combinations of the values on kVariantAxes; a list has those of its points.
+  /// The variants of the entries, at least one. A grid has all combinations of the values on kVariantAxes.
   const std::vector<SceneVariant>& variants() const { return variants_; }
 
   // The next functions need a grid.
@@ -113,7 +113,7 @@ class SceneEntries {
   /// Cuts the entries into parts of at most `most` entries. The parts of a grid are grids, too.
   std::vector<SceneEntries> parts(std::size_t most) const;
   SceneEntries part(const PerAxis& first, const PerAxis& count) const;
-  /// first(): where this part begins on the axes of the whole grid. whole(): number of values on the whole grid's axes.
+  /// A part begins at first() on the axes of the whole grid. whole(): number of values on the whole grid's axes.
   const PerAxis& first() const { return first_; }
   PerAxis first_in(const SceneEntries& whole) const;
   const PerAxis& whole() const { return whole_; }
@@ -133,7 +133,7 @@ class SceneEntries {
   std::vector<SceneEntry> points_;
 };
 
-/// Calls `use` for each GridRun of a part with `count` of the `whole` values of each axis, from position `first`.
+/// Calls `use` for each GridRun of a part, which has count[axis] of the whole[axis] values, from first[axis].
 void for_each_run(const PerAxis& first, const PerAxis& count, const PerAxis& whole,
                   const std::function<void(const GridRun&)>& use);
 

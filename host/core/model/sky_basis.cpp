@@ -13,17 +13,17 @@
 namespace dolp {
 namespace {
 
-constexpr Eigen::Index kPoints = 17;  // Chebyshev points in each part of the zenith
+constexpr Eigen::Index kPoints = 17;  // Chebyshev points in each interval of zeniths
 
-// Between the nodes, a sum of functions differs from a sky by at most this times the largest difference at the nodes.
+// The error of a sum of basis functions between the nodes is at most this times its largest error at the nodes.
 constexpr double kBetweenNodes = 1.5;
 constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
-// The omitted Chebyshev coefficients sum to less than kBeyondLast times the sum of the last kLastCoefficients.
+// A Chebyshev series of kPoints terms omits less than kBeyondLast times the sum of its last kLastCoefficients terms.
 constexpr Eigen::Index kLastCoefficients = 4;
 constexpr double kBeyondLast = 2.0;
 
-// Near the horizon the integral runs over y with cos(zenith) proportional to y^4, so fractional powers are smooth.
+// Near the horizon mean_weights integrates over y with cos(zenith) proportional to y^4, which makes cos^power smooth.
 constexpr double kHorizonPower = 4.0;
 
 }  // namespace
@@ -65,7 +65,7 @@ Eigen::RowVectorXd SkyNodes::at(double zenith_deg, const Eigen::MatrixXd& values
   const double start = *(above - 1);
   const double x = std::clamp((end - zenith_deg + (start - zenith_deg)) / (end - start), -1.0, 1.0);
   const Eigen::Index first = (above - ends_deg_.begin() - 1) * kPoints;
-  // Like cardinal_values, but without allocations, because a table of a sky needs 10,000 zeniths.
+  // Like cardinal_values, but without memory allocations: the kernels' table of a sky needs 10,000 zeniths.
   Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(values.cols());
   double total = 0.0;
   for (Eigen::Index i = 0; i < kPoints; ++i) {
@@ -114,7 +114,7 @@ Eigen::VectorXd SkyNodes::mean_weights(double power, const std::function<double(
       add(0.5 * (1.0 - Rule::abscissa()[i]), Rule::weights()[i]);
     }
   }
-  return weights / weights.sum();  // so that the mean of a constant is the constant
+  return weights / weights.sum();  // the mean of a constant function is the constant
 }
 
 SkyBasis::SkyBasis(SkyNodes nodes, const std::vector<Eigen::VectorXd>& functions, double tolerance)

@@ -22,8 +22,8 @@ class LeastSquares {
   Eigen::MatrixXd triangle_;  ///< the columns are orthonormal_ * triangle_
 };
 
-/// Zeniths at which functions of the zenith are tabulated. `ends_deg` divides [0, 90] into parts; a function may have
-/// kinks at these ends. In each part it is the polynomial through its values at Chebyshev-Lobatto points.
+/// Zeniths at which functions of the zenith are tabulated. `ends_deg` divides [0, 90] into intervals. In each interval
+/// a function is the polynomial through its values at Chebyshev-Lobatto points. At the ends it may have kinks.
 class SkyNodes {
  public:
   /// `ends_deg`: at least three values, ascending from 0 to 90.
@@ -35,16 +35,16 @@ class SkyNodes {
   /// Interpolates functions to `zenith_deg`. `values`: the functions at the nodes. Shape: nodes x functions.
   Eigen::RowVectorXd at(double zenith_deg, const Eigen::MatrixXd& values) const;
 
-  /// Estimate of the largest distance between a function and the polynomials through `values`, its values at the nodes.
+  /// Estimates the largest interpolation error of at() for one function. `values`: the function at the nodes.
   double error(const Eigen::VectorXd& values) const;
 
-  /// Weights for a function's values at the nodes. The weighted sum is the mean over the sky that a surface receives if
-  /// its reflectance is proportional to cos^power times `factor` of the cosine of the zenith. Domain: power > -1.
+  /// Weights for values at the nodes. The weighted sum is the mean over the sky, where a zenith with the cosine c
+  /// counts with c^(power + 1) factor(c): the projected area c times the reflectance. Domain: power > -1.
   Eigen::VectorXd mean_weights(double power, const std::function<double(double)>& factor = {}) const;
 
  private:
   std::vector<double> ends_deg_;
-  std::vector<double> points_;  ///< Chebyshev-Lobatto points on [-1, 1], the same for each part
+  std::vector<double> points_;  ///< Chebyshev-Lobatto points on [-1, 1], used in each interval
   std::vector<double> zenith_deg_;
 };
 
@@ -54,11 +54,11 @@ struct SkyWeights {
   double error = 0.0;  ///< bound of the distance between the function and the sum, at any zenith
 };
 
-/// A few functions of the zenith with absolute values up to 1. Their weighted sums give a sky at each wavelength.
+/// Functions of the zenith, up to 1 in absolute value, whose weighted sums approximate the sky at each wavelength.
 class SkyBasis {
  public:
-  /// Chooses some of `functions`, given at the nodes: always the one with the largest error, until weighted sums
-  /// approximate each function to `tolerance` of its largest value, or until kMostSkyFunctions are chosen.
+  /// Chooses some of `functions` (values at the nodes) one by one: each time the function that sums of the chosen ones
+  /// approximate worst. Stops at an error of `tolerance` times the function's largest value, or at kMostSkyFunctions.
   SkyBasis(SkyNodes nodes, const std::vector<Eigen::VectorXd>& functions, double tolerance);
 
   const SkyNodes& nodes() const { return nodes_; }

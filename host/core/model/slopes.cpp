@@ -8,7 +8,7 @@
 namespace dolp {
 namespace {
 
-constexpr double kLargestExponent = 500.0;  // largest exponent of e, which prevents overflow
+constexpr double kLargestExponent = 500.0;  // limit of the exponent in power_law_reach, so that exp does not overflow
 
 }  // namespace
 

@@ -37,7 +37,7 @@ ReflectedAmplitudes interface_amplitudes(const Wave& above, const Wave& below) {
 using Complex = std::complex<double>;
 
 SmoothAbsorptance bare_absorptance(const OpticalConstants& index, double cosine) {
-  // If n and k are smaller, N^4 underflows. Then the medium absorbs less than 4e-75, so kLeast may replace n.
+  // With smaller n and k, N^4 would underflow, so kLeast replaces n. The absorptance is then below 4e-75 anyway.
   constexpr double kLeast = 1e-75;
   const double n = index.k < kLeast ? std::max(index.n, kLeast) : index.n;
   const double k = index.k;
@@ -139,7 +139,7 @@ double reflectance_level(const FacetOptics& optics) {
 double critical_cosine(const FacetOptics& optics) {
   if (optics.measured) return 0.0;
   const OpticalConstants& index = optics.index;
-  // Chosen. If Im N^2 is larger, total reflection begins so gradually that integrals need not be split there.
+  // Chosen limit of Im N^2. Above it total reflection begins so gradually that integrals need not be split there.
   constexpr double kSoft = 0.3;
   const double squared = (1.0 - index.n) * (1.0 + index.n) + index.k * index.k;
   const bool is_sharp = 2.0 * index.n * index.k < kSoft;

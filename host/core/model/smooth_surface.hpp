@@ -13,8 +13,9 @@ struct ReflectedAmplitudes {
 };
 
 /// Amplitude reflection coefficients of a medium under films.
-/// Equation: the recursion r = (r_j + r e^(2 i delta)) / (1 + r_j r e^(2 i delta)) from the medium outward. r_j is the
-/// coefficient of interface j, delta = 2 pi d sqrt(N^2 - sin^2 beta) / lambda of the film below it.
+/// Equation: r begins as the coefficient of the interface between the medium and the innermost film. From there
+/// outward, each film replaces r by (r_j + r e^(2 i delta)) / (1 + r_j r e^(2 i delta)). r_j is the coefficient of the
+/// film's outer interface, delta = 2 pi d sqrt(N^2 - sin^2 beta) / lambda for its thickness d and index N.
 /// Source: Born and Wolf, Principles of Optics, section 1.6. Conventions: r_p = -r_s at normal incidence.
 /// Domain: cosine in (0, 1].
 ReflectedAmplitudes film_amplitudes(const FacetOptics& optics, double cosine);
@@ -29,18 +30,18 @@ struct SmoothAbsorptance {
   double split = 0.0;  ///< (R_s - R_p) / sin^2(angle of incidence)
 };
 
-/// Equation: a bare medium has 1 - R_s = 4 c Re(w) / |c + w|^2 and 1 - R_p = 4 c Re(N^2* w) / |N^2 c + w|^2, with w =
-/// sqrt(N^2 - 1 + c^2). With films it is 1 - |r|^2, with r of film_amplitudes.
+/// Equation: a bare medium has 1 - R_s = 4 c Re(w) / |c + w|^2 and 1 - R_p = 4 c Re(conj(N^2) w) / |N^2 c + w|^2, where
+/// c is the cosine and w = sqrt(N^2 - 1 + c^2). Under films 1 - R is 1 - |r|^2, with r from film_amplitudes.
 /// Domain: cosine c in (0, 1], n > 0, k >= 0. Total reflection (n < 1, k = 0) gives exactly 0.
 /// Accuracy: nothing cancels for a bare medium, even if it reflects nearly everything. With films the error is 1e-14,
 /// and the relative error of `split` is 1e-10.
 SmoothAbsorptance smooth_absorptance(const FacetOptics& optics, double cosine);
 
-/// Errors of reflectances are relative to this level, the smaller of reflectance and absorptance. A bare medium has it
-/// at normal incidence. Otherwise it is a mean over four angles, because films may reflect nothing at one angle.
+/// The smaller of reflectance and absorptance, the unit for errors of reflectances. For a bare medium it is taken at
+/// normal incidence, otherwise as a mean over four angles, because films may reflect nothing at one angle.
 double reflectance_level(const FacetOptics& optics);
 
-/// Cosine sqrt(1 - Re N^2) of the incidence at which total reflection begins. 0 if the reflectances have no sharp kink.
+/// Cosine sqrt(1 - Re N^2) of the angle where total reflection begins; 0 if there is none or if it begins gradually.
 double critical_cosine(const FacetOptics& optics);
 
 /// Moments of a mirror, the limit of every surface for sigma -> 0. Domain: cosine of incidence in (0, 1].

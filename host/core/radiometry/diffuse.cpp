@@ -10,7 +10,7 @@ namespace dolp {
 namespace {
 
 constexpr double kRelativeError = 1e-12;
-constexpr double kLeastCosine = 1e-15;  // contributions of smaller cosines are below the error
+constexpr double kLeastCosine = 1e-15;  // lower end of the integral; smaller cosines contribute less than the error
 
 }  // namespace
 

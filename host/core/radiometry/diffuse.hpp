@@ -15,9 +15,10 @@ struct DiffuseLight {
 };
 
 /// The diffuse part of a pBRDF.
-/// Equation: f = k_d / pi (cos theta_i cos theta_r)^c. With diffuse_polarisation "transmission" the light enters the
-/// body, loses its polarisation there and leaves. Then f also has the factor t(theta_r) t(theta_i)^T / t_+(0)^2, where
-/// t = (t_+, t_-, 0, 0), and t_+- = (T_s +- T_p) / 2 with the transmittances T_s, T_p of the smooth surface.
+/// Equation: f = k_d / pi (cos theta_i cos theta_r)^c with the scene's k_d and c. With diffuse_polarisation
+/// "transmission" the light enters the body, loses its polarisation there and leaves. Then f also has the factor
+/// t(theta_r) t(theta_i)^T / t_+(0)^2. The vector t = (t_+, t_-, 0, 0) consists of t_+ = (T_s + T_p) / 2 and
+/// t_- = (T_s - T_p) / 2, with the transmittances T_s and T_p of the smooth surface.
 /// Source: Baek, Jeon, Tong, Kim 2018, Simultaneous acquisition of polarimetric SVBRDF and normals, section 4.
 /// Domain: a bare medium.
 class DiffuseReflection {
@@ -31,7 +32,7 @@ class DiffuseReflection {
   DiffuseLight beam(double cos_theta_i, double cos_theta_r) const;
   /// t_+ and t_- at the incidence `cosine`, divided by t_+ at normal incidence. (1, 0) if is_polarised_ is false.
   DiffuseLight transmitted(double cosine) const;
-  /// Weights with which a sky's radiances at the nodes add up to the mean radiance that the diffuse part receives.
+  /// Weights for radiances of a sky at `nodes`: the weighted sum is the mean radiance that the diffuse part reflects.
   Eigen::VectorXd mean_weights(const SkyNodes& nodes) const;
 
  private:
@@ -40,7 +41,7 @@ class DiffuseReflection {
   bool is_polarised_;
   FacetOptics optics_;
   double normal_ = 1.0;    ///< t_+(0)
-  double integral_ = 0.0;  ///< integral of mu^(c + 1) t_+ over the cosine mu from 0 to 1, divided by `normal_`
+  double integral_ = 0.0;  ///< integral of mu^(exponent_ + 1) t_+ / t_+(0) over the cosine mu from 0 to 1
 };
 
 /// True if the diffuse part of rho has no limit at 90 degrees.

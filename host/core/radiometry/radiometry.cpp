@@ -53,14 +53,14 @@ void add_emissivity(PointResult& result, const SpectralRule& rule, std::span<con
 }
 
 std::uint32_t tolerance_status(const PointResult& result, double tolerance) {
-  const bool is_outside = (result.status & kOutsideModelDomain) != 0;  // then rho diverges, and DOLP is a limit or NaN
+  const bool is_outside = (result.status & kOutsideModelDomain) != 0;  // rho diverges, and DOLP is a limit or NaN
   const bool dolp_missed = (is_outside || promises_dolp(result.status)) && result[kErrorEstimate] > tolerance;
   const bool rho_missed = !is_outside && result[kRhoErrorEstimate] > tolerance;
   return (dolp_missed ? std::uint32_t{kToleranceNotMet} : 0U) | (rho_missed ? std::uint32_t{kRhoToleranceNotMet} : 0U);
 }
 
-/// Estimates the error of I in single scattering, where later bounces are lost. With direct emission, it is the light
-/// that is neither emitted nor reflected. Otherwise, it is the change of I if rho_I is divided by the albedo A.
+/// Estimates the error of I in single scattering, which ignores later bounces. With direct emission the error is the
+/// light that is neither emitted nor reflected. Otherwise it is the change of I if rho_I is divided by the albedo A.
 double change_by_model(const SceneModel& scene, const SpectralRule& rule, std::span<const Moments> moments,
                        std::span<const Reflectance> reflectances, std::span<const Emissivity> emissivities,
                        double cos_theta) {
@@ -102,7 +102,7 @@ bool reflectance_diverges(const Surface& surface, const Direction& direction, st
   });
 }
 
-/// The terms of I and Q that grow fastest as theta -> 90 degrees, times a factor that makes them finite.
+/// The terms of I and Q that dominate as theta -> 90 degrees, times a common factor, which cancels in DOLP.
 Stokes grazing_stokes(const SceneModel& scene, const SpectralRule& rule, std::span<const SkyWeights> sky,
                       std::span<const Moments> moments) {
   const Surface& surface = scene.surface;
@@ -135,7 +135,7 @@ PointResult grazing_limit(const SceneModel& scene, const SpectralRule& rule, std
   result[kRhoErrorEstimate] = 0.0;
   if (keeps_projected_area(surface.masking)) {
     if (direction.cos_theta > 0.0) result[kAlbedo] = moments.front().albedo / direction.cos_theta;
-    // A diverging diffuse part is unpolarised, so DOLP is 0. DOLP has no limit if emission and surroundings cancel.
+    // The diverging diffuse light is unpolarised, so DOLP is 0. If emission and surroundings cancel, DOLP has no limit.
     const bool cancels = emission_model(scene) == EmissionModel::kFresnel && is_isothermal(rule);
     if (diffuse_diverges(surface) && !cancels) result[kDolp] = result[kQOverI] = result[kErrorEstimate] = 0.0;
     return result;

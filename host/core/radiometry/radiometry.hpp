@@ -15,26 +15,27 @@
 namespace dolp {
 
 /// Converts moments to the quantities that a sensor measures.
-/// Equation: I = pi B (1 - rho_I) + X rho_I and Q = (X - pi B) rho_Q, with the incident X = E0 cos(theta) + pi
-/// B(T_surr). Then the path is applied. With emission.model = "fresnel" the surface emits 1 - R_s(theta) and 1 -
-/// R_p(theta) of the smooth surface instead of 1 - rho_s and 1 - rho_p. In bistatic mode X has no E0, I and Q are
-/// divided by pi, and E0 cos(theta_i) f is added, with the pBRDF f from the source to the view.
+/// Equation: before the path to the sensor, I = pi B (1 - rho_I) + X rho_I and Q = (X - pi B) rho_Q. B is Planck's
+/// radiance of the surface. X = E0 cos(theta) + pi B(T_surr) is the incident light of source and surroundings. With
+/// emission.model = "fresnel" the surface emits 1 - R_s(theta) and 1 - R_p(theta) of the smooth surface instead of
+/// 1 - rho_s and 1 - rho_p. In bistatic mode X has no E0, I and Q are divided by pi, and the light of the source is
+/// added: E0 cos(theta_i) f, with the pBRDF f from the source to the view.
 class Radiometry {
  public:
-  /// `kept`: effects that contribute. Without the moments, the specular part of rho counts as 0, and quantities that
-  /// need it are NaN. `dropped`: bound of the change of DOLP by the other effects, which the error estimates include.
-  /// `sky`: functions of the sky in the Moments; null: those of the scene.
+  /// `kept`: effects that contribute. If kept.moments is false, the specular part of rho counts as 0, and quantities
+  /// that need it are NaN. `dropped`: bound of the change of DOLP by the other effects. Error estimates include it.
+  /// `sky`: functions of the sky in the Moments; null: computed from the scene.
   explicit Radiometry(const SceneModel& scene, const KeptEffects& kept = {}, double dropped = 0.0,
                       const std::shared_ptr<const SkyBasis>& sky = nullptr);
 
   /// The spectral samples of the scene. `point` needs Moments for the index of each sample, in this order.
   const SpectralRule& rule() const { return rule_; }
 
-  /// Domain: for NaN moments the status is 4 (outside the model's domain), and every quantity NaN. If rho diverges at
-  /// 90 degrees, the status is 1 | 4 (1: rho outside [0, 1]), rho and Stokes parameters are NaN, and dolp is its limit.
+  /// For NaN moments the status is 4 (outside the model's domain), and every quantity is NaN. If rho diverges at 90
+  /// degrees, the status is 1 | 4 (1: rho outside [0, 1]), rho and Stokes parameters are NaN, and dolp is its limit.
   PointResult point(const Direction& direction, std::span<const Moments> moments) const;
 
-  /// Facet optics of each spectral sample, and the diffuse reflection of a surface with these optics.
+  /// For each spectral sample: the optics of the facets, and the diffuse reflection of a surface with these optics.
   struct Optics {
     std::vector<FacetOptics> facets;
     std::vector<DiffuseReflection> diffuse;
@@ -42,12 +43,12 @@ class Radiometry {
   };
   Optics optics_with(std::vector<FacetOptics> facets) const;
 
-  /// For an entry with another n or k than the scene. Only fresnel emission and a polarised diffuse part use `optics`.
+  /// For an entry with its own n or k. Only fresnel emission and a polarised diffuse part use `optics`.
   PointResult point(const Direction& direction, std::span<const Moments> moments, const Optics& optics) const;
 
   /// Result in bistatic mode. `moments` and rho belong to the direction of the view; the source is at theta_i.
   /// Shape: one Moments and one Scattered per sample of rule(), in the order of the samples.
-  /// Domain: as for `point`, but if rho diverges at 90 degrees, every quantity is NaN with status 1 | 4.
+  /// NaN moments: as in `point`. If rho diverges at 90 degrees, every quantity is NaN, with status 1 | 4.
   PointResult bistatic_point(const Direction& view, double cos_theta_i, std::span<const Moments> moments,
                              const Optics& optics, std::span<const Scattered> scattered) const;
   const Optics& optics() const { return optics_; }
@@ -58,15 +59,15 @@ class Radiometry {
 
   PointResult finished(PointResult result) const;
 
-  SceneModel scene_;  ///< the scene, without a dropped specular or diffuse part
+  SceneModel scene_;  ///< the scene; its specular or diffuse part is 0 if KeptEffects drops it
   double beam_specular_;
   KeptEffects kept_;
   double dropped_;
   bool knows_rho_;
   SpectralRule rule_;
   SpectralRule kept_rule_;                 ///< rule_, with 0 for the radiation of dropped effects
-  std::shared_ptr<const SkyBasis> basis_;  ///< functions of the sky; null if the sky is absent or dropped
-  std::vector<SkyWeights> sky_;            ///< weights of the functions in each sample; empty without a sky profile
+  std::shared_ptr<const SkyBasis> basis_;  ///< functions of the sky; null without a sky profile, or if it is dropped
+  std::vector<SkyWeights> sky_;            ///< for each spectral sample, the weights of the functions in basis_
   Optics optics_;
 };
 

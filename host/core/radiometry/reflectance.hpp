@@ -16,7 +16,7 @@ struct Reflectance {
   double rho_i_error = 0.0;
   double rho_q_error = 0.0;
   double absorbed_error = 0.0;
-  double mismatch = 0.0;  ///< |rho_i + absorbed - 1|, not exactly 0, because rho_i and absorbed are separate sums
+  double mismatch = 0.0;  ///< |rho_i + absorbed - 1|; not exactly 0, because separate sums give rho_i and absorbed
 };
 
 /// Polarised emissivity at one index: i + q for s polarisation, i - q for p polarisation.
@@ -25,7 +25,7 @@ struct Emissivity {
   double q = 0.0;
   double i_error = 0.0;
   double q_error = 0.0;
-  double terms = 0.0;  ///< sum of |terms| of i or of q, whichever is larger; rounding errors are relative to it
+  double terms = 0.0;  ///< sum of the magnitudes of the terms of i; rounding errors are relative to it
 };
 
 struct MeanReflectance {
@@ -39,17 +39,17 @@ Reflectance reflectance(const Surface& surface, const Moments& moments, double c
 /// True if rho_s or rho_p is outside [0, 1] by more than its error.
 bool is_unphysical(const Reflectance& r);
 
-/// Mean of rho over the spectral samples. Weights: emission; if nothing emits, incident light; else the width.
+/// Mean of rho over the spectral samples, weighted by emission; without it, by incident light; without both, by width.
 MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Reflectance> reflectances, double cos_theta);
 
 Emissivity fresnel_emissivity(const FacetOptics& index, double cos_theta);
 
 /// Emissivity for the light that facets emit straight to the viewer (direct emission).
-/// Equation: eps_I = k_s eps_I,direct + 1 - k_s - diffuse_I, eps_Q = k_s eps_Q,direct - diffuse_Q.
+/// Equation: eps_I = k_s eps_I,direct + 1 - k_s - rho_I,d and eps_Q = k_s eps_Q,direct - rho_Q,d. k_s is
+/// Surface::specular, and rho_I,d and rho_Q,d are the diffuse reflectances in `diffuse`.
 Emissivity direct_emissivity(const Surface& surface, const Moments& moments, double cos_theta,
                              const DiffuseLight& diffuse);
 
-/// Emissivity by Kirchhoff's law: 1 - rho_s and 1 - rho_p.
 Emissivity kirchhoff_emissivity(const Reflectance& r);
 
 }  // namespace dolp

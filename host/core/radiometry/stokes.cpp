@@ -11,17 +11,17 @@ namespace {
 
 using std::numbers::pi;
 
-// Relative rounding error of a radiance: one or two units in the last place, times Planck's exponent, at most 745.
+// Relative rounding error of a radiance. Planck's exponent, up to 745, multiplies one or two units in the last place.
 constexpr double kRadianceRounding = 1e-12;
 
-/// Contribution of one spectral sample to I, with the emission 1 - rho of Kirchhoff's law.
+/// Contribution of one spectral sample to I, with the emissivity 1 - rho.
 struct Intensity {
   double value = 0.0;
   double terms = 0.0;  ///< sum of the magnitudes of the terms of `value`; rounding errors are relative to it
   double error = 0.0;  ///< error of `value` due to the errors of the moments
 };
 
-/// Computes I = pi B (1 - rho_I) + X rho_I or pi B + (X - pi B) rho_I, whichever has the smaller terms.
+/// Computes I as pi B (1 - rho_I) + X rho_I or as pi B + (X - pi B) rho_I. Takes the form with the smaller terms.
 Intensity moments_intensity(double emitted, double incident, double net, double net_terms, const Reflectance& r) {
   const double split_terms = std::abs(emitted * r.absorbed) + std::abs(incident * r.rho_i);
   const double whole_terms = std::abs(emitted) + net_terms * std::abs(r.rho_i);
@@ -35,7 +35,7 @@ Intensity moments_intensity(double emitted, double incident, double net, double 
   return {emitted * r.absorbed + incident * r.rho_i, split_terms, std::min({apart, by_reflected, by_absorbed})};
 }
 
-/// Adds one spectral sample, with Kirchhoff's emission, to `sum`. `rounding`: relative error of each term.
+/// Adds one spectral sample, with the emissivity 1 - rho, to `sum`. `rounding`: relative rounding error of each term.
 void add_moments_sample(Stokes& sum, const SpectralSample& sample, const Reflectance& r, double direct,
                         double rounding) {
   const double net = direct + sample.excess;
@@ -62,7 +62,7 @@ void add_emitting_sample(Stokes& sum, const SpectralSample& sample, const Reflec
                  rounding * (emitted_terms + std::abs(incident * r.rho_q));
 }
 
-/// The middle of the range of some values, and half of the width of this range. Both are 0 without values.
+/// Middle and half width of the range of some values. Both are 0 if there are no values.
 struct Span {
   double middle = 0.0;
   double half = 0.0;
@@ -191,9 +191,10 @@ Bracket bracket(const SceneModel& scene, const SpectralRule& rule, std::span<con
   single.i += sky.i;
   single.i_error += sky.i_error;
   double q = sky.q;
-  double unknown = 0.0;    // largest change of Q if the surface emits all of the light D (see Bracket)
-  double unreached = 0.0;  // largest change of Q and of I if all of the light D comes from an unknown part of the sky
-  double reflected = 0.0;  // change of I if the light D comes from a sky with the middle exitance
+  // The light D (see Bracket) is emission, or reflected light from an unknown part of the sky.
+  double unknown = 0.0;    // if D is emission: largest change of Q
+  double unreached = 0.0;  // if D is reflected: largest change of Q and of I, from the range of the sky's exitance
+  double reflected = 0.0;  // if D is reflected: change of I under a uniform sky with the middle exitance
   double error = sky.q_error;
   for (std::size_t j = 0; j < reflectances.size(); ++j) {
     const SpectralSample& sample = rule.samples[j];

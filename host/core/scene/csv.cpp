@@ -176,7 +176,7 @@ void CsvColumns::check_width(const CsvReader& row) const {
   const std::size_t width = row.cells().size();
   if (width == cells_.size()) return;
   check_separators(row, known_);
-  if (width < cells_.size()) return;  // later number() reports the column without a value
+  if (width < cells_.size()) return;  // number() will report the first column without a value
   row.fail(fmt::format("{}: one value too many after column {}; there are {} columns{}",
                        one_line(row.cells()[cells_.size()]), names_.back(), cells_.size(),
                        width == 2 * cells_.size() ? std::string("; ") + kDecimalPoint : std::string()));

@@ -12,7 +12,7 @@ namespace dolp {
 
 struct CsvForm {
   char separator = ',';         ///< if it is ' ', any number of blanks separates two cells
-  bool has_blank_lines = true;  ///< skip blank lines. Lines that begin with # are always skipped
+  bool has_blank_lines = true;  ///< true: skips blank lines. Lines that begin with # are always skipped
   std::size_t first_line = 1;
 };
 
@@ -59,8 +59,8 @@ struct CsvColumn {
 /// The columns of a file. The header may name them in any order, in upper or lower case.
 class CsvColumns {
  public:
-  /// Leaves out columns in `ignored`. Errors: InputError for a name that is unknown (with a suggestion), repeated, or
-  /// required and missing; for a separator other than the comma; and for numbers instead of names.
+  /// Ignores the columns in `ignored`. Errors: InputError for an unknown (with a suggestion), repeated or missing
+  /// column name, for a separator other than the comma, and for numbers instead of names.
   CsvColumns(const CsvReader& header, std::vector<CsvColumn> known, const std::vector<std::string>& ignored = {});
 
   /// For a file without a header, whose rows have all known columns in this order.
@@ -71,10 +71,10 @@ class CsvColumns {
 
   bool has(std::string_view name) const { return cell_of(name).has_value(); }
 
-  /// For each cell of a row, the position of its column among the known columns; nullopt if the column is left out.
+  /// For each cell of a row, the position of its column in the list of known columns; nullopt if the column is ignored.
   const std::vector<std::optional<std::size_t>>& cells() const { return cells_; }
 
-  /// Nullopt if the file lacks the column. Errors: InputError for a wrong value, or for more cells than columns.
+  /// The number of `row` in column `name`; nullopt without this column. Errors: a wrong value, or those of check_width.
   std::optional<double> number(const CsvReader& row, std::string_view name) const;
   double number_at(const CsvReader& row, std::size_t cell) const;
 

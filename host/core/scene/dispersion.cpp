@@ -9,7 +9,7 @@ namespace {
 
 using Coefficients = std::span<const double>;
 
-/// The sum of term(c[i], c[i + 1]) over i = first, first + 2, ... c[0] is the coefficient C1 of a formula.
+/// The sum of term(c[i], c[i + 1]) over i = first, first + 2, ... In all formulas c[0] is C1, c[1] is C2, and so on.
 template <class Term>
 double sum_of_pairs(Coefficients c, std::size_t first, const Term& term) {
   double sum = 0.0;
@@ -19,7 +19,7 @@ double sum_of_pairs(Coefficients c, std::size_t first, const Term& term) {
 
 double at_or_zero(Coefficients c, std::size_t i) { return i < c.size() ? c[i] : 0.0; }
 
-/// A term such as C2 l^C3 / (l^2 - C4^C5), where c[first] is C2. The term is 0 if its coefficients are missing.
+/// The term C2 l^C3 / (l^2 - C4^C5) at the wavelength l, where c[first] is C2. 0 if its coefficients are missing.
 double resonance(Coefficients c, std::size_t first, double l) {
   if (first + 3 >= c.size() || c[first] == 0.0) return 0.0;
   return c[first] * std::pow(l, c[first + 1]) / (l * l - std::pow(c[first + 2], c[first + 3]));

@@ -1,4 +1,4 @@
-// Texts of the data files that are built into the program, which opens no data file at run time.
+// Texts of the data files. They are built into the program, so it opens no data files at run time.
 #pragma once
 
 #include <string_view>

@@ -69,7 +69,7 @@ std::vector<const Material*> materials_with(std::string_view words) {
   return found;
 }
 
-/// The only material with this full name, else with these first words, else with these words anywhere; or null.
+/// Finds a material by its full name, else by first words, else by any words. Null unless exactly one fits.
 const Material* match_name(std::string_view name) {
   const std::string wanted = lower_case(trim(name));
   std::vector<const Material*> beginning;

@@ -12,19 +12,18 @@ namespace dolp {
 /// The materials of host/data/materials.csv with their sources, in the order of host/data/materials_sources.csv.
 const std::vector<Material>& built_in_materials();
 
-/// Case does not matter. Whole words of a name are enough if only one material has them: "water" finds "water 25C".
+/// Finds a built-in material. Whole words are enough if only one has them: "water" finds "water 25C". Case is ignored.
 /// Errors: InputError that begins with `prefix` and suggests names, if not exactly one material fits.
 const Material& named_material(std::string_view name, const std::string& prefix);
 
-/// The built-in material called `name`, fitted to `spectrum`. Errors: errors of named_material and fit_to_spectrum.
 Material find_material(std::string_view name, const Spectrum& spectrum, const std::string& prefix);
 
-/// Reads a user's file with n and k over wavelength in um, and fits it to `spectrum`. Between rows n and k are linear.
-/// A .yml or .yaml file is a "full database record" of refractiveindex.info: tabulated nk, n or k, or a formula for n.
-/// Any other file is a CSV with the columns `wavelength_um` (or `wl`) and n, k or both. Another line of names begins
-/// another table. If the file has no k, k is 0. A k from -1e-5 to 0 is noise and counts as 0.
-/// Errors: InputError with file and line; if the file cannot be opened, the message begins with `prefix`; errors of
-/// append_rows and fit_to_spectrum.
+/// Reads a user's file with n and k over wavelength in um, linear between rows, and calls fit_to_spectrum.
+/// - A .yml or .yaml file is a "full database record" of refractiveindex.info: tables of n and k, or a formula for n.
+/// - Any other file is a CSV with the columns `wavelength_um` (or `wl`) and n, k or both. A further line of column
+///   names begins a further table.
+/// If the file has no k, k is 0. A k from -1e-5 to 0 is noise and counts as 0.
+/// Errors: InputError with file and line. If the file cannot be opened, the message begins with `prefix`.
 Material read_material_file(const std::string& path, const Spectrum& spectrum, const std::string& prefix);
 
 /// Checks n, k or both at one wavelength and appends them to the material's tables. Messages begin with `where`.
@@ -37,20 +36,19 @@ Spectrum known_range(const Material& material);
 /// Refuses a tabulated material that lacks n or k in a part of the spectrum. The message begins with `prefix`.
 void check_covers(const Material& material, const Spectrum& spectrum, const std::string& prefix);
 
-/// Refuses a material whose formula gives an n that is not allowed, as near a pole. Checks 1001 wavelengths of a band.
+/// Refuses a material whose formula gives an n out of range, as near a pole. Checks 1001 wavelengths of a band.
 void check_formula(const Material& material, const Spectrum& spectrum, const std::string& prefix);
 
-/// Fits a tabulated material to the spectrum of a scene. For a band the result keeps the tables; for a single
-/// wavelength it has the constant index at this wavelength. Errors: InputError of check_covers and check_formula.
+/// The material for the spectrum of a scene: the whole `material` for a band; for a single wavelength, a material with
+/// the constant index at this wavelength. Errors: InputError of check_covers and check_formula.
 Material fit_to_spectrum(const Material& material, const Spectrum& spectrum, const std::string& prefix);
 
 /// Reads a user's CSV with the columns beta_deg (angle of incidence, from 0 to 90), r_s and r_p. If the reflectances
-/// depend on the wavelength, it has also the column wavelength_um, and each wavelength has the same angles.
+/// depend on the wavelength, the file has a column wavelength_um too, and the same angles at each wavelength.
 /// Domain: reflectances in [0, 1]. At 0 degrees r_s and r_p differ by at most 0.01; both are replaced by their mean.
 /// Errors: InputError with file and line; if the file cannot be opened, the message begins with `prefix`.
 ReflectanceTable read_reflectance_file(const std::string& path, const std::string& prefix);
 
-/// Like read_reflectance_file, for a text in memory. Errors: InputError that begins with `name` and the line.
 ReflectanceTable parse_reflectances(const std::string& text, const std::string& name);
 
 }  // namespace dolp

@@ -21,7 +21,7 @@ namespace {
 // The longest record of refractiveindex.info has 2.6 MB. Reading 4 MiB takes up to 2 s and 0.7 GB of memory.
 constexpr std::size_t kMostRecordBytes = 4U << 20U;
 constexpr int kRangeSteps = 1000;  // steps of the search for wavelengths at which a formula gives an allowed n
-// Noise of a measured k, which may make it negative. A k below -kKNoise is an error, or has another sign convention.
+// Noise may make a measured k slightly negative. A k below -kKNoise is an error or has the opposite sign convention.
 constexpr double kKNoise = 1e-5;
 constexpr NumberRange kNoisyKRange{-kKNoise, kKRange.max};
 
@@ -88,7 +88,7 @@ YAML::Node text_of(const Material& material, const YAML::Node& item, const char*
   return text;
 }
 
-/// Reads numbers from a text in a YAML file. The text of a block ("data: |") begins one line below the mark `|`.
+/// Reads the numbers in a text of a YAML file. The text after `data: |` begins one line below the mark `|`.
 CsvReader rows_of(const Material& material, const YAML::Node& text) {
   const bool is_block = text.Scalar().find('\n') != std::string::npos;
   return {text.Scalar(),
@@ -104,7 +104,7 @@ std::vector<double> numbers_of(const Material& material, const YAML::Node& text,
   return numbers;
 }
 
-/// Reads an item with a formula. The material's table of n gets only the ends of the range in which the formula holds.
+/// Reads a DATA item with a formula. The table of n gets two rows, the ends of the range where the formula holds.
 void read_formula(Material& material, const YAML::Node& item, int number) {
   const YAML::Node range = text_of(material, item, "wavelength_range");
   const YAML::Node coefficients = text_of(material, item, "coefficients");
@@ -171,13 +171,12 @@ void read_item(Material& material, IndexRows& rows, const YAML::Node& item) {
     check_keys(material, item, {"type", "wavelength_range", "coefficients"});
     return read_formula(material, item, formula);
   }
-  check_keys(material, item, {"type", "data", "wavelength_range"});  // tables may have wavelength_range too
+  check_keys(material, item, {"type", "data", "wavelength_range"});  // a table may have wavelength_range, too
   const CsvColumns columns(index_columns(has_n, !has_n || is_nk));
   for (CsvReader row = rows_of(material, text_of(material, item, "data")); row.next();) rows.add(row, columns);
   rows.end_table();
 }
 
-/// Describes, for a message, a YAML text that has no values of n.
 std::string kind_without_data(const YAML::Node& root) {
   if (root.IsSequence()) return "it is a catalogue, a list of records";
   if (!root.IsMap()) return "it has no keys; a CSV must have another name than .yml";

@@ -22,7 +22,7 @@ constexpr std::size_t kMostPointsBytes = 1U << 30U;
 
 using FilmColumn = std::pair<std::size_t, FilmValue::Part>;
 
-/// A column: a value on an axis, a number of a film, or an angle of a pair of directions. Angles are required.
+/// A column of points: values on an axis, values of a film, or angles of a pair of directions. Angles are required.
 struct ColumnRule {
   std::string name;
   NumberRange range;
@@ -39,7 +39,7 @@ struct ColumnRule {
   }
 };
 
-/// Adds a rule for each of `names` that is a film's n, k or thickness, such as "surface.coating.1.thickness_um".
+/// Adds a rule for each name of n, k or thickness of a film, such as "surface.coating.1.thickness_um".
 void append_film_rules(std::vector<ColumnRule>& rules, const std::vector<std::string>& names) {
   static const std::map<std::string, FilmValue::Part> kParts = {
       {"n", FilmValue::Part::kN}, {"k", FilmValue::Part::kK}, {"thickness_um", FilmValue::Part::kThickness}};
@@ -53,7 +53,7 @@ void append_film_rules(std::vector<ColumnRule>& rules, const std::vector<std::st
   }
 }
 
-/// Rules for the columns that points may have. Films have rules only for the columns in `names`.
+/// Rules for all columns that points may have. Columns of films get rules only if they are in `names`.
 std::vector<ColumnRule> column_rules(PointsKind kind, const std::vector<std::string>& names) {
   std::vector<ColumnRule> rules;
   const bool has_pairs = kind == PointsKind::kGeometries;
@@ -78,7 +78,6 @@ std::vector<CsvColumn> csv_columns(const std::vector<ColumnRule>& rules) {
   return columns;
 }
 
-/// Position in `text` where the first line ends that is neither blank nor a comment.
 std::size_t end_of_header(std::string_view text) {
   std::size_t begin = 0;
   for (;;) {

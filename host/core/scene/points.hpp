@@ -15,9 +15,10 @@
 namespace dolp {
 
 enum class PointsKind {
-  /// For the commands `eval` and `lookup`. At least one column: axes (theta_deg, sigma, n, ...) or numbers of films.
+  /// For the commands `eval` and `lookup`. Columns: at least one axis (theta_deg, sigma, n, ...) or value of a film.
   kDirections,
-  /// For the command `mueller`. Columns: theta_i_deg, theta_r_deg, delta_phi_deg; any of sigma, q, n, k, film numbers.
+  /// For the command `mueller`. Required columns: theta_i_deg, theta_r_deg, delta_phi_deg. Optional columns: sigma or
+  /// wind_m_s, q, n, k, and values of films.
   kGeometries,
 };
 
@@ -30,9 +31,9 @@ struct Points {
   std::vector<std::string> left_out;  ///< columns of the file that are not read because they are results
   using Column = std::optional<std::vector<double>>;
   AxisArray<Column> coordinates;
-  /// For axes with labels, the different labels in the file. The values of such a column are positions in this list.
+  /// For axes with labels: the different labels in the file. A column of such an axis has positions in this list.
   AxisLabels labels;
-  /// n, k or thickness of films, by layer (from 0) and part. Columns have names like "surface.coating.1.thickness_um".
+  /// Columns such as "surface.coating.1.thickness_um", by layer (counted from 0) and by n, k or thickness.
   std::map<std::pair<std::size_t, FilmValue::Part>, Column> films;
   bool has_winds = false;                          ///< true if the points have winds instead of sigmas
   Column theta_i_deg, theta_r_deg, delta_phi_deg;  ///< only for kGeometries, which have no theta_deg and wavelength_um
@@ -44,7 +45,7 @@ struct Points {
   /// The value on `axis` of a row, as messages show it.
   std::string text_at(Axis axis, std::size_t row) const;
   std::vector<FilmValue> films_at(std::size_t row) const;
-  /// The beginning of messages about a row: "file:line" or "points[row]". Without `row`, messages are about the header.
+  /// Beginning of a message about a row: "file:line" or "points[row]". Without `row`: about the header.
   std::string where(std::size_t row) const;
   std::string where() const;
 };
@@ -53,8 +54,8 @@ inline double value_or(const Points::Column& column, std::size_t row, double fal
   return column ? (*column)[row] : fallback;
 }
 
-/// For each point: the position in `known` of the point's label. Case does not matter. A part of a label is enough if
-/// no other label contains this part. Errors: InputError that lists the known labels.
+/// For each point, finds its label in the list `known` and returns the position. Case does not matter. A part of a
+/// label is enough if no other label contains it. Errors: InputError that lists the known labels.
 std::vector<double> label_positions(const Points& points, Axis axis, const AxisLabels& known);
 
 /// Points from arrays. Errors: those of read_points, and InputError if a column's length is neither 1 nor `count`.
@@ -66,7 +67,6 @@ Points points_of(std::span<const Column> columns, std::size_t count, PointsKind 
 /// Errors: InputError that names file, line, column, value and allowed range, or a file that cannot be opened.
 Points read_points(const std::string& path, PointsKind kind, const std::vector<std::string>& results = {});
 
-/// Reads points from a text in memory. `path_name` is the name of the text in messages.
 Points parse_points(const std::string& text, const std::string& path_name, PointsKind kind,
                     const std::vector<std::string>& results = {});
 

@@ -31,8 +31,8 @@ struct Material {
   std::string source;  ///< where the values come from; empty if the scene gives n and k as numbers
   OpticalConstants constant;
   SpectralTable n, k;
-  std::shared_ptr<const Material> tabulated = {};  ///< the whole table if `constant` is its value at one wavelength
-  double least_k = 0.0;  ///< least k in the file if negative, else 0; the tables have 0 for a negative k
+  std::shared_ptr<const Material> tabulated = {};  ///< the whole table, if `constant` holds its value at one wavelength
+  double least_k = 0.0;  ///< smallest k in the file, if it is negative; the tables have 0 instead
   bool is_constant() const { return n.wavelength_um.empty(); }
   OpticalConstants at(double wavelength_um) const;
 };
@@ -63,7 +63,7 @@ struct Surface {
   double diffuse = 0.0;            ///< k_d in [0, 1]
   double diffuse_exponent = -0.5;  ///< c in (-1, 0]
   DiffusePolarisation diffuse_polarisation = DiffusePolarisation::kNone;
-  /// True if the masking needs a finite mean slope, which cauchy has only for q in kSmithCauchyQRange.
+  /// True if q must be in kSmithCauchyQRange, because smith masking needs a finite mean slope.
   bool needs_mean_slope() const { return masking == Masking::kSmith && distribution == Distribution::kCauchy; }
   bool is_bare() const { return coating.empty() && !reflectance; }
   bool has_constant_optics() const;
@@ -83,7 +83,7 @@ struct Source {
   enum class Kind { kFlat, kRelative, kTabulated };
   Kind kind = Kind::kFlat;
   double irradiance = 0.0;           ///< for kFlat: W m-2 um-1, constant over a band
-  double relative_irradiance = 0.0;  ///< for kRelative: E0 / (pi B(T)) at each wavelength, with T of the emission
+  double relative_irradiance = 0.0;  ///< for kRelative: E0 / (pi B(T)) at each wavelength, T = emission.temperature_K
   SpectralTable table;               ///< for kTabulated: W m-2 um-1
   double scale = 1.0;                ///< E0 is multiplied by this
 };
@@ -95,7 +95,7 @@ struct Surroundings {
   void set_sky(SkyProfile sky);
 };
 
-/// Path to the sensor. It changes I to tau I + L (exitances: tau I + pi L) and multiplies Q, U and V by tau.
+/// Path to the sensor. It changes radiances I to tau I + L, exitances I to tau I + pi L, and multiplies Q, U, V by tau.
 struct Path {
   double transmittance = 1.0;
   std::optional<double> temperature_K;  ///< temperature from which L = (1 - tau) B(T) follows
@@ -117,10 +117,10 @@ struct Geometry {
 struct Accuracy {
   double tolerance = 1e-4;
   Precision precision = Precision::kAuto;
-  bool may_interpolate = true;  ///< allows interpolation between slope distributions, and responses
+  bool may_interpolate = true;  ///< allows interpolation between slope distributions, and the use of responses
 };
 
-/// Names as a scene gives them; empty if it gives none. `material` is completed to the full name of the material.
+/// Names and paths as a scene gives them; empty if absent. A `material` is completed to the full name of the material.
 struct SceneNames {
   struct OfLayer {
     std::string material, material_file;
@@ -150,12 +150,12 @@ struct SceneModel {
 struct SceneValues : SceneModel {
   std::string title;
   SceneNames names;
-  Axes grid;                       ///< values in the user's order; sigma and q are from [surface] if [grid] lacks them
+  Axes grid;                       ///< values in the user's order; sigma and q from [surface] if absent in [grid]
   AxisLabels labels;               ///< names of the materials and bands on the grid's axes
   std::vector<double> wind_m_s;    ///< winds from which the grid's sigmas follow; empty if the scene gives sigmas
   std::string path_name;           ///< path of the scene as the user gave it, for messages
   std::string text;                ///< text of the scene file, unchanged
-  std::vector<std::string> files;  ///< paths with which the process opens the files that the scene names
+  std::vector<std::string> files;  ///< paths of the files that the scene names, as the process opens them
   std::vector<Setting> settings;   ///< settings that were applied to the text
   std::shared_ptr<const SceneDocument> document;  ///< text and settings as TOML; null without a text
 };
@@ -165,7 +165,7 @@ SceneModel at_wavelength(const SceneModel& scene, double wavelength_um);
 
 void set_films(Surface& surface, const std::vector<FilmValue>& films);
 
-/// The scene with the values of `variant`, whose films it must have. Errors: errors of at_wavelength.
+/// The scene with the values of `variant`. `scene` must have these films. Errors: errors of at_wavelength.
 SceneModel with_variant(const SceneModel& scene, const SceneVariant& variant);
 
 }  // namespace dolp

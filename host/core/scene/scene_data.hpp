@@ -8,7 +8,7 @@
 
 namespace dolp {
 
-/// Data from a table file, with which the table was computed. They replace data files and built-in data.
+/// Data from a table file. The table was computed with them, so they replace data files and built-in data.
 struct KnownData {
   std::optional<Material> material = {};
   std::vector<std::optional<Material>> layers = {};  ///< layers of a coating
@@ -16,7 +16,7 @@ struct KnownData {
   std::optional<ReflectanceTable> reflectance = {};
   std::optional<SpectralTable> irradiance = {};
   std::optional<SkyProfile> profile = {};
-  bool may_open_files = false;  ///< allows opening files for missing data; messages then do not quote the files
+  bool may_open_files = false;  ///< allows opening files for missing data; then messages do not quote these files
 };
 
 /// Loads the data that a scene names: materials, measured reflectances, irradiance of the source, and sky. Paths are

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMostDepth = 100;
 
-/// Where the string ends that begins at `begin`. One or three quotation marks, single or double, enclose a string.
+/// Position after the string that begins at `begin`. One or three quotation marks, single or double, enclose a string.
 std::size_t end_of_string(std::string_view text, std::size_t begin) {
   const char quote = text[begin];
   const std::string three(3, quote);
@@ -35,7 +35,7 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
 
 /// The line where nesting exceeds kMostDepth, else 0. There the TOML parser would recurse too deeply.
 std::size_t line_of_deep_nesting(std::string_view text) {
-  std::vector<std::size_t> around = {0};  // depth at the beginning of the text and at each open bracket
+  std::vector<std::size_t> around = {0};  // depth of the text, and of each bracket that is open
   std::size_t depth = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -60,7 +60,7 @@ std::size_t line_of_deep_nesting(std::string_view text) {
   return 0;
 }
 
-/// The position of the list element that a key names, counting from 1. Other texts: a position beyond every list.
+/// Position of a list element from its number, which counts from 1. For other texts: a position beyond every list.
 std::size_t list_position(std::string_view part) {
   std::size_t number = 0;
   const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), number);
@@ -75,7 +75,7 @@ std::string_view table_part(std::string_view key) {
   return dot == std::string_view::npos ? std::string_view{} : key.substr(0, dot);
 }
 
-/// Calls `insert` with `text` as TOML, else as a number in a notation that TOML lacks, else as a word.
+/// Reads `text` as TOML, else as a number in a notation that TOML lacks, else as a word. Calls `insert` with the value.
 template <class Insert>
 void insert_text(const std::string& text, bool is_text_key, const Insert& insert) {
   try {
@@ -245,7 +245,7 @@ unsigned SceneDocument::line_of(std::string_view key) const {
 
 std::string SceneDocument::prefix(std::string_view key) const {
   const toml::node* node = find(key);
-  // Blames a missing key on the setting that created its table only if the table is an axis.
+  // If the key is missing, blames the setting that gave its table, but only if the table is an axis such as grid.sigma.
   const bool is_of_value = node != nullptr || find_scene_key(table_part(key)) != nullptr;
   if (const std::string* origin = is_of_value ? origin_of(key) : nullptr; origin)
     return *origin + ": " + (node ? "" : last_part(key) + ": ");

@@ -16,18 +16,18 @@ struct KeyValue {
   double number = 0.0;
   std::size_t word = 0;              ///< position in Key::words
   std::string text = {};             ///< value of a text, a word or a flag as text
-  std::vector<double> numbers = {};  ///< values of an axis, of a pair, or of several pairs in a row
+  std::vector<double> numbers = {};  ///< numbers of an axis, of a band (from, to), or of several bands in a row
   std::vector<std::string> names = {};
 };
 
 struct SceneKey {
   Key description;
   std::function<void(SceneValues& scene, const KeyValue& value)> set;
-  /// Nullopt if the scene lacks the value, for example n of a named material, or the temperature without emission.
+  /// Reads the value from a scene. Nullopt if the scene lacks it, for example n of a named material.
   std::function<std::optional<KeyValue>(const SceneValues& scene)> value;
 };
 
-/// Keys that belong together. A scene with one of `heads` chooses the alternative; then it may have `companions` too.
+/// Keys that belong together. A scene chooses this alternative with one of `heads`. It may then have `companions` too.
 struct KeyAlternative {
   std::vector<std::string> heads;
   std::vector<std::string> companions = {};
@@ -39,7 +39,7 @@ struct KeyAlternative {
 struct KeyChoice {
   std::string table;
   std::vector<KeyAlternative> alternatives;
-  bool is_required = true;   ///< a scene must choose an alternative, unless it lacks an optional table
+  bool is_required = true;   ///< a scene must choose an alternative, unless `table` is an absent effect or layer
   bool is_of_layer = false;  ///< `table` is a layer of a coating, so it may be absent
 };
 
@@ -60,7 +60,7 @@ bool is_effect_table(std::string_view table);
 /// True for "surface.coating" and for its layers, such as "surface.coating.2".
 bool is_coating(std::string_view key);
 
-/// True if the setting `none` removes this key or table. Otherwise `none` may be a value, and only `{}` removes it.
+/// True if the setting `none` removes this key or table. For other keys `none` may be a value, and `{}` removes them.
 bool is_removed_by_none(std::string_view key);
 
 void add_effect(SceneValues& scene, std::string_view table);

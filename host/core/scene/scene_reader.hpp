@@ -10,21 +10,21 @@
 namespace dolp {
 
 /// Reads the scene at `path` ("-" is stdin), applies the settings in order and validates the result. Paths in the scene
-/// are relative to the folder of the scene; if it comes from stdin, to the working folder of the process.
+/// are relative to the folder of the scene. If the scene comes from stdin, they are relative to the working folder.
 /// Errors: InputError, one line: `file:line: key = value: what is wrong and what is allowed`. If a setting is wrong,
 /// the line begins with the origin of the setting. A file that cannot be opened is an InputError too.
 SceneValues read_scene(const std::string& path, const std::vector<Setting>& settings = {});
 
-/// The scene after further settings. Domain: a scene that was read. Errors: InputErrors as those of read_scene.
+/// Applies further settings to a scene that was read. Errors: errors of read_scene.
 SceneValues with_settings(const SceneValues& scene, const std::vector<Setting>& settings);
 
-/// Makes a scene from a text. `path_name` appears in messages, and paths in the scene are relative to its folder. With
-/// `known`, the reader opens files only if `may_open_files` is set; otherwise missing data are an InputError.
+/// Makes a scene from a text. `path_name` appears in messages. Relative paths in the scene begin in its folder. If
+/// `known` is given, missing data are an InputError, unless `may_open_files` allows opening files.
 SceneValues parse_scene(const std::string& text, const std::string& path_name,
                         const std::vector<Setting>& settings = {}, const KnownData* known = nullptr);
 
-/// Writes a scene as TOML without comments, with the keys in the order of dolp::keys(). It reads back as the same
-/// scene. In it, paths are relative to `folder`, where the text will be saved. Domain: a scene that was read.
+/// Writes a scene as TOML without comments, with the keys in the order of dolp::keys(). Reading the text gives the same
+/// scene. Paths are relative to `folder`, where the text will be saved. Domain: a scene that was read.
 std::string scene_toml(const SceneValues& scene, const std::filesystem::path& folder);
 
 }  // namespace dolp

@@ -20,7 +20,7 @@ double read_number(const SceneDocument& document, std::string_view key, const to
   const auto* integer = node.as_integer();
   const auto* real = node.as_floating_point();
   if (!integer && !real) document.fail(key, "must be " + allowed);
-  // Rounds an integer that no double can hold exactly. node.value<double>() would be empty.
+  // The cast rounds an integer that no double holds exactly; node.value<double>() would return nothing for it.
   const double number = integer ? static_cast<double>(integer->get()) : real->get();
   if (!range.contains(number)) document.fail(key, fmt::format("{} is out of range; must be {}", number, allowed));
   return number;
@@ -74,7 +74,7 @@ AxisRange read_axis_rule(const SceneDocument& document, const Key& description, 
   return rule;
 }
 
-/// The values of an axis from `from` to `to`. Both ends are exact. Exchanging them reverses the values exactly.
+/// The values of an axis from `from` to `to`. Both ends are exact. Exchanged ends give exactly the reversed values.
 std::vector<double> axis_values(const AxisRange& rule) {
   std::vector<double> values(rule.count, rule.from);
   const auto last = static_cast<double>(rule.count - 1);

@@ -22,21 +22,21 @@ namespace {
 
 constexpr std::size_t kMostZeniths = 1000;
 
-// Zeniths that also divide a sky. Near the horizon, where it may be as flat as exp(-1/cos), parts must be short.
+// Zeniths that divide a sky further. Near the horizon its radiance may change like exp(-1 / cos), so parts are short.
 constexpr std::array<double, 2> kDivisions_deg = {60.0, 85.0};
 constexpr std::array<double, 11> kLayerDivisions_deg = {0.0,  30.0, 60.0,  75.0,  82.0, 86.0,
                                                         88.0, 89.0, 89.75, 89.94, 90.0};
 
-// Between two temperatures, Planck's function is smooth if their ratio is at most kDivisionRatio. Temperatures below
-// kColdestShare of the warmest one radiate too little to matter.
+// An interval of zeniths is divided until its temperatures have at most the ratio kDivisionRatio. Then Planck's
+// function is smooth in it. Temperatures below kColdestShare of the warmest one radiate too little to matter.
 constexpr double kDivisionRatio = 2.0;
 constexpr double kColdestShare = 1.0 / 256.0;
 
 // Air of the US Standard Atmosphere 1976 at sea level: 15 degrees C, and 5.9 g m-3 of water vapour, which is 7.85 hPa.
 constexpr double kAir_K = 288.15;
 constexpr double kVapour_hPa = 7.85;
-// Precipitable water in cm is this times the vapour pressure in hPa, divided by the temperature in K. Source: Prata, Q.
-// J. R. Meteorol. Soc. 122, 1127 (1996).
+// Precipitable water in cm = kWater_cmK_hPa times vapour pressure in hPa / temperature in K. Source: Prata, Q. J. R.
+// Meteorol. Soc. 122, 1127 (1996).
 constexpr double kWater_cmK_hPa = 46.5;
 constexpr double kWindowFrom_um = 10.5;
 constexpr double kWindowTo_um = 12.5;
@@ -65,8 +65,8 @@ double vapour_pressure(const SkyAir& air, double air_K, const std::string& prefi
 // Band of carbon dioxide in which a few metres of air are opaque.
 constexpr double kOpaqueFrom_um = 4.17;
 constexpr double kOpaqueTo_um = 4.45;
-// A black cloud with its base at 1 km, at the temperature of the air there (Martin and Berdahl, Solar Energy 33, 321
-// (1984)). Below it the temperature falls by 6.5 K per km, and the vapour to 1 / e in 2 km.
+// Overcast: a black cloud with its base at 1 km, as warm as the air there (Martin and Berdahl, Solar Energy 33, 321
+// (1984)). From the ground up, the temperature falls by 6.5 K per km, and the vapour falls to 1 / e in 2 km.
 constexpr double kCloudBase_km = 1.0;
 constexpr double kLapse_K_km = 6.5;
 constexpr double kVapourHeight_km = 2.0;

@@ -9,12 +9,12 @@
 
 namespace dolp {
 
-/// A sky as temperatures or radiances at zeniths, linear between them, or as a layer of air before a black background.
-/// Equation: the air radiates t^(1 / cos(zenith)) B(beyond_K) + (1 - t^(1 / cos(zenith))) B(air_K), t = 1 - emissivity.
+/// A sky: temperatures or radiances at zeniths, linear between them, or a layer of air before a black background.
+/// Equation: a layer has the radiance (1 - p) B(air_K) + p B(beyond_K), with the share
+/// p = (1 - emissivity)^(1 / cos(zenith)) of the background's light that passes through.
 /// Source: Granqvist and Hjortsberg, J. Appl. Phys. 52, 4205 (1981), for a plane-parallel atmosphere of one
-/// temperature. Idso, Water Resources Research 17, 295 (1981), for the vertical emissivities of clear air: the mean
-/// over 8-14 um, and the value in the window at 10.5-12.5 um. The rest of 8-14 um has the emissivity that leads to this
-/// mean. Other wavelengths have the mean.
+/// temperature. Idso, Water Resources Research 17, 295 (1981), for two vertical emissivities of clear air: the mean
+/// over 8-14 um, also used at other wavelengths, and the value at 10.5-12.5 um. Both determine the rest of 8-14 um.
 struct SkyProfile {
   enum class Kind { kTemperature, kRadiance, kLayers };
   Kind kind = Kind::kTemperature;
@@ -27,16 +27,16 @@ struct SkyProfile {
   std::optional<double> window = {};  ///< vertical emissivity at 10.5-12.5 um; nullopt: `emissivity`
   std::optional<double> beside_window = {};  ///< vertical emissivity in the rest of 8-14 um; nullopt: `emissivity`
 
-  /// Radiance of the sky as a weighted mean of two black bodies, plus `radiance`.
+  /// The sky has the radiance share B(first_K) + (1 - share) B(second_K) + radiance, with Planck's function B.
   struct Emission {
-    double share = 1.0;  ///< weight of the first black body; the second has the weight 1 - share
+    double share = 1.0;
     double first_K = 0.0;
     double second_K = 0.0;
     double radiance = 0.0;  ///< W m-2 sr-1 um-1, in addition
   };
   Emission at(double wavelength_um, double zenith_deg) const;
 
-  /// Zeniths that divide an interval between two rows if the temperature changes by more than a factor of two in it.
+  /// Zeniths that divide the interval after row `interval` so that temperatures differ by at most a factor of two.
   std::vector<double> temperature_divisions_deg(std::size_t interval) const;
   /// Zeniths from 0 to 90 between which the profile is a smooth function of zenith.
   std::vector<double> ends_deg() const;
@@ -55,7 +55,7 @@ struct BuiltInSky {
 };
 const std::vector<BuiltInSky>& built_in_skies();
 
-/// Air of a built-in sky. Without both values: US Standard Atmosphere 1976, with one emissivity for all wavelengths.
+/// Air of a built-in sky. Both values absent: US Standard Atmosphere 1976, with one emissivity for all wavelengths.
 struct SkyAir {
   std::optional<double> vapour_cm = {};  ///< precipitable water in cm
   std::optional<double> temperature_K = {};
@@ -65,8 +65,8 @@ struct SkyAir {
 /// The built-in sky `name`, or nullopt. Errors: InputError that begins with `prefix` if the air cannot hold the vapour.
 std::optional<SkyProfile> built_in_sky(std::string_view name, const SkyAir& air = {}, const std::string& prefix = {});
 
-/// Reads a CSV with the columns zenith_deg, temperature_K or radiance, and wavelength_um if the values depend on it.
-/// Each wavelength has the same zeniths, from 0 to 90. Errors: InputError that names file, line, column and value.
+/// Reads a CSV with zenith_deg (from 0 to 90) and temperature_K or radiance. If these depend on the wavelength, there
+/// is also wavelength_um, with the same zeniths at each wavelength. Errors: InputError with file, line and column.
 SkyProfile parse_sky_profile(std::string_view text, const std::string& name);
 SkyProfile read_sky_profile(const std::string& path, const std::string& prefix);
 

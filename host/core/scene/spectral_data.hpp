@@ -34,8 +34,8 @@ struct SpectralRow {
   std::size_t line;
 };
 
-/// Sorts and appends rows, without repeated rows and rows outside of kWavelengthUmRange. `named`: name and range of the
-/// values. Errors: InputError with file and line for two values at one wavelength; errors of append_row.
+/// Sorts `rows` and appends them, but no duplicates and no wavelength outside kWavelengthUmRange. `named`: name and
+/// range of the values. Errors: InputError with file and line for two values at one wavelength; errors of append_row.
 void append_rows(SpectralTable& table, std::vector<SpectralRow> rows, const NamedValue& named, const std::string& file);
 
 /// A row of a CSV that has values over an angle from 0 to 90 degrees and, in some files, over wavelength.
@@ -47,16 +47,16 @@ struct AngleRow {
 };
 
 /// Rows of a CSV, sorted by wavelength, then by angle. All wavelengths have the same angles, from 0 to 90 degrees.
-/// `angle` and `values` name columns, `file` is for messages. Errors: InputError with file, line and column.
+/// `angle` and `values` are names of columns. `file` is for messages. Errors: InputError with file, line and column.
 std::vector<AngleRow> read_angle_rows(CsvReader& row, const CsvColumns& columns, const std::string& angle,
                                       const std::vector<std::string>& values, const std::string& file);
 
-/// An interval between neighbours in an ascending list, and how far into it a value lies: 0 at its start, 1 at its end.
+/// A position between elements `first` and `first` + 1 of an ascending list. `share`: 0 at the first, 1 at the second.
 struct Between {
   std::size_t first = 0;
   double share = 0.0;
 };
-/// The interval with `value`; beyond an end, the first or the last interval. With one value in the list, share is 0.
+/// Where `value` lies in `list`. A value outside the list gets the position of the nearest end.
 Between between(const std::vector<double>& list, double value);
 
 /// Refuses a table that lacks values in a part of the spectrum. The message begins with `prefix`.

@@ -8,7 +8,7 @@ namespace {
 constexpr double kPlanck_Js = 6.62607015e-34;
 constexpr double kLightSpeed_m_per_s = 299792458.0;
 constexpr double kBoltzmann_J_per_K = 1.380649e-23;
-// 1e6 converts m K to um K. 1e24 = 1e30 / 1e6 converts lambda^-5 from m to um, and a radiance per m to one per um.
+// 1e6 converts m K to um K. 1e24 = 1e30 * 1e-6: 1e30 for lambda^-5 with lambda in um, 1e-6 for a radiance per um.
 constexpr double kSecondRadiationConstant_umK = kPlanck_Js * kLightSpeed_m_per_s / kBoltzmann_J_per_K * 1e6;
 constexpr double kFirstRadianceConstant = 2.0 * kPlanck_Js * kLightSpeed_m_per_s * kLightSpeed_m_per_s * 1e24;
 

@@ -7,7 +7,7 @@
 namespace dolp {
 namespace {
 
-// Chosen. Error of a sky as a sum of functions, as a share of the tolerance. Each function slows a kernel by a sixth.
+// Chosen. Allowed error of a sky as a sum of functions, relative to the tolerance. Each function slows a kernel by 1/6.
 constexpr double kBasisShare = 0.02;
 
 Eigen::VectorXd vector_of(const std::vector<double>& values) {

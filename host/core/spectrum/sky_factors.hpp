@@ -13,7 +13,7 @@ namespace dolp {
 /// The radiance of a scene's profile at a wavelength. Units: W m-2 sr-1 um-1.
 double sky_radiance(const SkyProfile& profile, double wavelength_um, double zenith_deg);
 
-/// Values of pi times a sky's radiance at the nodes. A uniform sky with their mean() gives the same irradiance.
+/// Samples pi times the radiance of a sky at nodes(). mean(): exitance of the uniform sky with the same irradiance.
 class SkySampler {
  public:
   explicit SkySampler(const SkyProfile& profile);
@@ -27,10 +27,10 @@ class SkySampler {
   Eigen::VectorXd mean_weights_;
 };
 
-/// Functions whose weighted sums are the skies of all variants, minus their means. Null if all skies are uniform.
+/// Functions whose weighted sums approximate each variant's sky minus its mean. Null if all skies are uniform.
 std::shared_ptr<const SkyBasis> sky_basis(const SceneModel& scene, const std::vector<SceneVariant>& variants);
 
-/// For each sample of `rule`, weights of the functions whose sum is the sky minus its mean. Empty without a basis.
+/// For each sample of `rule`, weights with which the functions add up to the sky minus its mean. Empty without a basis.
 std::vector<SkyWeights> sky_weights(const SpectralRule& rule, const SkyBasis* basis);
 
 }  // namespace dolp

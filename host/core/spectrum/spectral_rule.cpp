@@ -18,31 +18,30 @@ namespace {
 
 using FineRule = boost::math::quadrature::gauss<double, 16>;
 
-// The constants below are chosen. With half or double of each constant, except kPieceWavelengthRatio, which must be
-// above 1, the evaluations and error bounds of the tables of night_paint, bare_aluminium and water stay the same.
+// The constants below are chosen. Each was tried at half and double its value, except kPieceWavelengthRatio, which must
+// be above 1. The evaluations and error bounds of the tables of night_paint, bare_aluminium and water stayed the same.
 
-// A band is cut into pieces on which 16 Gauss nodes integrate Planck's function to rounding. Limits within a piece: the
-// change of the exponent h c / (lambda k_B T), and the ratio of the longest to the shortest wavelength.
+// A band is cut into pieces so short that 16 Gauss nodes integrate Planck's function to rounding. Limits of a piece:
+// change of the exponent h c / (lambda k_B T), and ratio of its longest to its shortest wavelength.
 constexpr double kPieceExponentChange = 4.0;
 constexpr double kPieceWavelengthRatio = 1.5;
-// h c / k_B in um K, with which the exponent is computed, and the exponent beyond which Planck's function underflows.
+// h c / k_B in um K, for this exponent. Planck's function underflows if the exponent is above kLargestPlanckExponent.
 constexpr double kExponentScale_umK = 14388.0;
 constexpr double kLargestPlanckExponent = 750.0;
 constexpr double kPieceRelativeError = 1e-12;  // relative error of a sum over pieces
 
-// Each segment gets enough nodes that the absorptances of the smooth surface have at most this error. It is relative to
-// the smaller of reflectance and absorptance, but at least to kSmallestPart.
+// Allowed nodes_error of a segment, with kSmallestPart as `least`. At most kMostNodes nodes are tried.
 constexpr double kNodesRelativeError = 1e-10;
 constexpr double kSmallestPart = 1e-4;
 constexpr int kMostNodes = 24;
-// The nodes of a segment are tested with the absorptances of the smooth surface at these angles of incidence (probes),
-// and at critical angles. The error bound is kProbeSafety times the largest error.
+// Probes test the nodes of a segment. They are angles of incidence on the smooth surface: fixed ones, and the critical
+// angles at kCriticalShares of the segment. The error bound is kProbeSafety times the largest error at a probe.
 constexpr double kProbeSafety = 10.0;
 constexpr std::array<double, 7> kProbeCosines = {1.0, 0.5, 0.25, 0.15, 0.1, 0.07, 0.04};
-constexpr std::array<double, 7> kCriticalShares = {0.03, 0.19, 0.34, 0.52, 0.67, 0.81, 0.96};  // of probes in a segment
-// If kMostNodes nodes leave an error above kShareOfTolerance of the tolerance, the segment is cut into panels. Their
-// number grows until the error is below kPanelShareOfTolerance of the tolerance, or until the band has about
-// kMostPanels. Mirrors may have more panels, because their moments are cheap.
+constexpr std::array<double, 7> kCriticalShares = {0.03, 0.19, 0.34, 0.52, 0.67, 0.81, 0.96};
+// If kMostNodes nodes leave an error above kShareOfTolerance of the tolerance, the segment is cut into panels, which
+// have kPanelNodes nodes each. The number of panels grows until the error is below kPanelShareOfTolerance of the
+// tolerance, or until the band has about kMostPanels. Mirrors may have more panels, because their moments are cheap.
 constexpr double kShareOfTolerance = 0.005;
 constexpr double kPanelShareOfTolerance = 0.03;
 constexpr int kLeastPanels = 4;
@@ -50,7 +49,7 @@ constexpr double kMostPanels = 32.0;
 constexpr double kMostMirrorPanels = 512.0;
 constexpr double kMostFringes = 256.0;  // most parts into which the fringes of films divide a band
 
-/// A node of the 16-point rule: the spectral factors at its wavelength, all multiplied by the weight of the node.
+/// A node of the 16-point Gauss rule, with the spectral factors at its wavelength times the weight of the node.
 struct FineNode : SpectralFactors {
   double wavelength_um = 0.0;
   double path = 0.0;
@@ -240,7 +239,7 @@ std::vector<double> probe_cosines(const Surface& surface, double from_um, double
   return cosines;
 }
 
-/// Integrals of one spectral factor: alone, and times the absorptances s and p of the smooth surface.
+/// Integrals over wavelength of one spectral factor (`whole`), and of this factor times 1 - R_s and times 1 - R_p.
 struct ProbeSum {
   double whole = 0.0;
   double s = 0.0;
@@ -269,8 +268,8 @@ std::vector<ProbeSums> exact_sums(const Surface& surface, const std::vector<Fine
   return sums;
 }
 
-/// Largest error of ProbeSum::s and p if computed from `samples`. It is relative to the integral of the reflectance or
-/// of the absorptance, whichever is smaller, but at least to `least` times ProbeSum::whole.
+/// Largest relative error of ProbeSum::s and ProbeSum::p, if they are computed from `samples`. The divisor is the
+/// smaller of the integrals of reflectance and absorptance, or `least` times ProbeSum::whole if that is larger.
 double nodes_error(const std::vector<SpectralSample>& samples, const std::vector<ProbeSums>& exact,
                    const std::vector<double>& cosines, double least) {
   double worst = 0.0;
@@ -310,9 +309,8 @@ SegmentRule smooth_segment(const SceneModel& scene, double from_um, double to_um
                            const std::vector<double>& cosines) {
   if (scene.surface.has_constant_optics()) return {samples_at(scene, gauss_wavelengths(from_um, to_um, 1), fine), 0.0};
   SegmentRule rule;
-  // Because of their interference fringes, films would need many nodes. So the tolerance of the scene decides.
+  // Interference fringes of films would need many nodes. So with films the error need only suit the scene's tolerance.
   const double enough = scene.surface.coating.empty() ? kNodesRelativeError : enough_for_tolerance(scene);
-  // The exact integrals have nodes in both halves of the segment, and share no node with the samples that they test.
   const std::vector<ProbeSums> exact = exact_sums(scene.surface, finer_nodes(scene, from_um, to_um), cosines);
   for (int count = 1; count <= kMostNodes; ++count) {
     rule.samples = samples_at(scene, gauss_wavelengths(from_um, to_um, count), fine);
@@ -322,7 +320,7 @@ SegmentRule smooth_segment(const SceneModel& scene, double from_um, double to_um
   return rule;
 }
 
-/// Cuts a segment into `panels` equal panels of kPanelNodes samples, and computes their error.
+/// Cuts a segment into panels of equal width with kPanelNodes samples each. Computes the error of all panels together.
 SegmentRule segment_of_panels(const SceneModel& scene, double from_um, double to_um, int panels,
                               const std::vector<double>& cosines) {
   SegmentRule rule;
@@ -339,7 +337,7 @@ SegmentRule segment_of_panels(const SceneModel& scene, double from_um, double to
   return rule;
 }
 
-/// Adds the samples of a segment between two rows of the material's table to `rule`, or to `panels` if it needs panels.
+/// Adds the samples of a segment to `panels` if it needs panels, else to `rule`. A segment lies between two table rows.
 void append_segment(const SceneModel& scene, double from_um, double to_um, SpectralRule& rule,
                     std::vector<SpectralSample>& panels) {
   const std::vector<FineNode> fine = fine_nodes(scene, from_um, to_um);

@@ -25,7 +25,7 @@ struct KernelContext {
   double tile_timeout_s = 0.0;
 };
 
-/// Base of the runs. For each tile, a run records the upload of the inputs, then runs the kernel.
+/// Base class of the runs, which compute one request each. For each tile, a run uploads inputs and runs the kernel.
 class TiledRun {
  public:
   virtual ~TiledRun() = default;
@@ -50,7 +50,7 @@ class TiledRun {
     inputs_[binding]->write(scratch_, context_.stream);
   }
   void upload_rule(const KernelData& data);
-  /// `share` is the finished share of the wanted entries. Returns false if the caller cancels the run.
+  /// Calls `progress` with the number of finished entries, `share` times `wanted`. Returns false if the caller cancels.
   static bool goes_on(const Progress& progress, double share, std::size_t wanted) {
     return !progress || progress(static_cast<std::size_t>(share * static_cast<double>(wanted)), wanted);
   }

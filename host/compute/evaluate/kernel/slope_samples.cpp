@@ -34,8 +34,8 @@ struct End {
   bool is_breakpoint = false;         // true if this end is itself a breakpoint
 };
 
-// In the moments of a shape, slope i has the weight common[i] * exp(-exponent_factor(shape) * exponent[i]), except for a
-// constant factor. The arrays depend only on the width m of the shape.
+// In the moments of a shape, slope i has the weight common[i] * exp(-exponent_factor(shape) * exponent[i]), except for
+// a constant factor. The arrays depend only on the width m of the shape.
 struct SlopeWeights {
   double m = 0.0;
   Eigen::ArrayXd exponent;  // common_exponent() of slope.glsl
@@ -175,8 +175,9 @@ struct SlopeSampling::Impl {
     return weights;
   }
 
-  // Integral over a piece of the slope axis, by a Gauss rule with `count` nodes. The weights are scaled so that they sum
-  // to `share`, the exact share of the facets on the piece. The scaling cancels the error of integrating the density.
+  // Integral over a piece of the slope axis, by a Gauss rule with `count` nodes. The weights are scaled so that they
+  // sum to `share`, the exact share of the facets on the piece. The scaling cancels the error of integrating the
+  // density.
   static kernel::AzimuthNode sum_of(std::uint32_t first, std::uint32_t count, const Eigen::ArrayXd& shape_weights,
                                     double share, std::span<const kernel::AzimuthNode> azimuths) {
     using Azimuths = Eigen::Matrix<double, sizeof(kernel::AzimuthNode) / sizeof(double), Eigen::Dynamic>;

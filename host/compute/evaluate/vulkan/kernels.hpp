@@ -49,7 +49,8 @@ class Kernels {
     std::array<VkBuffer, kStorageCount> buffers{};
     std::array<VkBufferView, kTexelCount> texels{};  ///< for DOLP_BINDING_RULE_NODES and DOLP_BINDING_MASKING_NODES
   };
-  /// Where a buffer is null, binds another buffer that no kernel reads. Else the binding could refer to a destroyed one.
+  /// Where a buffer is null, binds another buffer that no kernel reads. Else the binding could refer to a destroyed
+  /// one.
   void bind(const Bindings& bindings);
 
   VkPipeline pipeline(const KernelVariant& variant);

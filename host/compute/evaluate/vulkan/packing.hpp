@@ -30,8 +30,7 @@ class Packing {
   std::size_t node_bytes() const {
     return real_count<Node>() * real_bytes();
   }
-  /// Bytes of the result of one invocation: one Node and `numbers` reals. A buffer has the Nodes of all invocations,
-  /// then the reals of all invocations.
+  /// Bytes of the result of one invocation: one Node and `numbers` reals.
   template <class Node>
   std::size_t output_bytes(std::size_t numbers) const {
     return node_bytes<Node>() + numbers * real_bytes();

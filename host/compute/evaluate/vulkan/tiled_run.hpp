@@ -42,7 +42,6 @@ class TiledRun {
   void add_inputs(std::uint32_t binding, std::size_t count, VkFormat texels = VK_FORMAT_UNDEFINED) {
     add_input(binding, count * packing_.node_bytes<Node>(), texels);
   }
-  /// Creates the buffer for the results and the buffers of the Gauss rules, then binds all buffers.
   void add_results(std::uint32_t binding, std::size_t bytes, const KernelData& data, const KernelVariant& variant);
   template <class NodeOf>
   void upload(std::uint32_t binding, std::size_t count, const NodeOf& node_of) {
@@ -79,7 +78,6 @@ class Run : public TiledRun {
 
 std::unique_ptr<Run<Moments>> row_run(const KernelContext& context, const MomentsRequest& request,
                                       const VulkanOptions& options);
-/// Computes slope samples, which serve all slope distributions, for some directions at a time.
 std::unique_ptr<Run<Moments>> slope_run(const KernelContext& context, const MomentsRequest& request,
                                         const VulkanOptions& options);
 std::unique_ptr<Run<ScatteringMatrix>> scattering_run(const KernelContext& context, const ScatteringRequest& request,

@@ -103,8 +103,7 @@ struct BeamTiles {
   std::uint32_t beams = 0;  ///< beams per dispatch
 };
 
-/// Gives new numbers to the items of a list that a tile uses: 0, 1, ... in the order of their first use. So the tile
-/// uploads only the items that it needs.
+/// Numbers the items of a list in the order of their first use. So a tile uploads only the items that it needs.
 class Renumbering {
  public:
   explicit Renumbering(std::size_t list_size) : number_(list_size, kUnused) {}

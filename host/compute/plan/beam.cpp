@@ -141,8 +141,7 @@ BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_
   node.cos_beta = 0.5 * std::sqrt(height_sum * height_sum + flat_sum);
   geometry.sin2_beta = 0.25 * (cos_difference * cos_difference + flat_difference);
 
-  // Replaces cos(dphi) by 1 - 2 sin^2(dphi/2) or 2 cos^2(dphi/2) - 1. The form with the smaller square is more
-  // accurate.
+  // Replaces cos(dphi) by 1 - 2 sin^2(dphi/2) or 2 cos^2(dphi/2) - 1. The smaller square causes the smaller error.
   const bool forward = std::abs(half.cos) < std::abs(half.sin);
   const double sin_sum = 2.0 * mean.sin * mean.cos;
   const double sin_of_difference = 2.0 * difference.sin * difference.cos;

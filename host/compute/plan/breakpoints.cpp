@@ -45,7 +45,7 @@ void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   add(a.cos / (2.0 * critical), 0.0);
   add(a.cos / critical, 0.0);
   if (masking != Masking::kVCavity || a.cos <= 0.0) return;
-  const double at_slope_1 = std::sqrt(0.5);  // cos(alpha) at slope 1, the largest slope of the case below
+  const double at_slope_1 = std::sqrt(0.5);  // cos(alpha) at slope 1; the slopes of these two lines are smaller
   add(0.5 * critical / a.cos, at_slope_1);
   add(critical / (std::hypot(a.cos, 2.0 * critical) - a.cos), at_slope_1);
 }

@@ -47,8 +47,7 @@ inline constexpr double kLongWay = 300.0;
 inline constexpr double kSmallestHeavyTableScale = 1e-4;
 inline constexpr double kLightTailQ = 1.5;
 inline constexpr double kLargestTableScale = 0.5;
-inline constexpr double kSteepStep =
-    16.0;  // steep grooves: bounces at a breakpoint divided by bounces at the one before
+inline constexpr double kSteepStep = 16.0;  // steep grooves: ratio of the bounces at neighbouring breakpoints
 inline constexpr int kCriticalBounces = 3;  // slopes are split where total reflection begins, up to this bounce
 /// Tolerance of the responses divided by the tolerance of the request. A sum of responses adds their errors.
 inline constexpr double kResponseTolerance = 0.25;
@@ -102,9 +101,8 @@ inline constexpr double kCriticalFactor = 2.0;     // total reflection: an addit
 inline constexpr double kLeastShareOfTolerance = 0.1;
 /// Upper bound of the rounding error of moments in grooves, divided by the unit roundoff and by cos(theta).
 inline constexpr double kGrooveRoundings = 4.0;
-/// After many bounces in a groove, the kernel treats several bounces as one. These are the errors, relative to the
-/// light that enters the groove: in general and from kVeryManyBounces bounces. Fitted
-/// (tests/compute/evaluate/grooves_test.cpp).
+/// In grooves with many bounces the kernel treats several as one. The errors are relative to the light that enters: in
+/// general, and from kVeryManyBounces bounces. Fitted (tests/compute/evaluate/grooves_test.cpp).
 inline constexpr double kManyBouncesError = 1e-3;
 inline constexpr double kVeryManyBounces = 1024.0;
 inline constexpr double kVeryManyBouncesError = 1e-2;
@@ -139,7 +137,7 @@ inline constexpr int kLastShapeCoefficients = 3;
 inline constexpr double kSlowestShapeFall = 0.9;
 /// Largest ratio of two values of q - 1 in a kernel row. Shapes that differ more need nodes at other slopes.
 inline constexpr double kMostRowSpread = 6.0;
-/// Kernel rows have room for kRowWidth entries if the shapes of the grid fill more than this share; otherwise for one.
+/// Kernel rows have room for kRowWidth entries if a grid fills more than this share of the room; otherwise for one.
 inline constexpr double kLeastRowUse = 0.5;  // 1.87, 1.87, 5.63; 1.81, 1.81, 5.60
 /// If the error of an entry is f times the tolerance, it is computed again. The new tolerance is smaller by the factor
 /// f * kRefinementSafety. In powers of ten, this factor lies between kLeastDecades and kMostDecades.

@@ -67,8 +67,7 @@ void drop_effects(EffectPlan& plan, const SceneValues& scene, const std::vector<
   const double allowed = kDroppedShare * scene.accuracy.tolerance;
   for (const Part part : kDroppingOrder) {
     if (!is_kept(plan.kept, part)) continue;
-    if (part == Part::kMoments && scene.emission && scene.emission->has_bracket)
-      continue;  // for dolp_low and dolp_high
+    if (part == Part::kMoments && scene.emission && scene.emission->has_bracket) continue;  // for the range of DOLP
     const double bound = worst_bound(bounds, part, plan.kept);
     if (bound > allowed - plan.bound) continue;
     plan.kept = without(plan.kept, part);

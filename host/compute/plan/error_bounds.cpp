@@ -86,10 +86,9 @@ double reflectance_s(const kernel::IndexNode& index, double cos_beta) {
   return std::min(1.0, std::norm((cos_beta - w) / (cos_beta + w)));
 }
 
-// Upper bound of the share of light that is left after `bounces` bounces. At each of them cos(beta) >= a/2, where a is
-// the length of the ray's direction across the groove. For each `level`, the bound is a sum: `most` for the azimuths
-// with a < level (their share is `missed`), plus the reflectance at cos(beta) = level/2 to the power `bounces` for the
-// others.
+// Upper bound of the share of light that is left after `bounces` bounces with cos(beta) >= a/2, where a is the length
+// of the ray's direction across the groove. For each `level` the bound has two terms. Azimuths with a < level (their
+// share is `missed`) keep at most the share `most`. The others keep R_s at cos(beta) = level/2, to the power `bounces`.
 double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index, double bounces, double most) {
   double least = most;
   for (double level = 1.0; level > 1e-6; level *= 0.5) {

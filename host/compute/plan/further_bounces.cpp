@@ -85,9 +85,8 @@ Eigen::Matrix4d mueller(const Jones& j) {
       {(of_s + of_p).imag(), (of_s - of_p).imag(), (straight + crossed).imag(), (straight - crossed).real()}};
 }
 
-/// Mueller matrix of a beam after `bounces` bounces in a groove. In the unfolded groove (shaders/physics/groove.glsl)
-/// the ray is straight. If `bounces` is odd, its end is the mirror image of the real one, so the frame is mirrored,
-/// too.
+/// Mueller matrix of a beam after `bounces` bounces in an unfolded groove (shaders/physics/groove.glsl). If `bounces`
+/// is odd, the outgoing direction there is the mirror image of the real one, and so is its frame (s, p).
 Eigen::Matrix4d chain(const Across& at, const Facet& facet, double gamma, int bounces) {
   Jones fields = turned(-at.from.x(), at.from.y() * at.cos_i).transpose().cast<Complex>();
   const Complex turn = std::polar(1.0, 2.0 * gamma);

@@ -49,8 +49,7 @@ double turns_of(double bounces) {
   return turns;
 }
 
-// Loop iterations in grooves with slopes up to `end`. At a slope cot(gamma) a vertical ray bounces pi / (2 gamma)
-// times.
+// Loop iterations in grooves with slopes up to `end`. At slope cot(gamma) a vertical ray bounces pi / (2 gamma) times.
 Loops groove_loops(const KernelData& data, double start, double end) {
   const double most = pi / (2.0 * std::atan(1.0 / end));
   const double splits = data.rule.split_bounces;
@@ -83,8 +82,7 @@ constexpr double kTurnsOfSlope = DOLP_MOST_SPLITS + 1.0;  // iterations at a slo
 // Upper bound of the loop iterations of one invocation, with at most `most_nodes` nodes on an arc.
 double iterations(const KernelData& data, const Loops& loops, double most_nodes) {
   const double arcs = loops.arcs + loops.corners;
-  const double idle =
-      data.sky.count == 0 ? 0.0 : 2.0 * loops.arcs * (1.0 + loops.corners);  // tests of corners outside an arc
+  const double idle = data.sky.count == 0 ? 0.0 : 2.0 * loops.arcs * (1.0 + loops.corners);  // corners outside an arc
   if (!data.needs_masking_table()) return kTurnsOfSlope + idle + arcs * (2.0 + most_nodes * (1.0 + loops.turns));
   const auto of_rule = [&](double share) {
     return 1.0 + share * data.rule_order * (1.0 + idle + arcs * (2.0 + share * most_nodes));
@@ -188,9 +186,8 @@ void add_curves(KernelData& data, const MomentsRequest& request) {
   data.rule.phi_nodes += kNodesOfFringe * fringes;
 }
 
-// Adds all directions of the grid several times: without total reflection, and for each cosine at which total
-// reflection begins. If a shape needs a split at the kink of its masking, each of these sets is added without and with
-// this split.
+// Adds all directions of the grid several times: without total reflection, and for each cosine at which it begins. If
+// a shape needs a split at the kink of its masking, each of these sets is added twice: without and with this split.
 void add_grid_directions(KernelData& data, const MomentsRequest& request) {
   const bool any_line = std::ranges::find(data.needs_line, 1) != data.needs_line.end();
   const std::uint32_t lines = any_line ? 2 : 1;

@@ -40,8 +40,7 @@ RefinementLevel check_level(const RefinementLevel& first) {
 std::optional<RefinementLevel> next_level(const RefinementLevel& last, const PointResult& result,
                                           const Accuracy& accuracy, bool has_double) {
   if ((result.status & kAnyToleranceNotMet) == 0) return std::nullopt;
-  // Outside the model's domain, DOLP may be known as a limit. If it is not, its error is NaN and no tighter level
-  // helps.
+  // Outside the model's domain DOLP may be known as a limit. If not, its error is NaN, and no tighter level helps.
   const bool is_outside = (result.status & kOutsideModelDomain) != 0;
   if (is_outside && std::isnan(result[Quantity::kErrorEstimate])) return std::nullopt;
   const double rho_error = is_outside ? 0.0 : result[Quantity::kRhoErrorEstimate];

@@ -159,8 +159,8 @@ class Combination {
         sum.r_q_error = from.r_q_error + more_split.error(index, shape) + more_absorbed.error(index, shape) +
                         (own.split_error + of_reference.split_error) * albedo;
       }
-      // In a sum, the errors of the responses may cancel by chance in the estimate only. So the relative error bound of
-      // r_i is at least the bound at the reference index.
+      // The error estimate of a sum may be too small, because differences between rules cancel by chance. So the
+      // relative error bound of r_i is at least the bound at the reference index.
       const double whole_error = from.r_i_error * std::max(sum.r_i / from.r_i, 0.0);
       sum.r_i_error = std::max(sum.r_i_error, whole_error);
       sum.r_q_error = std::max(sum.r_q_error, whole_error);

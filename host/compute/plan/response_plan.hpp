@@ -25,9 +25,8 @@ struct ResponsePlan {
     std::uint32_t source = 0;
     std::uint32_t other = 0;
   };
-  /// Requests for responses, at the reference index and at all directions and slope distributions. The first is for the
-  /// reflected light, the next for the direct emission (if wanted), the others for the reflected light times a function
-  /// of the sky.
+  /// Requests for responses at the reference index, at all directions and slope distributions: for the reflected light,
+  /// for the direct emission (if wanted), and for the reflected light times each function of the sky.
   std::vector<MomentsRequest> passes;
   std::optional<MomentsRequest> others;                ///< the indices, or points, that have no weights
   std::shared_ptr<const std::vector<Source>> sources;  ///< one per index of a grid, or per distinct index of points

@@ -44,15 +44,14 @@ constexpr std::array<RuleModel, 5> kModels = {{
 
 constexpr double kNone = -1000.0;
 
-// log10 of the number n of nodes that resolve a kink of the masking. If the width m exceeds 1, n is proportional to
-// 1/m.
+// log10 of the number n of nodes that resolve a kink of the masking. If the width m exceeds 1, n falls like 1/m.
 double decades_per_node(const SlopeShape& shape, double digits) {
   const double width = std::max(1.0, slope_width(shape));
   return std::log10(std::max(kNodesPerDigit * digits / width, 1.5));
 }
 
 // log10 of the error of rules that are not split at the cusp of smith masking. The cusp is where theta_r = 0. There
-// Smith's Lambda is proportional to tan(theta_r)^(2q-2), and the error of a rule with n nodes is n^(-2q).
+// Smith's Lambda is proportional to tan(theta_r)^(2q-2), and a rule with n nodes has an error like n^(-2q).
 double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double digits) {
   const double per_node = decades_per_node(shape, digits);
   if (distribution == Distribution::kGaussian) {
@@ -67,7 +66,7 @@ double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double d
   return size - 2.0 * shape.q * per_node;
 }
 
-// log10 of the error of rules that are not split at the kink of `integral` masking, where G is like |distance|^(2q-1).
+// log10 of the error of rules without a split at the kink of `integral`, near which G contains |distance|^(2q-1).
 double unsplit_line(Distribution distribution, const SlopeShape& shape, double digits) {
   if (distribution == Distribution::kGaussian) {
     return shape.sigma > (digits > kTightDigits ? kTightLineSigma : kLineSigma) ? 0.0 : kNone;

@@ -45,8 +45,7 @@ using RuleNodes = std::vector<std::array<double, 2>>;  // (abscissa, weight) of 
 /// Ascending nodes on [-1, 1]. Accuracy: 1e-15 (tests/compute/plan/plan_test.cpp, polynomials of degree 2 * order - 1).
 RuleNodes gauss_legendre(int order);
 
-/// The nodes of all sections of physics/quadrature.glsl, each for 1 to `largest_order` nodes. The reference stays
-/// valid.
+/// Nodes for all sections of physics/quadrature.glsl, each with 1 to `largest_order` nodes. The result stays valid.
 const RuleNodes& rule_nodes(int largest_order);
 
 }  // namespace dolp

@@ -17,8 +17,7 @@ struct SkyTable {
   bool has_cusp = false;            ///< a function has a cusp at the zenith
   std::vector<double> corners_deg;  ///< zeniths of the corners that split, the sharpest first
   std::vector<double> error;        ///< bound of the difference between each function and its table
-  /// For each function: root of the sum of the squared jumps of its derivative, at corners that do not split the
-  /// azimuths.
+  /// For each function: root of the sum of its squared jumps of the derivative, at corners that split no azimuths.
   std::vector<double> bends;
   std::vector<double> steepness;  ///< largest slope of each function in u at the zenith, where 1 - cos loses digits
 

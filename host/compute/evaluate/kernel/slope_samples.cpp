@@ -175,9 +175,8 @@ struct SlopeSampling::Impl {
     return weights;
   }
 
-  // Integral over a piece of the slope axis, by a Gauss rule with `count` nodes. The weights are scaled so that they
-  // sum to `share`, the exact share of the facets on the piece. The scaling cancels the error of integrating the
-  // density.
+  // Integral over a piece of the slope axis by a Gauss rule. The weights are scaled so that their sum is `share`, the
+  // exact share of the facets on the piece. This cancels the error of the rule in the slope density.
   static kernel::AzimuthNode sum_of(std::uint32_t first, std::uint32_t count, const Eigen::ArrayXd& shape_weights,
                                     double share, std::span<const kernel::AzimuthNode> azimuths) {
     using Azimuths = Eigen::Matrix<double, sizeof(kernel::AzimuthNode) / sizeof(double), Eigen::Dynamic>;

@@ -49,8 +49,7 @@ class Kernels {
     std::array<VkBuffer, kStorageCount> buffers{};
     std::array<VkBufferView, kTexelCount> texels{};  ///< for DOLP_BINDING_RULE_NODES and DOLP_BINDING_MASKING_NODES
   };
-  /// Where a buffer is null, binds another buffer that no kernel reads. Else the binding could refer to a destroyed
-  /// one.
+  /// Binds some other buffer where one is null. No kernel reads it, but Vulkan forbids bindings to destroyed buffers.
   void bind(const Bindings& bindings);
 
   VkPipeline pipeline(const KernelVariant& variant);

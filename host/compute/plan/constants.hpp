@@ -117,9 +117,8 @@ inline constexpr double kNegligibleBounces = 0.01;  // share of the wanted accur
 /// Replaces a smaller 2q - 3 as the divisor in beyond_last() (further_bounces.cpp).
 inline constexpr double kSlowestFall = 0.1;
 
-// ---- Grids (shape_plan.cpp, rows.cpp, refinement.cpp). The numbers are million evaluations of `dolp table` for 32 x
-// 32 x 32 entries at 1e-4 (theta to 85 degrees, sigma 0.05 to 1, q 1.75 to 6), first with integral, then with smith
-// masking.
+// ---- Grids (shape_plan.cpp, rows.cpp, refinement.cpp). The numbers are million evaluations of `dolp table` for 32^3
+// entries at 1e-4 (theta to 85 degrees, sigma 0.05 to 1, q 1.75 to 6): with `integral`, then with smith masking.
 
 /// An interpolated axis (sigma or q) has kFirstShapeNodes more nodes than its digits need, at least kLeastShapeNodes.
 inline constexpr double kLeastShapeNodes = 6.0;

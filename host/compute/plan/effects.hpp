@@ -77,8 +77,7 @@ struct EffectPlan {
 
 /// Drops parts as long as their bounds (EffectBounds) sum to at most kDroppedShare of the tolerance. The order is:
 /// source, surroundings, their profile, emission, path, moments, further bounces. Each bound is for the scene without
-/// the parts dropped before. Choices of the model (distribution, masking, absorption index k) and the diffuse part are
-/// never dropped.
+/// the parts dropped before. The diffuse part and choices of the model (such as the masking) are never dropped.
 EffectPlan plan_effects(const SceneValues& scene, const SceneEntries& entries, bool keep_all);
 
 EffectPlan plan_to_keep(const SceneValues& scene, const KeptEffects& kept);

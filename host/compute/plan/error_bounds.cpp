@@ -101,10 +101,9 @@ double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index
   return least;
 }
 
-// Upper bound of the share of light that facets with a slope t > ShapeNode::cut reflect. The reflectance falls as
-// cos(beta) grows, so a lower limit of cos(beta) gives the bound. A ray that leaves after one bounce has
-// cos(beta) > cos(theta) sqrt(1 + t^2) / 2. In grooves, the limit a/2 of left_after() holds for at least
-// t min(pi/3, pi/2 - theta) - 1 bounces.
+// Upper bound of the share of light that facets steeper than ShapeNode::cut reflect. R_s falls as cos(beta) grows, so a
+// lower limit of cos(beta) gives a bound. At slope t, a ray that leaves after one bounce has cos(beta) > cos(theta)
+// sqrt(1 + t^2) / 2. In grooves, at least t min(pi/3, pi/2 - theta) - 1 bounces have the limit a/2 of left_after().
 double steep_reflectance(const KernelData& data, const kernel::IndexNode& index, const kernel::ThetaNode& theta,
                          const kernel::ShapeNode& shape) {
   if (data.scattering == Scattering::kSingle) {

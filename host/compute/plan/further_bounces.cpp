@@ -16,11 +16,10 @@ namespace {
 using std::numbers::pi;
 using Complex = std::complex<double>;
 
-/// The directions of incidence omega_i and of reflection omega_r, relative to a groove.
 struct Across {
-  double a = 0.0;                                  ///< length of omega_i projected into the plane across the groove
+  double a = 0.0;                                  ///< length of the incidence omega_i in the plane across the groove
   double psi_i = 0.0;                              ///< zenith of omega_i in this plane, positive on one side
-  double psi_r = 0.0;                              ///< zenith of omega_r in this plane
+  double psi_r = 0.0;                              ///< zenith of the reflection omega_r in this plane
   double along = 0.0;                              ///< component of omega_i along the groove
   Eigen::Vector2d from = Eigen::Vector2d::Zero();  ///< azimuth of omega_i as a unit vector (across, along)
   Eigen::Vector2d to = Eigen::Vector2d::Zero();    ///< azimuth of omega_r as a unit vector (across, along)
@@ -116,15 +115,13 @@ struct FurtherBeams {
   int bounces = 0;          ///< bounces computed so far, over all beams
 };
 
-/// Bound of a ratio: the light after more than `bounces` bounces, divided by the light after exactly `bounces`. The
-/// light after k bounces falls like k^(2 - 2q).
+/// Bound of a ratio: light after more than k = `bounces` bounces to light after k. The light falls like k^(2 - 2q).
 double beyond_last(const ScatteringRequest& request, const SlopeShape& shape, int bounces) {
   const bool is_cauchy = request.distribution == Distribution::kCauchy;
   return is_cauchy ? bounces / std::clamp(2.0 * shape.q - 3.0, kSlowestFall, 1.0) : bounces;
 }
 
-/// Sums the light after 2, 3, ... bounces until the remaining light is negligible. `accuracy` is relative to m00, and
-/// `first` is m00 of the first bounce.
+/// Sums the light after 2, 3, ... bounces, up to the relative error `accuracy`. `first` is m00 of the first bounce.
 FurtherBeams further_beams(const Across& at, const ScatteringRequest& request, const ScatteringEntry& entry, double h,
                            double first, double accuracy) {
   const SlopeShape& shape = request.shapes[entry.shape];

@@ -18,8 +18,7 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// The mask `wanted` of a request for other indices. An entry of its index i is wanted if `request` wants the entry for
-/// one of its own indices in needed_by[i].
+/// The mask `wanted` for new indices: new index i wants all entries that `request` wants for an index in needed_by[i].
 std::vector<char> wanted_of(const MomentsRequest& request, const std::vector<std::vector<std::size_t>>& needed_by) {
   const std::size_t of_index = request.theta_deg.size() * request.shapes();
   std::vector<char> wanted;

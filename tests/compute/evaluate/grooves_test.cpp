@@ -128,7 +128,7 @@ TEST_P(Grooves, WithoutAndWithTheDirectEmission_TheOtherMomentsAgree) {
     const Moments b = evaluator->evaluate(without, {}).front();
     expect_within_bounds(a, b, name_of({Distribution::kCauchy, masking}));
     EXPECT_TRUE(std::isnan(b.direct_i));
-    // Single scattering loses the light of further bounces, so 1 - rho (the deficit) exceeds the direct emission.
+    // The emissivity lies between the direct emission and 1 - rho of single scattering. Both are times cos(theta) here.
     EXPECT_LE(a.direct_i, a.deficit);
   }
 }
@@ -289,7 +289,7 @@ TEST(GrooveScenes, RandomEntriesUpToTheHorizon_ArePhysical) {
   }
 }
 
-// The emissivity 0.01635 and the DOLP 0.3892 stand in README.md. Single scattering would give 0.114 and 3.8 %.
+// README.md states this emissivity and this DOLP, rounded. Single scattering would give 0.114 and 3.8 %.
 TEST(GrooveScenes, RoughMetal_HasTheEmissivityAndDolpOfTheManual) {
   const PointResult r = result_at(multiple(Distribution::kGaussian), {60.0, {0.3, 2.0}, {10.0, 60.0}});
   EXPECT_NEAR(mean_emissivity(r), 0.01635, 1e-5);
@@ -320,8 +320,7 @@ TEST(GrooveScenes, SmoothSurface_IsThatOfSingleScattering) {
   }
 }
 
-// With `emission.bracket` a result states a range of DOLP. DOLP with all bounces must lie in this range
-// (shaders/physics/README.md, section 3).
+// The bracket (shaders/physics/README.md, section 3) is a range of DOLP in which the DOLP with all bounces must lie.
 TEST(GrooveScenes, Bracket_IsWhatItsEndsSayAndHoldsAllBounces) {
   const std::vector<std::string> grid = {"grid.theta_deg=[0, 30, 60, 80]", "surroundings.temperature_K=250"};
   const auto with = [&](std::vector<std::string> more) {
@@ -343,8 +342,7 @@ TEST(GrooveScenes, Bracket_IsWhatItsEndsSayAndHoldsAllBounces) {
     if (i == 0) continue;  // at theta = 0 nothing is polarised
     const double direct_q = 0.5 * std::abs(direct[i][Quantity::kEmissivityS] - direct[i][Quantity::kEmissivityP]);
     const double slack = mean_emissivity(single[i]) - mean_emissivity(direct[i]);
-    // All models have Q = N (eps_s - eps_p) / 2, with an N that depends only on the temperatures. In the model
-    // `moments` (eps_s - eps_p) / 2 is -rho_Q, so |N| = |Q / rho_Q|.
+    // All models have Q = N (eps_s - eps_p) / 2 with equal N. With single scattering Q = -N rho_Q, which gives |N|.
     const double net = std::abs(single[i][Quantity::kStokesQ] / single[i][Quantity::kRhoQ]);
     EXPECT_NEAR(high, net * (direct_q + slack) / single[i][Quantity::kStokesI], kAccuracy);
     EXPECT_NEAR(low, net * std::max(direct_q - slack, 0.0) / single[i][Quantity::kStokesI], kAccuracy);

@@ -240,8 +240,7 @@ double relative_error(double value, const Wide& exact) {
   return static_cast<double>(abs(Wide(value) - exact) / abs(exact));
 }
 
-// The index after conversion to the number type of the source. The reference uses it too, so the conversion does not
-// count as an error of the source.
+// The index in the number type of the source. The reference uses it too, so its rounding is no error of the source.
 template <class Source>
 kernel::IndexNode rounded_index(const OpticalConstants& index) {
   MomentsRequest request;
@@ -304,8 +303,7 @@ TYPED_TEST(FresnelSource, NormalIncidence_HasTheLimitOfTheQuotient) {
   for (const OpticalConstants& optical : {OpticalConstants{1.508, 0.0}, OpticalConstants{27.0, 90.0}}) {
     const kernel::IndexNode index = rounded_index<TypeParam>(optical);
     const auto f = source.fresnel(index_in<TypeParam>(index), Real(1));
-    // The exact quotient (R_s - R_p) / sin^2(beta) at cos(beta) = 1 - 1e-20 is within 1e-20 of its limit. Cancellation
-    // leaves 30 of 50 digits.
+    // So near to cos(beta) = 1, (R_s - R_p) / sin^2(beta) equals its limit. Cancellation leaves 30 of 50 digits.
     const Wide c = 1 - Wide(1e-20);
     const Wide sin2 = 1 - c * c;
     const WideComplex n2(Wide(index.n2m1_re) + 1, Wide(index.n2m1_im));

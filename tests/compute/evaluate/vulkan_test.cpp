@@ -265,11 +265,10 @@ TEST(Validation, CopyBeyondABuffer_IsReported) {
 }
 
 constexpr double kSentinel = -12'345.0;
-constexpr std::uint32_t kFirst = 3;   // first entry that the test computes
+constexpr std::uint32_t kFirst = 3;   // position of the first computed entry
 constexpr std::uint32_t kCount = 70;  // number of entries: more than a workgroup, but no multiple of it
 
-// Runs the kernels for a request, with sentinel values after the results in the output buffers. A kernel that writes
-// too many results would change them.
+// Runs the kernels for a request. Too many results would overwrite sentinel values at the end of the output buffers.
 class SentinelRun {
  public:
   SentinelRun(Session& session, const MomentsRequest& request) : session_(session), data_(kernel_data(request)) {

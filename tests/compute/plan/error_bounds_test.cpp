@@ -35,9 +35,8 @@ class Switches {
   Switches(const Model& model, std::uint64_t seed) : model_(model), random_(seed) {}
 
   std::vector<Point> points() {
-    // The integral is split at lines over slope and azimuth. Three lines meet at theta = 18, 30 and 45 degrees, and
-    // with `integral` masking at 90/7 = 12.857 degrees. They nearly meet at 12.9, 18.05 and 30.2 degrees. The numbers
-    // of nodes change at 65, 80, 88 and 89 degrees.
+    // With some masking, two breakpoints of the slope axis coincide at theta = 90/7 = 12.857, 18, 30 and 45 degrees.
+    // They nearly coincide at 12.9, 18.05 and 30.2 degrees. The numbers of nodes change at 65, 80, 88 and 89 degrees.
     for (const double theta_deg :
          {12.857142857142858, 12.9, 18.0, 18.05, 22.5, 30.0, 30.2, 36.0, 44.9, 45.0, 60.0, 65.0, 80.0, 88.0, 89.0}) {
       add([&](Point& p) { p.theta_deg = beside(theta_deg); });

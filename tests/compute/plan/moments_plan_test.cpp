@@ -1,5 +1,5 @@
 // Entries of a grid share work in four ways: slope samples, kernel rows along q, interpolation between slope
-// distributions, and moments of many indices from responses. Each entry is also computed without the others. The stated
+// distributions, and moments of many indices from responses. Some entries are also computed separately. Their stated
 // error must cover the difference. The environment variable DOLP_PROPERTY_DRAWS sets the number of grids per model.
 #include <gtest/gtest.h>
 
@@ -40,8 +40,7 @@ std::vector<FacetOptics> many_indices(Random& random) {
   return indices;
 }
 
-/// A grid of random directions and indices. The largest sigma is up to 60 times the smallest. For q - 1 (smith masking:
-/// q - 1.5) the ratio is up to 30.
+/// A random grid. Its largest sigma is up to 60 times its smallest. For q minus its lower limit, the ratio is up to 30.
 MomentsRequest random_grid(Random& random, const Model& model, Scattering scattering, Sharing sharing) {
   MomentsRequest request;
   request.distribution = model.distribution;

@@ -1,5 +1,4 @@
-// Functions of compute/plan/, one by one: cosines of directions, numbers of loop iterations, nodes, rows, levels,
-// tables.
+// Functions of compute/plan/, one by one: cosines of directions, loop iterations, Gauss nodes, rows, levels, tables.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -82,8 +81,7 @@ TEST(Loops, HardDirectionsAndIndicesAtEveryTolerance_StayBelowTheDriversLimit) {
   EXPECT_LT(DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_DOUBLE) * (1.0 + kTableOrderAtMost), kDriverLimit);
 }
 
-// The integrands are Chebyshev polynomials. Their values reach 1 at each degree, so no error is hidden by a small
-// integrand.
+// The integrands are Chebyshev polynomials. Their values reach 1 at each degree, so an error is never tiny.
 TEST(GaussLegendre, Orders_IntegratePolynomialsOfDegree2nMinus1AndNoMore) {
   for (const int order : {1, 2, 3, 7, 20, DOLP_MAX_ORDER}) {
     for (int degree = 0; degree <= 2 * order; degree += 2) {
@@ -130,8 +128,7 @@ TEST(Breakpoints, Directions_AreAtTheAnglesWhereLinesMeet) {
   }
 }
 
-// The groove has facets with the slope angle alpha. At each bounce after the first, a vertical ray turns by
-// 2 (90 degrees - alpha). It leaves after 90 degrees / (90 degrees - alpha) bounces.
+// Groove with the slope angle alpha, in degrees: a vertical ray leaves after 90 / (90 - alpha) bounces.
 TEST(SlopeWithBounces, Bounces_FollowFromTheAngleOfTheGroove) {
   EXPECT_NEAR(slope_with_bounces(2.0), 1.0, 1e-15);
   EXPECT_NEAR(slope_with_bounces(3.0), tan_deg(60.0), 1e-14);
@@ -174,7 +171,7 @@ TEST(Rows, WantedEntriesOfAGrid_AreEachInOneRowOfShapesAlike) {
 // ---- Orders and levels ---------------------------------------------------------------------------------------------
 
 TEST(Rule, DigitsAndShapes_DecideOrdersAndLines) {
-  EXPECT_DOUBLE_EQ(rule_digits({.margin_digits = 2.0}, 1e-3), 6.25);  // (3 + 2) / 0.8; the coarser rule has 80 %
+  EXPECT_DOUBLE_EQ(rule_digits({.margin_digits = 2.0}, 1e-3), 6.25);  // (3 + 2) / kCoarseShare
   EXPECT_EQ(largest_order(4.0), 64);
   EXPECT_EQ(largest_order(10.0), 80);
   EXPECT_EQ(largest_order(99.0), DOLP_MAX_ORDER);

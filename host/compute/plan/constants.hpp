@@ -64,7 +64,7 @@ inline constexpr double kTightSky = 1e-5;
 inline constexpr double kSkyTableShare = 0.05;  // a table may differ from its function by this share of the tolerance
 /// Error bound of a sky's table, divided by its largest error in the middle of a cell and at a corner.
 inline constexpr double kSkyTableSafety = 1.25;  // 690, 690, 690; 465, 465, 479
-/// A kink of a function of a sky counts as corner if the derivative over u = sqrt(1 - cos(theta_r)) jumps by more.
+/// A function of a sky has a corner where its derivative over u = sqrt(1 - cos(theta_r)) jumps by more than this.
 inline constexpr double kLeastBend = 1e-2;
 /// The azimuths are split at the sharpest corners. Let b be the root of the sum of the squared jumps of the derivative
 /// at all other corners. There are enough splits if b <= kMostBends * tolerance. The error of r_i that the other

@@ -17,9 +17,9 @@ using std::numbers::pi;
 using Complex = std::complex<double>;
 
 struct Across {
-  double a = 0.0;                                  ///< length of the incidence omega_i in the plane across the groove
+  double a = 0.0;                                  ///< length of omega_i (incidence) in the plane across the groove
   double psi_i = 0.0;                              ///< zenith of omega_i in this plane, positive on one side
-  double psi_r = 0.0;                              ///< zenith of the reflection omega_r in this plane
+  double psi_r = 0.0;                              ///< zenith of omega_r (reflection) in this plane
   double along = 0.0;                              ///< component of omega_i along the groove
   Eigen::Vector2d from = Eigen::Vector2d::Zero();  ///< azimuth of omega_i as a unit vector (across, along)
   Eigen::Vector2d to = Eigen::Vector2d::Zero();    ///< azimuth of omega_r as a unit vector (across, along)

@@ -81,12 +81,12 @@ struct KernelData {
   std::vector<kernel::ShapeNode> shapes;
   std::vector<char> needs_line;  ///< for each shape: 1 if pieces must be split at the kink of its masking
   std::vector<kernel::IndexNode> indices;
-  std::vector<std::uint32_t> index_variant;  ///< per index of a grid: its DirectionVariant without has_line
+  std::vector<std::uint32_t> index_variant;  ///< per index of a grid: number of its DirectionVariant without has_line
   std::vector<std::uint32_t> shape_of;
   /// Nodes and weights of the rules. The list continues with the tables of the sky (SkyTable) and of the reflectances.
   std::vector<std::array<double, 2>> rule_nodes;
   SkyTable sky;
-  std::optional<Response> response;  ///< set: the columns are responses; null: they are for functions of a sky
+  std::optional<Response> response;  ///< null if the columns are moments with functions of a sky
 
   std::size_t column_count() const { return response ? response->count : sky.count; }
   bool needs_masking_table() const { return masking == Masking::kIntegral || masking == Masking::kSmith; }

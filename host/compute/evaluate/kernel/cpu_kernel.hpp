@@ -17,10 +17,10 @@ class CpuKernel {
   /// Replaces all masking tables by the tables of `shapes`: positions in KernelData::shapes, in ascending order. If the
   /// masking needs tables, moments() accepts only entries with these shapes.
   virtual void build_masking_tables(std::vector<std::uint32_t> shapes) = 0;
-  /// Returns the moments of `entry`. Adds the additional sums that physics/columns.glsl explains to `columns`.
+  /// Returns the moments of `entry`. Adds further sums, which physics/columns.glsl explains, to `columns`.
   virtual kernel::MomentsNode moments(const MomentsEntry& entry, std::span<double> columns) = 0;
 
-  /// Returns the sums over the azimuths of the facets with one slope. Writes the additional sums to `columns`.
+  /// Returns the sums over the azimuths of the facets with one slope. Writes the further sums to `columns`.
   virtual kernel::AzimuthNode azimuths(const kernel::SlopeNode& slope, std::span<double> columns) = 0;
 
   /// The product of the pBRDF (in 1/sr, with specular factor k_s = 1), cos(theta_i), cos(theta_r) and 2^-Beam::power.

@@ -7,8 +7,8 @@
 
 namespace dolp {
 
-/// Computes the moments of the plan's request. A direction with an interpolation node whose moments are not finite is
-/// computed entry by entry. `work` receives counts and times. `progress` counts entries.
+/// Computes the moments of the plan's request. If a moment to interpolate from is infinite or NaN, all entries of its
+/// direction and index are computed instead. `work` receives counts and times. `progress` counts entries.
 /// Errors: the evaluator's errors, and Cancelled if `progress` returns false.
 std::vector<Moments> planned_moments(const MomentsPlan& plan, ModelEvaluator& evaluator, const Progress& progress,
                                      Work& work);

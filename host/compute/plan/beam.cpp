@@ -23,13 +23,13 @@ using std::numbers::pi;
 
 constexpr int kLargestOrder = 16;  // must equal kInPlaneOrder of physics/in_plane.glsl
 
-// The masking G is an integral over slopes. It leaves out the steepest, a share exp(-kCutExponent) of all slopes.
+// The masking G is an integral over slopes. The integral ends where only a share exp(-kCutExponent) is steeper.
 constexpr double kCutExponent = 45.0;
 
 // Least sigma with which the masking G is computed. For a smaller one, squares of slope / m would overflow.
 constexpr double kSmallestMaskingSigma = 1e-15;
 
-// If N^2 - sin^2(beta) is below this share of the larger of its two terms, the difference has lost too many digits.
+// The difference N^2 - sin^2(beta) has too few digits if it is below this share of N^2 and of sin^2(beta).
 constexpr double kCritical = 1e-6;
 constexpr double kSmallestSquare = 1e-300;
 constexpr double kSmallestFacetCosine = 1e-12;
@@ -60,15 +60,15 @@ double exact_w_squared(const BeamAngles& angles, const OpticalConstants& index) 
   return static_cast<double>((n - k) * (n + k) - (1 - cos_2beta) / 2);
 }
 
-// Elements of a facet's Mueller matrix in the facet's frame: (R_s + R_p) / 2, (R_s - R_p) / 2 and conj(r_s) r_p.
+// Mueller matrix of a facet in its own frame: m00 = (R_s + R_p) / 2, m01 = (R_s - R_p) / 2, cross = conj(r_s) r_p.
 struct FacetReflection {
   double m00 = 0.0;
   double m01 = 0.0;
   std::complex<double> cross;
 };
 
-// R_s and R_p as in shaders/physics/fresnel.glsl. With c = cos(beta), w = sqrt(N^2 - sin^2(beta)) and a = |N^2 - 1|^2 /
-// |c + w|^2, r_s* r_p = a (sin^2(beta) - c w) / (conj(c + w) (N^2 c + w)).
+// Computes R_s and R_p as shaders/physics/fresnel.glsl does. With c, w and a of the code below,
+// conj(r_s) r_p = a (sin^2(beta) - c w) / (conj(c + w) (N^2 c + w)).
 FacetReflection bare_reflection(const BeamAngles& angles, const BeamGeometry& geometry, const OpticalConstants& index) {
   using Complex = std::complex<double>;
   const double n2_re = (index.n - index.k) * (index.n + index.k);
@@ -81,14 +81,14 @@ FacetReflection bare_reflection(const BeamAngles& angles, const BeamGeometry& ge
   const Complex w = std::sqrt(Complex(w2, n2m1.imag()));
   const Complex s_sum = c + w;
   const Complex p_sum = Complex(n2_re, n2m1.imag()) * c + w;
-  const double a = std::norm(n2m1) / std::max(std::norm(s_sum), kSmallestSquare);  // N = 1 at 90 degrees would be 0/0
+  const double a = std::norm(n2m1) / std::max(std::norm(s_sum), kSmallestSquare);  // avoids 0/0 for N = 1 at 90 degrees
   const double r_s = a / std::max(std::norm(s_sum), kSmallestSquare);
   const double p_norm = std::max(std::norm(p_sum), kSmallestSquare);
   const double m01 = 0.5 * (4.0 * c * w.real() * a / p_norm) * sin2;
   return {r_s - m01, m01, r_s * (sin2 - c * w) * s_sum * std::conj(p_sum) / p_norm};
 }
 
-// A measurement of reflectances has no phase, so r_s* r_p is set to 0.
+// Measured reflectances have no phase, so conj(r_s) r_p is set to 0.
 FacetReflection covered_reflection(const BeamGeometry& geometry, const FacetOptics& optics) {
   const double c = std::max(geometry.node.cos_beta, kSmallestFacetCosine);
   const SmoothAbsorptance absorbed = smooth_absorptance(optics, c);
@@ -119,7 +119,7 @@ CosSin mean_zenith(double theta_i_deg, double theta_r_deg) {
 BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_phi_deg) {
   const CosSin i = cos_sin_deg(theta_i_deg);
   const CosSin r = cos_sin_deg(theta_r_deg);
-  // In [-180, 180], without rounding, so that the half angle keeps all digits near 0 and 180 degrees.
+  // std::remainder does not round, so the half angle keeps all digits near 0 and 180 degrees.
   const double azimuth_deg = std::remainder(delta_phi_deg, 360.0);
   const CosSin half = cos_sin_deg(0.5 * std::abs(azimuth_deg));
   const CosSin mean = mean_zenith(theta_i_deg, theta_r_deg);
@@ -141,7 +141,7 @@ BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_
   node.cos_beta = 0.5 * std::sqrt(height_sum * height_sum + flat_sum);
   geometry.sin2_beta = 0.25 * (cos_difference * cos_difference + flat_difference);
 
-  // Replaces cos(dphi) by 1 - 2 sin^2(dphi/2) or 2 cos^2(dphi/2) - 1, whichever has the smaller square.
+  // Replaces cos(dphi) by 1 - 2 sin^2(dphi/2) or 2 cos^2(dphi/2) - 1. The smaller square causes the smaller error.
   const bool forward = std::abs(half.cos) < std::abs(half.sin);
   const double sin_sum = 2.0 * mean.sin * mean.cos;
   const double sin_of_difference = 2.0 * difference.sin * difference.cos;

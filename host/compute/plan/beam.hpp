@@ -13,8 +13,8 @@ struct BeamGeometry {
 };
 
 /// The facet that reflects one beam into the other, and the angles eta of shaders/physics/mueller.glsl, in double.
-/// Conventions: delta_phi = 180 degrees is the specular side; eta turns s toward p and has the sign of sin(delta_phi).
-/// At theta_i = 0 the plane of incidence has azimuth 0; at theta_r = 0 it has azimuth delta_phi.
+/// Conventions: the mirror direction has delta_phi = 180 degrees. A positive eta rotates s toward p; eta has the sign
+/// of sin(delta_phi). At theta_i = 0 the plane of incidence has azimuth 0; at theta_r = 0 it has azimuth delta_phi.
 /// Domain: zeniths from 0 to 90 degrees, but not both 90. In the retro direction, eta_i = eta_r = 0.
 BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_phi_deg);
 
@@ -44,8 +44,8 @@ class BeamPlan {
   std::vector<BeamGeometry> geometries_;
 };
 
-/// Adds the beams of two and more bounces to `f`, which holds f cos(theta_i) cos(theta_r) of the first bounce. Returns
-/// the number of computed bounces, a measure of the time.
+/// Adds the light after two and more bounces to `f`, the pBRDF of the first bounce times cos(theta_i) cos(theta_r).
+/// Returns the number of computed bounces, a measure of the time.
 /// Equation: shaders/physics/README.md, section 3.
 /// Domain: masking v-cavity. In the mirror direction, grooves of all azimuths contribute, and the result is NaN.
 /// Accuracy: relative error `accuracy` of the added m00. If a strong reflector needs more than kMostBouncesOfBeam

@@ -24,15 +24,15 @@ constexpr std::size_t kMostSkyBreakpoints = 60;  // most breakpoints of a direct
 
 // Long ranges of slopes, as in grazing directions, are also divided at these slopes.
 constexpr std::array kPlainBreakpoints = {30.0, 3e5};
-constexpr std::array kSteepBreakpoints = {1e5, 3e8, 1e12};  // for grooves, from which every ray leaves
+constexpr std::array kSteepBreakpoints = {1e5, 3e8, 1e12};  // in grooves, where all slopes reflect light
 
 double tan_deg(double angle_deg) {
   const CosSin a = cos_sin_deg(angle_deg);
   return a.sin / a.cos;
 }
 
-// Slopes at which the azimuth where total reflection begins, cos(beta) = critical, meets another split line
-// (arcs.glsl).
+// Total reflection begins at the line cos(beta) = critical. Adds the slopes at which this line meets another line that
+// splits the azimuths (arcs.glsl).
 void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a, Masking masking,
                               double critical) {
   const double critical_deg = std::acos(critical) * 180.0 / pi;
@@ -45,12 +45,12 @@ void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   add(a.cos / (2.0 * critical), 0.0);
   add(a.cos / critical, 0.0);
   if (masking != Masking::kVCavity || a.cos <= 0.0) return;
-  const double at_slope_1 = std::sqrt(0.5);  // cos(alpha) at slope 1, where the split lines of v-cavity masking end
+  const double at_slope_1 = std::sqrt(0.5);  // cos(alpha) at slope 1; the slopes of these two lines are smaller
   add(0.5 * critical / a.cos, at_slope_1);
   add(critical / (std::hypot(a.cos, 2.0 * critical) - a.cos), at_slope_1);
 }
 
-// Slopes at the kink of `integral` or smith masking, at which only some shapes need a split (needs_line() in rule.hpp).
+// Slopes at the kink of `integral` or smith masking. Used if needs_line() of rule.hpp is true for the shape.
 void add_line_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a, Masking masking) {
   if (masking == Masking::kSmith) {
     points.push_back({tan_deg(0.5 * theta_deg), kRoots});
@@ -64,7 +64,7 @@ void add_line_breakpoints(std::vector<Breakpoint>& points, double theta_deg, con
   points.push_back({a.cos > 0.0 ? tan_deg(30.0 + theta_deg * 2.0 / 3.0) : kNoEnd, kRootBelow});
 }
 
-// Facets whose reflected ray does not leave the surface still emit directly, until they face away from the viewer.
+// With direct emission the slopes have no upper end, because facets emit even if their reflected ray does not leave.
 void add_direct_breakpoints(std::vector<Breakpoint>& points, const CosSin& a, Masking masking, double& last) {
   last = kNoEnd;
   points.push_back({last, 0});
@@ -153,7 +153,7 @@ void add_extra_splits(std::vector<Breakpoint>& points) {
 
 }  // namespace
 
-// Breakpoints are the slopes at which a split line of the azimuth (arcs.glsl) meets another one, phi = 0 or phi = pi.
+// Most breakpoints are slopes at which a line that splits the azimuths (arcs.glsl) meets another line, phi = 0 or pi.
 std::vector<Breakpoint> breakpoints(double theta_deg, const MomentsRequest& request, const DirectionVariant& variant,
                                     const SkyTable& sky, int splits) {
   const CosSin a = cos_sin_deg(theta_deg);
@@ -182,7 +182,7 @@ std::vector<Breakpoint> breakpoints(double theta_deg, const MomentsRequest& requ
   }
   add_sky_breakpoints(points, theta_deg, sky);
   std::erase_if(points, [&](const Breakpoint& point) { return point.slope <= 0.0 || point.slope > last; });
-  // At theta = 0 smith's cusp is at slope 0.
+  // The cusp of smith masking lies at tan(theta/2), so at slope 0 if theta is 0.
   const bool cusp_at_0 = variant.has_line && masking == Masking::kSmith && a.sin == 0.0;
   points.push_back({0.0, cusp_at_0 ? kRootAbove : 0U});
   std::sort(points.begin(), points.end());

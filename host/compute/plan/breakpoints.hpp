@@ -15,10 +15,10 @@ struct Breakpoint {
   bool operator<(const Breakpoint& other) const { return slope < other.slope; }
 };
 
-/// The split lines of a direction that depend on the index or on the slope distribution.
+/// Properties of an index and of a slope distribution that add breakpoints to a direction.
 struct DirectionVariant {
   double critical_cos = 0.0;  ///< cos(beta) at which total reflection begins; 0 without it
-  bool has_line = false;      ///< true if a kink of `integral` or smith masking splits the pieces, see needs_line()
+  bool has_line = false;      ///< true if slopes are split at a kink of the masking, see needs_line()
 };
 
 /// Ascending slopes, starting with 0, that divide the slope axis into pieces with a smooth integrand. In grooves, up to

@@ -16,7 +16,7 @@
 namespace dolp {
 namespace {
 
-constexpr double kRounding = 1e-8;  // relative rounding of the sums here, and of the sums over the band in a run
+constexpr double kRounding = 1e-8;  // relative rounding error of these bounds and of a run's sums over a band
 constexpr double kRoundingOfOne = 1e-13;
 constexpr double kSmallestCosine = 1e-300;  // safe as a divisor
 
@@ -58,7 +58,7 @@ Range reflectance(const std::vector<FacetOptics>& indices, double cosine) {
 }
 
 /// Range of the slope density P at `slope`, over all sigma and q of an extent. As a function of m^2, P rises to a
-/// maximum (`peak`) and then falls. As a function of q, P has only monotonic factors.
+/// maximum (`peak`) and then falls. As a function of q, each factor of P only rises or only falls.
 Range slope_density(Distribution distribution, const EntriesExtent& extent, double slope) {
   const bool is_gaussian = distribution == Distribution::kGaussian;
   const double m2_low = std::pow(slope_width(extent.smoothest), 2);
@@ -110,7 +110,7 @@ EntriesExtent extent_of_grid(const SceneEntries& entries) {
   return extent;
 }
 
-/// The indices of the wavelengths, and the indices of the entries combined with the films of each wavelength.
+/// All indices with their films: the scene's at each wavelength, and those of the entries with the films there.
 std::vector<FacetOptics> indices_of(const SpectralRule& rule, const EntriesExtent& extent) {
   std::vector<FacetOptics> indices = rule.indices();
   const std::vector<FacetOptics> samples = indices;

@@ -29,8 +29,8 @@ bool add_nothing(const std::vector<EffectBounds>& bounds, Part part, const KeptE
       bounds, [&](const EffectBounds& variant_bounds) { return variant_bounds.adds_nothing(part, kept); });
 }
 
-/// The largest bound of `part` over all variants, with the effects `kept`. Except for moments and profile, the
-/// bounds with all effects count too.
+/// The largest bound of `part` over all variants, with the effects `kept`. For all parts except moments and profile, it
+/// is also at least the largest bound with all effects.
 double worst_bound(const std::vector<EffectBounds>& bounds, Part part, const KeptEffects& kept) {
   double worst = 0.0;
   for (const EffectBounds& variant_bounds : bounds) {
@@ -67,7 +67,7 @@ void drop_effects(EffectPlan& plan, const SceneValues& scene, const std::vector<
   const double allowed = kDroppedShare * scene.accuracy.tolerance;
   for (const Part part : kDroppingOrder) {
     if (!is_kept(plan.kept, part)) continue;
-    if (part == Part::kMoments && scene.emission && scene.emission->has_bracket) continue;  // the bracket needs moments
+    if (part == Part::kMoments && scene.emission && scene.emission->has_bracket) continue;  // for the range of DOLP
     const double bound = worst_bound(bounds, part, plan.kept);
     if (bound > allowed - plan.bound) continue;
     plan.kept = without(plan.kept, part);
@@ -135,7 +135,7 @@ Effect specular_row(const SceneValues& scene, const EffectPlan& plan) {
   return row;
 }
 
-/// The row of a choice of the model. If the choice is kept, `reason` is appended to the text `choice`.
+/// The row about a choice of the model, for example the masking. If it is kept, `reason` follows the text `choice`.
 Effect model_row(const SceneValues& scene, const EffectPlan& plan, const char* name, const std::string& choice,
                  const SceneEntries& entries, const char* reason = ", a choice of the model: never swapped") {
   const auto is_flat = [](const SceneEntry& entry) { return entry.shape.sigma == 0.0; };

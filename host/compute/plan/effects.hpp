@@ -25,13 +25,13 @@ struct EntriesExtent {
   std::vector<FacetOptics> optics;
 };
 
-/// A grid has one extent, because each direction has all variants of the scene. Points have one extent per variant.
+/// Returns one extent for a grid, because its variants have the same directions. Points have one extent per variant.
 std::vector<EntriesExtent> extents_of(const SceneEntries& entries);
 
 /// Bounds of the change that each part of a scene causes at any of the entries.
-/// Derivation: a part adds (dI, dQ, dU) to the Stokes parameters. Let q = (Q, U) / I, and let a prime mark values
-/// without the part. Then q - q' = ((dQ, dU) - q dI) / I'. The terms are bounded with Kirchhoff's law: I = E + (S - E +
-/// X) rho_I and Q = (S - E + X) rho_Q, where E, S and X are the exitances of emission, surroundings and source.
+/// Derivation: let a part add (dI, dQ, dU) to the Stokes parameters. With q = (Q, U) / I, and a prime for values
+/// without the part, q - q' = ((dQ, dU) - q dI) / I'. Kirchhoff's law bounds these terms. With the exitances E of the
+/// emission, S of the surroundings and X of the source, I = E + (S - E + X) rho_I and Q = (S - E + X) rho_Q.
 class EffectBounds {
  public:
   EffectBounds(const SceneModel& scene, const EntriesExtent& extent);
@@ -53,7 +53,7 @@ class EffectBounds {
 
   SceneModel scene_;
   bool is_bistatic_;
-  SpectralSample total_;       ///< sums of |factor| over the spectral samples; `emitted` keeps its sign
+  SpectralSample total_;       ///< sums over the spectral samples, of absolute values except `emitted`
   double sky_apart_ = 0.0;     ///< largest difference between a sky profile and its mean
   bool has_negative_ = false;  ///< true if a spectral weight is negative, as interpolation may give
   double path_;
@@ -72,20 +72,19 @@ struct EffectPlan {
   bool needs_direct = false;            ///< the run needs the moments of the direct emission
   bool needs_beams = false;             ///< the run needs the pBRDF from the source to the viewer
   std::shared_ptr<const SkyBasis> sky;  ///< functions of the sky, set by with_sky; null without a profile
-  bool gives_rho = true;  ///< rho_i, rho_q and rho_error_estimate are known; the albedo only with the moments
+  bool gives_rho = true;                ///< the run gives rho_i, rho_q and rho_error_estimate
 };
 
 /// Drops parts as long as their bounds (EffectBounds) sum to at most kDroppedShare of the tolerance. The order is:
 /// source, surroundings, their profile, emission, path, moments, further bounces. Each bound is for the scene without
-/// the parts dropped before. Choices of the model (distribution, masking, absorption index k) and the diffuse part are
-/// never dropped.
+/// the parts dropped before. The diffuse part and choices of the model (such as the masking) are never dropped.
 EffectPlan plan_effects(const SceneValues& scene, const SceneEntries& entries, bool keep_all);
 
 EffectPlan plan_to_keep(const SceneValues& scene, const KeptEffects& kept);
 
 EffectPlan keep_everything(const SceneValues& scene);
 
-/// Adds the basis of the sky at the wavelengths of these entries, if the moments need one and the plan has none.
+/// Sets EffectPlan::sky for the wavelengths of these entries, if the moments need it and the plan has none.
 EffectPlan with_sky(EffectPlan plan, const SceneValues& scene, const SceneEntries& entries);
 
 /// True if the emissivity is known: the scene has an emission, and the plan keeps the moments that it needs.

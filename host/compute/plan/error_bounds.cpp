@@ -39,7 +39,7 @@ double mean_slope(Distribution distribution, const kernel::ShapeNode& shape) {
   return distribution == Distribution::kGaussian ? gaussian : 2.0 * gaussian / shape.two_q_minus_3;
 }
 
-// Upper bound of the masking G. With smith masking it is a bound of G1(theta), which is small in grazing directions.
+// Upper bound of the masking G. With smith masking, G is at most Smith's G1(theta), which is small near the horizon.
 double masking_bound(Distribution distribution, Masking masking, const kernel::ThetaNode& theta,
                      const kernel::ShapeNode& shape) {
   if (masking != Masking::kSmith) return 1.0;
@@ -86,8 +86,9 @@ double reflectance_s(const kernel::IndexNode& index, double cos_beta) {
   return std::min(1.0, std::norm((cos_beta - w) / (cos_beta + w)));
 }
 
-// Upper bound of the share of light left after `bounces` bounces with cos(beta) >= a/2. Here a is the length of the
-// ray's direction across the groove. It is at least `level`, except at few azimuths (their share: `missed`).
+// Upper bound of the share of light that is left after `bounces` bounces with cos(beta) >= a/2, where a is the length
+// of the ray's direction across the groove. For each `level` the bound has two terms. Azimuths with a < level (their
+// share is `missed`) keep at most the share `most`. The others keep R_s at cos(beta) = level/2, to the power `bounces`.
 double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index, double bounces, double most) {
   double least = most;
   for (double level = 1.0; level > 1e-6; level *= 0.5) {
@@ -100,9 +101,9 @@ double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index
   return least;
 }
 
-// Upper bound of the share of light that facets of a slope t > ShapeNode::cut reflect: the reflectance at the smallest
-// cos(beta), which is the largest. A ray that leaves after one bounce has cos(beta) > cos(theta) sqrt(1 + t^2) / 2. In
-// grooves, at least t min(pi/3, pi/2 - theta) - 1 bounces have cos(beta) >= a/2, with a as in left_after().
+// Upper bound of the share of light that facets steeper than ShapeNode::cut reflect. R_s falls as cos(beta) grows, so a
+// lower limit of cos(beta) gives a bound. At slope t, a ray that leaves after one bounce has cos(beta) > cos(theta)
+// sqrt(1 + t^2) / 2. In grooves, at least t min(pi/3, pi/2 - theta) - 1 bounces have the limit a/2 of left_after().
 double steep_reflectance(const KernelData& data, const kernel::IndexNode& index, const kernel::ThetaNode& theta,
                          const kernel::ShapeNode& shape) {
   if (data.scattering == Scattering::kSingle) {
@@ -114,7 +115,7 @@ double steep_reflectance(const KernelData& data, const kernel::IndexNode& index,
 }
 
 // Bound of the error in grooves with more than DOLP_MOST_BOUNCES bounces, where the kernel treats several bounces as
-// one. `reflected` is the light of these grooves as computed; light below `least` is negligible.
+// one. `reflected` is the light that the kernel computes for these grooves. Up to `least` it is itself the bound.
 double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::IndexNode& index,
                           const kernel::ShapeNode& shape, double reflected, double least) {
   const auto beyond = [&](double bounces, double most) {
@@ -129,7 +130,6 @@ double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta
   return last + std::min(many + very_many, reflected);
 }
 
-// Factor by which the difference between two rules is multiplied to bound the error of the finer rule.
 double pair_factor(const KernelData& data, const kernel::IndexNode& index) {
   const bool is_multiple = data.scattering == Scattering::kMultiple;
   const double smooth = is_multiple ? kGroovePairFactor : data.needs_masking_table() ? kTablePairFactor : kPairFactor;
@@ -151,7 +151,7 @@ double response_rounding(std::size_t degree, double unit_roundoff) {
 struct Shares {
   double cut = 0.0;            ///< bound of the albedo of facets steeper than ShapeNode::cut
   double reflected_cut = 0.0;  ///< bound of the light that these facets reflect
-  double grooves = 0.0;        ///< error of bounces in grooves
+  double grooves = 0.0;        ///< error of r_i because of grooves with many bounces
   double masking = 0.0;        ///< relative error of G
   double rounding = 0.0;       ///< relative rounding error
   double least = 0.0;          ///< least error bound of a sum, relative to the sum
@@ -192,7 +192,7 @@ void set_errors(Moments& moments, const kernel::MomentsNode& node, const KernelD
   const double largest_difference =
       std::max({node.reflected_difference, node.albedo_difference, node.deficit_difference});
   moments.albedo_error = shares.pair * largest_difference + shares.of_masked() * std::abs(node.albedo) + shares.cut;
-  // At the critical angle the absorbed part drops to 0, but r_i does not. So errors are relative to the albedo there.
+  // With total reflection the absorbed part may be far smaller than r_i. So its error is relative to the albedo.
   const bool is_critical = data.indices[entry.index].critical_cos > 0.0;
   const double deficit_terms = std::max(std::abs(deficit_scale), is_critical ? std::abs(node.albedo) : 0.0);
   const bool is_multiple = data.scattering == Scattering::kMultiple;
@@ -209,7 +209,7 @@ void add_curve_errors(Moments& moments, const kernel::MomentsNode& node, const k
   for (double* const bound : {&moments.direct_i_error, &moments.direct_q_error}) *bound += of_facet * theta.c;
 }
 
-/// `sums` has i and q of the finer rule, and their differences from the coarser rule.
+/// `sums` has four numbers for column k: i and q of the finer rule, and their differences from the coarser rule.
 ColumnMoments column_moments(std::span<const double> sums, std::size_t k, const kernel::MomentsNode& node,
                              const KernelData& data, const kernel::ThetaNode& theta, const Shares& shares,
                              double unit_roundoff) {
@@ -270,7 +270,7 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
     const auto sums = columns.subspan(DOLP_COLUMN_PARTS * k, DOLP_COLUMN_PARTS);
     moments.columns.push_back(column_moments(sums, k, node, data, theta, shares, unit_roundoff));
   }
-  // An r_i of grooves above cos(theta) is inaccurate, and would give a negative deficit.
+  // In grooves an inaccurate r_i may exceed cos(theta). The difference cos(theta) - r_i would be a negative deficit.
   if (!is_multiple || moments.r_i < theta.c || moments.deficit_error <= moments.r_i_error)
     take_complement(moments, theta.c);
   return moments;

@@ -17,12 +17,12 @@ using std::numbers::pi;
 using Complex = std::complex<double>;
 
 struct Across {
-  double a = 0.0;                                  ///< length of omega_i projected into the plane across the groove
+  double a = 0.0;                                  ///< length of omega_i (incidence) in the plane across the groove
   double psi_i = 0.0;                              ///< zenith of omega_i in this plane, positive on one side
-  double psi_r = 0.0;                              ///< zenith of omega_r in this plane
+  double psi_r = 0.0;                              ///< zenith of omega_r (reflection) in this plane
   double along = 0.0;                              ///< component of omega_i along the groove
-  Eigen::Vector2d from = Eigen::Vector2d::Zero();  ///< unit vectors of the beams' azimuths: (across, along) the groove
-  Eigen::Vector2d to = Eigen::Vector2d::Zero();
+  Eigen::Vector2d from = Eigen::Vector2d::Zero();  ///< azimuth of omega_i as a unit vector (across, along)
+  Eigen::Vector2d to = Eigen::Vector2d::Zero();    ///< azimuth of omega_r as a unit vector (across, along)
   double cos_i = 1.0;
   double cos_r = 1.0;
 };
@@ -30,7 +30,7 @@ struct Across {
 /// A Jones matrix, which maps the fields (E_s, E_p) before some bounces to the fields after them.
 using Jones = Eigen::Matrix2cd;
 
-/// Converts fields to a frame that is rotated from s toward p by the angle of the vector (x, y).
+/// Matrix that converts fields (E_s, E_p) to a frame rotated by the angle atan2(y, x), from s toward p.
 Eigen::Matrix2d turned(double x, double y) {
   const double length = std::hypot(x, y);
   const double cosine = length > 0.0 ? x / length : 1.0;
@@ -38,8 +38,8 @@ Eigen::Matrix2d turned(double x, double y) {
   return Eigen::Matrix2d{{cosine, sine}, {-sine, cosine}};
 }
 
-/// The Jones matrix of one bounce. Arguments: c = cos(beta), and a vector (x, y) whose angle is the rotation of the
-/// frame of the facet. The sign of r_p is such that r_p = r_s at normal incidence.
+/// The Jones matrix of one bounce, from c = cos(beta) and a vector (x, y). The frame of the facet is rotated by the
+/// angle of this vector. The sign of r_p is such that r_p = r_s at normal incidence.
 class Facet {
  public:
   explicit Facet(const OpticalConstants& index)
@@ -84,8 +84,8 @@ Eigen::Matrix4d mueller(const Jones& j) {
       {(of_s + of_p).imag(), (of_s - of_p).imag(), (straight + crossed).imag(), (straight - crossed).real()}};
 }
 
-/// Mueller matrix of a beam that bounces `bounces` times in an unfolded groove (shaders/physics/groove.glsl). If
-/// `bounces` is odd, the last frame is a mirror image.
+/// Mueller matrix of a beam after `bounces` bounces in an unfolded groove (shaders/physics/groove.glsl). If `bounces`
+/// is odd, the outgoing direction there is the mirror image of the real one, and so is its frame (s, p).
 Eigen::Matrix4d chain(const Across& at, const Facet& facet, double gamma, int bounces) {
   Jones fields = turned(-at.from.x(), at.from.y() * at.cos_i).transpose().cast<Complex>();
   const Complex turn = std::polar(1.0, 2.0 * gamma);
@@ -111,17 +111,17 @@ double beam_width(const Across& at, double gamma, int bounces) {
 
 struct FurtherBeams {
   Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
-  double unfollowed = 0.0;  ///< bound of m00 of the bounces that are left out
+  double unfollowed = 0.0;  ///< bound of m00 of the light after all bounces that are left out
   int bounces = 0;          ///< bounces computed so far, over all beams
 };
 
-/// Bound of the light after more than k = `bounces` bounces, divided by the light after k, which falls like k^(2 - 2q).
+/// Bound of a ratio: light after more than k = `bounces` bounces to light after k. The light falls like k^(2 - 2q).
 double beyond_last(const ScatteringRequest& request, const SlopeShape& shape, int bounces) {
   const bool is_cauchy = request.distribution == Distribution::kCauchy;
   return is_cauchy ? bounces / std::clamp(2.0 * shape.q - 3.0, kSlowestFall, 1.0) : bounces;
 }
 
-/// Sums the beams until the rest is negligible. `accuracy` is relative to m00; `first` is m00 of the first bounce.
+/// Sums the light after 2, 3, ... bounces, up to the relative error `accuracy`. `first` is m00 of the first bounce.
 FurtherBeams further_beams(const Across& at, const ScatteringRequest& request, const ScatteringEntry& entry, double h,
                            double first, double accuracy) {
   const SlopeShape& shape = request.shapes[entry.shape];

@@ -24,13 +24,13 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kSmallestPole = 1e-6;  // lower bound for |N^2 + 1| and |N^2 - 1|
+constexpr double kSmallestPole = 1e-6;  // replaces N^2 + 1 and N^2 - 1 if they are smaller
 
-/// Upper bounds of the loop iterations for a piece, except the orders of its rules.
+/// Largest numbers of loop iterations for a piece of the slope axis. The numbers of nodes are not included.
 struct Loops {
-  double arcs = 1.0;     ///< arcs of the azimuth at one slope
-  double turns = 0.0;    ///< with all bounces: iterations over the bounces at one azimuth
-  double corners = 0.0;  ///< corners of a sky that split the arcs
+  double arcs = 1.0;     ///< arcs into which the azimuths are divided at one slope
+  double turns = 0.0;    ///< with all bounces: iterations for the bounces of one ray
+  double corners = 0.0;  ///< corners (kinks) of a sky, at which arcs are divided further
 };
 
 // Loop iterations for a ray: one for each bounce or group of bounces (next_bounces in groove.glsl).
@@ -49,7 +49,7 @@ double turns_of(double bounces) {
   return turns;
 }
 
-// Loops for grooves with cot(gamma) = slope, in which a vertical ray bounces pi / (2 gamma) times.
+// Loop iterations in grooves with slopes up to `end`. At slope cot(gamma) a vertical ray bounces pi / (2 gamma) times.
 Loops groove_loops(const KernelData& data, double start, double end) {
   const double most = pi / (2.0 * std::atan(1.0 / end));
   const double splits = data.rule.split_bounces;
@@ -77,7 +77,7 @@ Loops loops_of(const KernelData& data, double critical, double start, double end
 // The driver lavapipe stops an invocation after 65,535 iterations, without an error.
 constexpr double kMostIterations = 64'000.0;
 constexpr double kMostArcs = 2.0 * DOLP_MAX_ARCS;
-constexpr double kTurnsOfSlope = DOLP_MOST_SPLITS + 1.0;  // iterations that search for the split lines of a groove
+constexpr double kTurnsOfSlope = DOLP_MOST_SPLITS + 1.0;  // iterations at a slope, to find the split lines of a groove
 
 // Upper bound of the loop iterations of one invocation, with at most `most_nodes` nodes on an arc.
 double iterations(const KernelData& data, const Loops& loops, double most_nodes) {
@@ -122,7 +122,7 @@ void add_direction(KernelData& data, const MomentsRequest& request, double theta
   data.pieces.push_back(pieces);
 }
 
-// Slope beyond which there is less than `share` of the facets, and also less than `share` of their summed slopes.
+// A slope t. Less than `share` of the facets are steeper than t, and they add less than `share` to the mean slope.
 double slope_cut(const MomentsRequest& request, const SlopeShape& shape, double share) {
   const double m = slope_width(shape);
   if (request.distribution == Distribution::kGaussian) return m * std::sqrt(1.0 - std::log(share));
@@ -167,7 +167,7 @@ kernel::IndexNode index_node(const FacetOptics& optics) {
           0.0};
 }
 
-// Adds the reflectance tables of all indices, and more nodes to the rules for the fringes of films.
+// Adds the reflectance tables of all indices. Interference fringes of films also increase the numbers of nodes.
 void add_curves(KernelData& data, const MomentsRequest& request) {
   data.has_curves = std::ranges::any_of(request.optics, [](const FacetOptics& optics) { return !optics.is_bare(); });
   if (!data.has_curves) return;
@@ -186,8 +186,8 @@ void add_curves(KernelData& data, const MomentsRequest& request) {
   data.rule.phi_nodes += kNodesOfFringe * fringes;
 }
 
-// Adds the directions of the grid: once without total reflection, and once for each critical line of an index. If a
-// shape needs a split at the kink of its masking, adds all of these directions also with this split.
+// Adds all directions of the grid several times: without total reflection, and for each cosine at which it begins. If
+// a shape needs a split at the kink of its masking, each of these sets is added twice: without and with this split.
 void add_grid_directions(KernelData& data, const MomentsRequest& request) {
   const bool any_line = std::ranges::find(data.needs_line, 1) != data.needs_line.end();
   const std::uint32_t lines = any_line ? 2 : 1;
@@ -214,7 +214,8 @@ void add_shape(KernelData& data, const MomentsRequest& request, const SlopeShape
 
 static_assert(kMostResponses == DOLP_COLUMNS);
 
-/// Chooses the rules as if the integrand had a pole at cos(beta) = i * bend, unless a pole of an index is nearer to 0.
+/// The polynomials of responses need as many nodes as a function with a pole at cos(beta) = i * bend. So this pole
+/// replaces the pole of an index that is farther from 0.
 void take_responses(KernelData& data, const Response& response) {
   data.response = response;
   data.rule.response_scale = 1.0 / response.c0;

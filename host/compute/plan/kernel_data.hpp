@@ -42,7 +42,7 @@ struct Pieces {
   std::uint32_t count = 0;
   std::array<std::uint8_t, DOLP_MAX_PIECES + 3> roots{};       ///< bits kRootAbove, kRootBelow of each end
   std::array<std::uint8_t, DOLP_MAX_PIECES + 1> most_nodes{};  ///< largest number of nodes of an arc, per piece
-  /// One number per piece. Pieces with equal numbers have equal loop bounds, so they may run in lockstep.
+  /// One number per piece. Pieces with equal numbers have equal loop bounds, see kLockstep in vulkan/tiles.hpp.
   std::array<std::uint16_t, DOLP_MAX_PIECES> lockstep{};
   bool has_split_line = false;  ///< a kink of the masking splits the pieces (DirectionVariant::has_line)
 };
@@ -61,8 +61,8 @@ struct CurveError {
 };
 
 /// Inputs of one run of the kernel. For a grid, `indices` and `shapes` (sigma x q, q fastest) follow the axes of the
-/// grid, and `thetas` has all directions once per DirectionVariant. For points, each point has a direction and an
-/// index; neighbouring points with equal shapes share one shape.
+/// grid, and `thetas` has all directions once per DirectionVariant (plan/breakpoints.hpp). For points, each point has a
+/// direction and an index; neighbouring points with equal sigma and q share a shape.
 struct KernelData {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
@@ -71,10 +71,9 @@ struct KernelData {
   double tolerance = 1e-4;
   kernel::RuleNode rule{};
   int rule_order = 1;
-  bool has_total_reflection = false;  ///< true if an index has total reflection, with k = 0 or small
-  bool has_curves = false;            ///< the kernel reads reflectances from tables
-  /// Errors of the reflectance tables, per index; empty without tables.
-  std::vector<CurveError> curve_errors;
+  bool has_total_reflection = false;     ///< true if total reflection begins at some angle for an index
+  bool has_curves = false;               ///< the kernel reads reflectances from tables
+  std::vector<CurveError> curve_errors;  ///< per index; empty without reflectance tables
   bool is_grid = false;
   std::size_t directions = 0;  ///< directions of the request
   std::vector<kernel::ThetaNode> thetas;
@@ -82,12 +81,12 @@ struct KernelData {
   std::vector<kernel::ShapeNode> shapes;
   std::vector<char> needs_line;  ///< for each shape: 1 if pieces must be split at the kink of its masking
   std::vector<kernel::IndexNode> indices;
-  std::vector<std::uint32_t> index_variant;  ///< for each index of a grid: number of its first DirectionVariant
+  std::vector<std::uint32_t> index_variant;  ///< per index of a grid: number of its DirectionVariant without has_line
   std::vector<std::uint32_t> shape_of;
-  /// Nodes of the rules, then the tables of the sky (SkyTable) and of the reflectances; two numbers per element.
+  /// Nodes and weights of the rules. The list continues with the tables of the sky (SkyTable) and of the reflectances.
   std::vector<std::array<double, 2>> rule_nodes;
   SkyTable sky;
-  std::optional<Response> response;  ///< set if the columns are responses; null if they belong to functions of a sky
+  std::optional<Response> response;  ///< null if the columns are moments with functions of a sky
 
   std::size_t column_count() const { return response ? response->count : sky.count; }
   bool needs_masking_table() const { return masking == Masking::kIntegral || masking == Masking::kSmith; }
@@ -105,15 +104,16 @@ struct KernelData {
 
 struct RuleModel;
 
-/// The data of a request. Without `model`, the rules use the numbers of rule_model(). Pure function.
+/// The kernel's inputs for a request. `model` sets the numbers of nodes; the default is rule_model().
 KernelData kernel_data(const MomentsRequest& request);
 KernelData kernel_data(const MomentsRequest& request, const RuleModel& model);
 
 /// How many numbers for columns follow each MomentsNode and each AzimuthNode.
 inline std::size_t column_sums(const KernelData& data) { return DOLP_COLUMN_PARTS * data.column_count(); }
 inline std::size_t column_azimuths(const KernelData& data) { return 2 * data.column_count(); }
-/// Adds the columns of a piece to `sums`: for each column, i and q of the finer rule, and their differences from the
-/// coarser rule. Functions of a sky have only the larger of the two differences.
+/// Adds the columns of a piece of the slope axis to `sums`. For each column, `piece` has i and q of the coarser rule,
+/// then of the finer rule. `sums` has i and q of the finer rule, then the two differences between the rules; for
+/// functions of a sky it has only the larger difference.
 template <class Real>
 void add_columns(const KernelData& data, std::span<const Real> piece, std::span<double> sums) {
   for (std::size_t first = 0; first < piece.size(); first += DOLP_COLUMN_PARTS) {
@@ -144,7 +144,7 @@ void add_piece(kernel::MomentsNode& sum, const kernel::MomentsNode& piece);
 /// Uses r_i + deficit = cos(theta) to compute the less accurate of r_i and deficit from the other.
 void take_complement(Moments& moments, double cosine);
 
-/// Moments with error bounds from the kernel's result, and from DOLP_COLUMN_PARTS sums for each column of the data.
+/// Moments with error bounds, from the kernel's result `node` and DOLP_COLUMN_PARTS sums per column in `columns`.
 Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
                             double unit_roundoff, std::span<const double> columns = {});
 

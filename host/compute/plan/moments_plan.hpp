@@ -12,11 +12,10 @@
 namespace dolp {
 
 struct MomentsStep {
-  std::vector<std::size_t> directions;  ///< positions in the request's directions; empty for points
-  MomentsRequest request;               ///< the request's entries at these directions
-  std::optional<ShapePlan> shapes;      ///< empty if each slope distribution is computed
-  /// Responses from which the moments of the indices are summed; empty if each index is computed.
-  std::optional<ResponsePlan> responses;
+  std::vector<std::size_t> directions;    ///< positions in the request's directions; empty for points
+  MomentsRequest request;                 ///< the request's entries at these directions
+  std::optional<ShapePlan> shapes;        ///< for interpolation over sigma and q; empty without it
+  std::optional<ResponsePlan> responses;  ///< for weighted sums of responses; empty if each index is computed
 
   const MomentsRequest& nodes() const { return shapes ? shapes->nodes : request; }
   bool saves_work() const { return shapes || responses; }
@@ -33,7 +32,7 @@ class MomentsPlan {
   std::span<const MomentsStep> steps() const { return steps_; }
   /// Wanted entries that are interpolated, or combined from responses, instead of computed by a kernel.
   std::size_t saved_entries() const;
-  /// Moments that the kernels compute for the saved entries.
+  /// Number of moments that the kernels compute instead, as input for the saved entries.
   std::size_t nodes_of_saved() const;
   std::size_t kernel_moments() const;
   /// For each direction of a grid: 1 if the entries are interpolated or combined from responses. Empty for points.

@@ -40,13 +40,13 @@ RefinementLevel check_level(const RefinementLevel& first) {
 std::optional<RefinementLevel> next_level(const RefinementLevel& last, const PointResult& result,
                                           const Accuracy& accuracy, bool has_double) {
   if ((result.status & kAnyToleranceNotMet) == 0) return std::nullopt;
-  // Outside the model's domain, DOLP may still have a limit. If it has none, no tighter level helps.
+  // Outside the model's domain DOLP may be known as a limit. If not, its error is NaN, and no tighter level helps.
   const bool is_outside = (result.status & kOutsideModelDomain) != 0;
   if (is_outside && std::isnan(result[Quantity::kErrorEstimate])) return std::nullopt;
   const double rho_error = is_outside ? 0.0 : result[Quantity::kRhoErrorEstimate];
   const double excess =
       std::isnan(rho_error) ? rho_error : std::max(result[Quantity::kErrorEstimate], rho_error) / accuracy.tolerance;
-  // The least step grows with the digits of the last level, so that entries that do not converge take few levels.
+  // The step is at least half of all decades so far. So entries that do not converge reach the last level soon.
   const double so_far = std::log10(accuracy.tolerance / last.tolerance);
   const double least = std::max(kLeastDecades, half_decades(0.5 * so_far));
   const double missed_by = std::isfinite(excess) ? half_decades(std::log10(kRefinementSafety * excess)) : kMostDecades;

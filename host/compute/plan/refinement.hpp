@@ -26,11 +26,12 @@ struct RefinementLevel {
 /// Uses float if the tolerance is well above the rounding of float, unless the scene sets the precision.
 RefinementLevel first_level(const Accuracy& accuracy, bool has_double);
 
-/// The level that checks the results of `first`: other pieces of the slope axis, and a hundredth of the tolerance.
+/// The level that checks results of `first`. It splits the slope axis elsewhere, with a tolerance down to 1/100.
 RefinementLevel check_level(const RefinementLevel& first);
 
-/// A level tighter than `last` by the factor by which `result` misses the tolerance, in steps of half a decade, and in
-/// double if float cannot be so accurate. Empty if `result` meets the tolerance or no tighter level exists.
+/// The level at which an entry is computed again after `last`. Its tolerance is smaller by the factor by which `result`
+/// misses the tolerance, rounded up to half a decade. Uses double if float is not accurate enough. Empty if `result`
+/// meets the tolerance or no tighter level exists.
 std::optional<RefinementLevel> next_level(const RefinementLevel& last, const PointResult& result,
                                           const Accuracy& accuracy, bool has_double);
 

@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t kFewestCells = 64;
 constexpr std::size_t kMostCells = 4096;
 constexpr double kShareOfTolerance = 0.02;
-constexpr double kLeastLevel = 1e-3;  // errors are relative to reflectance_level(), or to this if it is larger
-constexpr double kSafety = 2.0;       // factor from the errors at some positions in the cells to the bound
+constexpr double kLeastLevel = 1e-3;  // least level to which errors are relative, see reflectance_level()
+constexpr double kSafety = 2.0;       // error bound divided by the largest error at the tested positions
 
 /// R_s, 1 - R_s and the split (R_s - R_p) / sin^2(beta) at v = sqrt(cos(beta)).
 using Values = std::array<double, 3>;
@@ -56,7 +56,7 @@ void add_cell(ReflectanceCurve& curve, const FacetOptics& optics, double start, 
   }
 }
 
-/// The pole c + i b in cos(beta) of a reflectance that is as steep as the steepest part of R_s and R_p.
+/// A pole in cos(beta). A function with this pole is as steep at cos(beta) = Re(pole) as R_s or R_p at their steepest.
 std::complex<double> steepest_pole(const FacetOptics& optics, std::size_t cells) {
   std::complex<double> pole(0.0, 1.0);
   for (const double SmoothAbsorptance::*part : {&SmoothAbsorptance::s, &SmoothAbsorptance::p}) {

@@ -18,7 +18,7 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// The mask `wanted` for a grid of other indices: needed_by[i] lists the request's indices that need the other index i.
+/// The mask `wanted` for new indices: new index i wants all entries that `request` wants for an index in needed_by[i].
 std::vector<char> wanted_of(const MomentsRequest& request, const std::vector<std::vector<std::size_t>>& needed_by) {
   const std::size_t of_index = request.theta_deg.size() * request.shapes();
   std::vector<char> wanted;
@@ -32,7 +32,6 @@ std::vector<char> wanted_of(const MomentsRequest& request, const std::vector<std
 }
 
 struct Responses {
-  /// Unwanted entries have no columns; their responses are 0.
   Responses(std::span<const Moments> moments, std::size_t responses) : all(kParts) {
     const auto shapes = static_cast<Eigen::Index>(moments.size());
     for (RowMajor& part : all) part = RowMajor::Zero(static_cast<Eigen::Index>(responses), shapes);
@@ -51,7 +50,7 @@ struct Responses {
   }
   enum Part : std::uint8_t { kI, kQ, kIApart, kQApart, kError, kParts };
   std::vector<RowMajor> all;           // one matrix (responses x shapes) per Part, for one direction
-  std::vector<double> relative_error;  ///< one value for each shape
+  std::vector<double> relative_error;  ///< ColumnMoments::relative_error of each shape
 };
 
 /// Matrix product with a fixed order of sums. Eigen's order depends on the sizes, and so on the division of a grid.
@@ -66,8 +65,8 @@ RowMajor product(const RowMajor& weights, const RowMajor& part) {
   return sums;
 }
 
-/// Sums of weights times responses. Shape: (indices that have weights) x shapes. The error bounds do not cover the part
-/// of a reflectance curve that the weights leave out.
+/// Weighted sums of responses, with a row for each index that has weights and a column for each shape. The error bounds
+/// cover the errors of the responses, but not the difference between a reflectance curve and its sum of polynomials.
 struct Sums {
   Sums(const Responses& responses, Responses::Part of, Responses::Part apart, const RowMajor& weights)
       : value(product(weights, responses.all[of])),
@@ -76,7 +75,7 @@ struct Sums {
     for (Eigen::Index shape = 0; shape < error.cols(); ++shape)
       error.col(shape) += responses.relative_error[static_cast<std::size_t>(shape)] * value.col(shape).cwiseAbs();
   }
-  /// Sums for a difference of reflectance curves. It may change its sign, so relative errors refer to its largest size.
+  /// Sums for the difference of two reflectance curves. Relative errors refer to a bound of |difference|.
   static Sums of_difference(const Responses& responses, Responses::Part of, Responses::Part apart,
                             const RowMajor& weights) {
     Sums sums(responses, of, apart, weights);
@@ -112,7 +111,7 @@ class Combination {
     if (rows > 0) reflected_.col(0).array() += 1.0;
   }
 
-  /// `passes` has the moments of all shapes at one direction for each pass; `moments` receives those of all indices.
+  /// Computes `moments` of all indices at one direction. Each of `passes` has the moments of all shapes there.
   void operator()(double cosine, std::span<const std::span<const Moments>> passes, std::span<Moments> moments) const {
     add_reflected(cosine, passes.front(), moments);
     std::size_t pass = 1;
@@ -135,8 +134,8 @@ class Combination {
     const Responses all(reference, request_.basis->count());
     const Sums i(all, Responses::kI, Responses::kIApart, reflected_);
     const Sums q(all, Responses::kQ, Responses::kQApart, split_);
-    // If reflectance curves are similar or little light is absorbed, the moments of the reference index plus a sum for
-    // the difference of the curves are more accurate than a sum for the whole curve.
+    // There are two ways to the moments of an index: a sum for its whole reflectance curve, or the moments of the
+    // reference index plus a sum for the difference of the curves. The second is better for similar curves.
     const Sums more_absorbed = Sums::of_difference(all, Responses::kI, Responses::kIApart, absorbed_apart_);
     const Sums more_split = Sums::of_difference(all, Responses::kQ, Responses::kQApart, split_apart_);
     const ResponseWeights& of_reference = request_.basis->of_reference();
@@ -159,8 +158,8 @@ class Combination {
         sum.r_q_error = from.r_q_error + more_split.error(index, shape) + more_absorbed.error(index, shape) +
                         (own.split_error + of_reference.split_error) * albedo;
       }
-      // In a sum, differences of the two rules may cancel by chance. So no bound may be smaller, relative to r_i, than
-      // the bound of the reference index.
+      // The error estimate of a sum may be too small, because differences between rules cancel by chance. So the
+      // relative error bound of r_i is at least the bound at the reference index.
       const double whole_error = from.r_i_error * std::max(sum.r_i / from.r_i, 0.0);
       sum.r_i_error = std::max(sum.r_i_error, whole_error);
       sum.r_q_error = std::max(sum.r_q_error, whole_error);

@@ -16,17 +16,17 @@ namespace dolp {
 struct ResponsePlan {
   struct Source {
     std::optional<ResponseWeights> weights;  ///< weights of the responses; empty if the index is computed directly
-    std::size_t other = 0;                   ///< position in the indices of `others`, if there are no weights
+    std::size_t other = 0;                   ///< without weights: position of the index in `others`
   };
-  /// Positions of a point in three lists: the points of each pass, `sources`, and, if the source has no weights, the
-  /// points of `others`.
+  /// Where the data of a point are: the position of the point in each pass, the position of the index in `sources` and,
+  /// if the index has no weights, the position of the point in `others`.
   struct PointSource {
     std::uint32_t pass = 0;
     std::uint32_t source = 0;
     std::uint32_t other = 0;
   };
-  /// Requests for the directions and slope distributions at the reference index: one for responses of the reflected
-  /// light and, if wanted, one for the direct emission, and one for the reflected light times each function of the sky.
+  /// Requests for responses at the reference index, at all directions and slope distributions: for the reflected light,
+  /// for the direct emission (if wanted), and for the reflected light times each function of the sky.
   std::vector<MomentsRequest> passes;
   std::optional<MomentsRequest> others;                ///< the indices, or points, that have no weights
   std::shared_ptr<const std::vector<Source>> sources;  ///< one per index of a grid, or per distinct index of points

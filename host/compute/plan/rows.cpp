@@ -8,7 +8,7 @@
 namespace dolp {
 namespace {
 
-// If m is smaller, shapes do not share a chunk: the masking tables of heavy and light tails need different scales.
+// At smaller m, a kernel row has one shape, because masking tables of heavy and light tails need different scales.
 constexpr double kSmallestSharedM = 1e-3;
 
 bool belongs(const KernelData& data, std::uint32_t first, std::uint32_t next) {
@@ -44,7 +44,7 @@ void add_chunk(Rows& rows, const KernelData& data, std::span<const std::uint32_t
   unite(std::span(rows.shapes).subspan(first));
 }
 
-// Adds chunks in ascending order of q. Unwanted entries count too, so an entry always has the same neighbours.
+// Adds groups of shapes that share a kernel row, in ascending order of q. The mask of wanted entries has no influence.
 void add_grid_chunks(Rows& rows, const MomentsRequest& request, const KernelData& data) {
   std::vector<std::uint32_t> ascending(request.q.size());
   std::iota(ascending.begin(), ascending.end(), 0U);

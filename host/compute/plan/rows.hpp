@@ -13,7 +13,7 @@ namespace dolp {
 /// Most entries in a kernel row. Kernels exist for rows of one entry and of this many entries.
 inline constexpr std::uint32_t kRowWidth = DOLP_ROW_WIDTH;
 
-/// Consecutive shapes with one sigma, in ascending order of q, which share Gauss nodes. For points, a single shape.
+/// Shapes that share the Gauss nodes of a kernel row: equal sigma, ascending q. For points, a chunk is one shape.
 struct Chunk {
   std::uint32_t first = 0;  ///< position in Rows::shapes
   std::uint32_t count = 1;  ///< at most the width of a row
@@ -24,7 +24,7 @@ struct Row {
   std::uint32_t direction = 0;
   std::uint32_t index = 0;
   std::uint32_t chunk = 0;
-  std::uint32_t used = 1;  ///< number of wanted members
+  std::uint32_t used = 1;  ///< number of wanted entries
 };
 
 struct RowPiece {
@@ -34,7 +34,7 @@ struct RowPiece {
 
 struct Rows {
   std::uint32_t width = 1;                ///< 1 or kRowWidth
-  std::vector<kernel::ShapeNode> shapes;  ///< ordered by chunk; a chunk has one scale, cut, table_scale, cusp_digits
+  std::vector<kernel::ShapeNode> shapes;  ///< chunk by chunk, with equal scale, cut, table_scale and cusp_digits
   std::vector<std::uint32_t> shape_of;    ///< position of each of `shapes` in KernelData::shapes
   std::vector<Chunk> chunks;
   std::vector<Row> rows;  ///< ordered by chunk, index and direction
@@ -44,8 +44,8 @@ struct Rows {
   }
 };
 
-/// Rows of kRowWidth members if most members are used; otherwise rows of one member. Which entries share a row depends
-/// only on the shapes, not on directions, indices and wanted entries.
+/// Kernel rows with room for kRowWidth entries, or for one entry if most of the room would be empty. Which entries
+/// share a row depends only on the shapes, not on directions, indices and wanted entries.
 Rows rows_of(const MomentsRequest& request, const KernelData& data);
 
 /// The pieces of `count` rows from row `first`, one per invocation. Neighbouring invocations take about equal time.

@@ -20,7 +20,8 @@ Values at_nodes(const ShapePlan& plan, std::span<const Moments> nodes, const Val
   return values;
 }
 
-/// Interpolation error of each column of `values`: the omitted Chebyshev coefficients, if they fall like the last ones.
+/// Estimated interpolation error of each column of `values`: the sum of the omitted Chebyshev coefficients. It assumes
+/// that they fall as fast as the last known coefficients.
 Eigen::RowVectorXd tails(const ShapeAxis& axis, const Values& values) {
   if (!axis.is_interpolated()) return Eigen::RowVectorXd::Zero(values.cols());
   const Eigen::MatrixXd sizes = (axis.coefficients.bottomRows(2 * kLastShapeCoefficients) * values).cwiseAbs();
@@ -82,9 +83,9 @@ bool wants_whole_directions(const MomentsRequest& request) {
   return true;
 }
 
-/// The moments are analytic functions of ln(x - origin) up to the distance `strip` from the real axis. x is sigma or q.
-/// The larger `strip` is, the fewer nodes an interpolation needs. For q, the origin is the value at which the slope
-/// density or, if the masking depends on it, the mean slope becomes infinite.
+/// How to interpolate over x, which is sigma or q. The moments are analytic functions of ln(x - origin), up to the
+/// distance `strip` from the real axis. A larger `strip` needs fewer nodes. For q, the origin is the value at which the
+/// slope density becomes infinite or, if the masking depends on the mean slope, the value at which the mean slope does.
 struct ShapeParameter {
   double origin = 0.0;
   double strip = 1.0;

@@ -17,16 +17,16 @@ namespace dolp {
 std::vector<std::vector<std::size_t>> split_grazing_directions(const MomentsRequest& request);
 
 struct ShapeAxis {
-  std::vector<double> nodes;     ///< equal to the values if interpolation gains nothing
-  Eigen::MatrixXd cardinal;      ///< values x nodes: weights of the moments at the nodes
-  Eigen::MatrixXd coefficients;  ///< nodes x nodes: node values to Chebyshev coefficients; or empty
+  std::vector<double> nodes;     ///< values at which moments are computed; without interpolation all values
+  Eigen::MatrixXd cardinal;      ///< for each value a row of weights, one for each node
+  Eigen::MatrixXd coefficients;  ///< converts moments at nodes to Chebyshev coefficients; or empty
   bool is_interpolated() const { return coefficients.size() > 0; }
 };
 
 struct ShapePlan {
   ShapeAxis sigma;
   ShapeAxis q;
-  MomentsRequest nodes;  ///< the grid of the request's directions and indices, sigma.nodes and q.nodes
+  MomentsRequest nodes;  ///< the request, but for sigma.nodes and q.nodes, with a smaller tolerance
 
   std::size_t nodes_of_a_direction() const { return sigma.nodes.size() * q.nodes.size(); }
 };
@@ -35,8 +35,9 @@ struct ShapePlan {
 /// only some entries of a direction and index are wanted.
 std::optional<ShapePlan> shape_plan(const MomentsRequest& request);
 
-/// Interpolates the moments of one direction and index at the request's sigma x q. An error bound is the sum of the
-/// nodes' bounds times |weight|, plus an interpolation error estimated from the last Chebyshev coefficients.
+/// Interpolates the moments of one direction and index to all sigma and q of the request. The error bound sums, over
+/// the nodes, |weight| times two errors: the node's error bound and an interpolation error that is estimated from the
+/// last Chebyshev coefficients.
 void interpolate(const ShapePlan& plan, std::span<const Moments> nodes, std::span<Moments> moments);
 
 }  // namespace dolp

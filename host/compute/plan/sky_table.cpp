@@ -31,7 +31,7 @@ Eigen::MatrixXd at_ends(const SkyBasis& basis, std::uint32_t cells) {
   return ends;
 }
 
-/// Distances at u between the functions and the straight lines through their values at the ends of the cell.
+/// Error of the table at u, for each function: the table is a straight line between the ends of a cell.
 Eigen::RowVectorXd distances_at(const SkyBasis& basis, double u, double cells) {
   const double position = std::clamp(u * cells, 0.0, cells);
   const double cell = std::min(std::floor(position), cells - 1.0);
@@ -57,7 +57,7 @@ Eigen::RowVectorXd middle_distances(const SkyBasis& basis, double cells) {
 
 struct Corner {
   double zenith_deg = 0.0;
-  Eigen::RowVectorXd bend;  // change of the slope of each function in u
+  Eigen::RowVectorXd bend;  // jump of the derivative over u, for each function
 };
 
 /// The corners (kinks) of the functions, the sharpest first.

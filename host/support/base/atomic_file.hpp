@@ -23,9 +23,9 @@ class AtomicFile {
  public:
   /// Errors: the errors of check_writable(); IoError if no file can be made.
   explicit AtomicFile(const std::filesystem::path& path);
-  /// Creates and locks a file that has the name `under_way` until commit(), and keeps this name without commit(). If a
-  /// file `under_way` exists, opens this file with its content. Errors: the errors of check_writable(); IoError if no
-  /// file can be made or `under_way` is a symbolic link; InputError if another process has locked the file.
+  /// Creates and locks a file with the name `under_way`, or opens it with its content. Only commit() renames the file
+  /// to `path`; without commit() it stays as it is. Errors: the errors of check_writable(); IoError if no file can be
+  /// made or `under_way` is a symbolic link; InputError if another process has locked the file.
   AtomicFile(const std::filesystem::path& path, const std::filesystem::path& under_way);
   AtomicFile(AtomicFile&&) noexcept;
   AtomicFile& operator=(AtomicFile&&) noexcept;

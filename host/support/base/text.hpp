@@ -51,8 +51,8 @@ inline constexpr std::size_t kMostTextBytes = 16U << 20U;  ///< size limit of a 
 /// is longer than `most_bytes` or contains a zero byte.
 std::string read_text(const std::string& path, const std::string& prefix, std::size_t most_bytes = kMostTextBytes);
 
-/// Refuses "-", pipes and devices as files that a scene or the user of the window names, because reading them could
-/// wait forever. Errors: InputError that begins with `prefix`.
+/// Checks a file name from a scene or from the window. Refuses "-", pipes and devices, because reading them could wait
+/// forever. Errors: InputError that begins with `prefix`.
 void check_named_file(const std::string& path, const std::string& prefix);
 
 std::string read_named_file(const std::string& path, const std::string& prefix,

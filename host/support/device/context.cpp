@@ -112,7 +112,7 @@ Instance::~Instance() {
 std::vector<VkPhysicalDevice> Instance::physical_devices() const {
   std::uint32_t count = 0;
   const VkResult result = vkEnumeratePhysicalDevices(instance_, &count, nullptr);
-  // Both results mean that no driver has found hardware.
+  // Without hardware, drivers return this error or an empty list.
   if (result == VK_ERROR_INITIALIZATION_FAILED || (result == VK_SUCCESS && count == 0)) fail_without_driver();
   check(result, "listing the devices");
   std::vector<VkPhysicalDevice> devices(count);

@@ -24,7 +24,6 @@ class ValidationLog {
   std::vector<std::string> messages_;
 };
 
-/// A Vulkan 1.2 instance.
 class Instance {
  public:
   /// If `log` is not null, the Khronos validation layer checks all Vulkan calls and reports to `log`.

@@ -26,10 +26,10 @@ struct DeviceList {
 
 DeviceList list_devices();  ///< does not throw if there are no devices
 
-/// Returns the position in `devices` of the device that `choice` names: `choice` is this position, or a part of the
-/// device's name; case does not matter. If `float64` is true, the device must have double precision. Of several usable
-/// devices, prefers discrete GPU, integrated GPU, virtual GPU, CPU, other, in this order.
-/// Errors: DeviceError that lists the devices, if no usable device matches.
+/// Returns the position of a device in `devices`. `choice` is a position, a part of the device's name (in any case), or
+/// empty. If `float64` is true, the device must have double precision. If several devices match, the order of
+/// preference is discrete GPU, integrated GPU, virtual GPU, CPU, other. Errors: DeviceError that lists the devices, if
+/// no usable device matches.
 std::size_t choose_device(const std::vector<Device>& devices, const std::string& choice, bool float64);
 
 }  // namespace dolp

@@ -128,7 +128,7 @@ TEST_P(Grooves, WithoutAndWithTheDirectEmission_TheOtherMomentsAgree) {
     const Moments b = evaluator->evaluate(without, {}).front();
     expect_within_bounds(a, b, name_of({Distribution::kCauchy, masking}));
     EXPECT_TRUE(std::isnan(b.direct_i));
-    // The emissivity is at least the direct emission, and at most 1 - rho, where rho is for single scattering.
+    // The emissivity lies between the direct emission and 1 - rho of single scattering. Both are times cos(theta) here.
     EXPECT_LE(a.direct_i, a.deficit);
   }
 }
@@ -219,8 +219,8 @@ int most_bounces_toward_the_mirror(Distribution distribution, const OpticalConst
   return most;
 }
 
-// For a metal the kernel computes the light after 1, 2, ..., 1,000 bounces. For each of these numbers it follows two
-// beams from their first bounce on. That makes 1e6 bounces, and a bounce takes about 50 ns.
+// A metal needs the light after 2, 3, ..., 1,000 bounces. For each number the program computes two beams, and each of
+// their bounces. So the sum is about 1e6 bounces. A bounce takes about 50 ns.
 TEST(GroovesMueller, TowardTheMirrorDirection_WorkIsBounded) {
   for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
     const int paint = most_bounces_toward_the_mirror(distribution, {1.5, 0.1});
@@ -289,14 +289,14 @@ TEST(GrooveScenes, RandomEntriesUpToTheHorizon_ArePhysical) {
   }
 }
 
-// README.md states this emissivity and DOLP. With single scattering they would be 0.114 and 3.8 %.
+// README.md states this emissivity and this DOLP, rounded. Single scattering would give 0.114 and 3.8 %.
 TEST(GrooveScenes, RoughMetal_HasTheEmissivityAndDolpOfTheManual) {
   const PointResult r = result_at(multiple(Distribution::kGaussian), {60.0, {0.3, 2.0}, {10.0, 60.0}});
   EXPECT_NEAR(mean_emissivity(r), 0.01635, 1e-5);
   EXPECT_NEAR(r[Quantity::kDolp], 0.3892, 1e-4);
 }
 
-// rho at 90 degrees is a limit. The stored case is 1e-9 degrees below 90 degrees.
+// At 90 degrees rho is a limit. It must agree with a stored value for a direction 1e-9 degrees below 90 degrees.
 TEST(GrooveScenes, RightAngle_IsTheLimitOfTheStoredValue) {
   constexpr double kApproach = 1e-7;
   for (const StoredCase& c : stored_cases()) {
@@ -320,7 +320,7 @@ TEST(GrooveScenes, SmoothSurface_IsThatOfSingleScattering) {
   }
 }
 
-// The bracket is a range of DOLP (shaders/physics/README.md, section 4). DOLP with all bounces must lie in it.
+// The bracket (shaders/physics/README.md, section 3) is a range of DOLP in which the DOLP with all bounces must lie.
 TEST(GrooveScenes, Bracket_IsWhatItsEndsSayAndHoldsAllBounces) {
   const std::vector<std::string> grid = {"grid.theta_deg=[0, 30, 60, 80]", "surroundings.temperature_K=250"};
   const auto with = [&](std::vector<std::string> more) {
@@ -342,7 +342,7 @@ TEST(GrooveScenes, Bracket_IsWhatItsEndsSayAndHoldsAllBounces) {
     if (i == 0) continue;  // at theta = 0 nothing is polarised
     const double direct_q = 0.5 * std::abs(direct[i][Quantity::kEmissivityS] - direct[i][Quantity::kEmissivityP]);
     const double slack = mean_emissivity(single[i]) - mean_emissivity(direct[i]);
-    // All models have Q = N (eps_s - eps_p) / 2 with the same N. For single scattering this gives |N| = |Q / rho_Q|.
+    // All models have Q = N (eps_s - eps_p) / 2 with equal N. With single scattering Q = -N rho_Q, which gives |N|.
     const double net = std::abs(single[i][Quantity::kStokesQ] / single[i][Quantity::kRhoQ]);
     EXPECT_NEAR(high, net * (direct_q + slack) / single[i][Quantity::kStokesI], kAccuracy);
     EXPECT_NEAR(low, net * std::max(direct_q - slack, 0.0) / single[i][Quantity::kStokesI], kAccuracy);

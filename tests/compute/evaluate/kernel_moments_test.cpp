@@ -132,7 +132,7 @@ TEST_P(KernelProperties, OrderOfAxes_TilesAndBlocks_ChangeNoBit) {
     const Reordered other = reordered(request, random);
     VulkanOptions options;
     options.max_tile_invocations = static_cast<std::uint32_t>(random.uniform(1.0, 20.0));
-    // a block of one shape is smaller than a kernel row
+    // 1 shape is less than a kernel row needs: the evaluator must raise this limit
     options.max_block_shapes = round == 0 ? 1 : static_cast<std::uint32_t>(random.uniform(1.0, 6.0));
     options.staged_uploads = random.chance(0.5);
     const std::vector<Moments> actual = make_evaluator(kernel, options)->evaluate(other.request, {});

@@ -126,8 +126,8 @@ template <class Source>
 class Elementary : public ::testing::Test {};
 TYPED_TEST_SUITE(Elementary, Sources, SourceNames);
 
-// Half an ulp for each of the last two or three roundings, and the error of the argument after its reduction. The
-// comments of the kernel source promise "a few units in the last place".
+// Allowed error: half an ulp for each of the last two or three roundings, and the rounding error of the reduced
+// argument. The comments of the kernel source promise "a few units in the last place".
 constexpr double kFewUlps = 3.0;
 // before their series, these functions compute up to three roots and quotients, each with a rounding error
 constexpr double kRootUlps = 6.0;
@@ -240,7 +240,7 @@ double relative_error(double value, const Wide& exact) {
   return static_cast<double>(abs(Wide(value) - exact) / abs(exact));
 }
 
-// The index as the source receives it. The rounding of this input is no error of the source.
+// The index in the number type of the source. The reference uses it too, so its rounding is no error of the source.
 template <class Source>
 kernel::IndexNode rounded_index(const OpticalConstants& index) {
   MomentsRequest request;
@@ -261,7 +261,7 @@ template <class Source>
 class FresnelSource : public ::testing::Test {};
 TYPED_TEST_SUITE(FresnelSource, Sources, SourceNames);
 
-// Tolerance for about twenty roundings that are not amplified.
+// Allowed relative error in ulps, for about twenty roundings that no subtraction amplifies.
 constexpr double kFresnelUlps = 12.0;
 
 TYPED_TEST(FresnelSource, AllIndices_AgreeWithTheTextbookFormIn50Digits) {
@@ -303,7 +303,7 @@ TYPED_TEST(FresnelSource, NormalIncidence_HasTheLimitOfTheQuotient) {
   for (const OpticalConstants& optical : {OpticalConstants{1.508, 0.0}, OpticalConstants{27.0, 90.0}}) {
     const kernel::IndexNode index = rounded_index<TypeParam>(optical);
     const auto f = source.fresnel(index_in<TypeParam>(index), Real(1));
-    // At cos(beta) = 1 - 1e-20 the quotient is within 1e-20 of its limit. Cancellation leaves 30 of 50 digits.
+    // So near to cos(beta) = 1, (R_s - R_p) / sin^2(beta) equals its limit. Cancellation leaves 30 of 50 digits.
     const Wide c = 1 - Wide(1e-20);
     const Wide sin2 = 1 - c * c;
     const WideComplex n2(Wide(index.n2m1_re) + 1, Wide(index.n2m1_im));
@@ -333,7 +333,7 @@ TYPED_TEST(FresnelSource, TotalReflection_AbsorbsExactlyNothing) {
     const Real above = static_cast<Real>(index.critical_cos + 0.5 * (1.0 - index.critical_cos));
     const auto f = source.fresnel(index_in<TypeParam>(index), above);
     const ExactFresnel exact = exact_fresnel(index, static_cast<double>(above));
-    // The subtraction in n^2 - 1 + cos^2(beta) makes the relative rounding error 2 to 3 times larger at this angle.
+    // At this angle the subtraction in n^2 - 1 + cos^2(beta) amplifies the relative rounding error 2 to 3 times.
     EXPECT_LE(relative_error(f.absorbed_s, 1 - exact.r_s), 3.0 * kFresnelUlps * kEpsilon<TypeParam>) << n;
     EXPECT_GT(f.absorbed_s, Real(0));
   }

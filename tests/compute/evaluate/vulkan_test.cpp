@@ -265,10 +265,10 @@ TEST(Validation, CopyBeyondABuffer_IsReported) {
 }
 
 constexpr double kSentinel = -12'345.0;
-constexpr std::uint32_t kFirst = 3;   // first entry that run.run computes
+constexpr std::uint32_t kFirst = 3;   // position of the first computed entry
 constexpr std::uint32_t kCount = 70;  // number of entries: more than a workgroup, but no multiple of it
 
-// Buffers of a request. After the results, an output buffer has sentinels for a workgroup, which must not change.
+// Runs the kernels for a request. Too many results would overwrite sentinel values at the end of the output buffers.
 class SentinelRun {
  public:
   SentinelRun(Session& session, const MomentsRequest& request) : session_(session), data_(kernel_data(request)) {
@@ -353,7 +353,7 @@ TEST(Kernels, LastWorkgroup_WritesNothingBeyondItsCount) {
     EXPECT_EQ(std::count_if(tables.begin(), end, kIsSentinel), 0);
     EXPECT_TRUE(std::all_of(end, tables.end(), kIsSentinel));
 
-    // In `moments`, entry kFirst is at position 0.
+    // The first result in `moments` belongs to entry kFirst.
     SentinelRun whole(session, request);
     whole.run(0, static_cast<std::uint32_t>(request.size()));
     const std::vector<float> expected = whole.numbers(DOLP_BINDING_MOMENTS, kNode * request.size());

@@ -23,21 +23,20 @@ constexpr std::size_t kDraws = 60;
 constexpr double kCoarse = 1e-2;
 constexpr double kFine = 1e-6;
 constexpr double kLeastShare =
-    0.1;  // no bound is below this share of the tolerance (shaders/physics/README.md, section 9)
+    0.1;  // least relative error bound, divided by the tolerance (shaders/physics/README.md, section 9)
 
 std::uint64_t seed_of(const Model& model) {
   return kSeed + 2 * static_cast<std::uint64_t>(model.masking) + static_cast<std::uint64_t>(model.distribution);
 }
 
-/// Random points with one or two parameters slightly beside values at which the plan, the kernel or the model changes.
+/// Random points, each with one or two parameters close to a value at which the plan, the kernel or the model changes.
 class Switches {
  public:
   Switches(const Model& model, std::uint64_t seed) : model_(model), random_(seed) {}
 
   std::vector<Point> points() {
-    // Lines that split the integral meet at 18, 30 and 45 degrees, and with `integral` masking at 90/7 = 12.857
-    // degrees. They nearly meet at 12.9, 18.05 and 30.2 degrees. The quadrature orders change at 65, 80, 88 and 89
-    // degrees.
+    // With some masking, two breakpoints of the slope axis coincide at theta = 90/7 = 12.857, 18, 30 and 45 degrees.
+    // They nearly coincide at 12.9, 18.05 and 30.2 degrees. The numbers of nodes change at 65, 80, 88 and 89 degrees.
     for (const double theta_deg :
          {12.857142857142858, 12.9, 18.0, 18.05, 22.5, 30.0, 30.2, 36.0, 44.9, 45.0, 60.0, 65.0, 80.0, 88.0, 89.0}) {
       add([&](Point& p) { p.theta_deg = beside(theta_deg); });
@@ -66,9 +65,9 @@ class Switches {
   double least_q() const {
     return model_.masking == Masking::kSmith && model_.distribution == Distribution::kCauchy ? 1.501 : 1.001;
   }
-  // Total reflection begins at the line sin(beta) = n. This line meets the lines phi = 0, horizon and theta_r = theta
-  // if theta is the critical angle, its complement, or twice the critical angle minus 90 degrees. Total reflection ends
-  // when n reaches 1, and when 2 n k grows.
+  // Total reflection begins at the line sin(beta) = n, over slope and azimuth. This line meets the lines phi = 0,
+  // theta_r = 90 degrees and theta_r = theta if theta is the critical angle, its complement, or twice the critical
+  // angle minus 90 degrees. There is no total reflection if n exceeds 1 or 2 n k is large.
   void add_total_reflection(double n) {
     constexpr double kSoftCriticalLine = 0.3;  // 2 n k above which the plan treats total reflection as smooth
     const double critical_deg = std::asin(n) * 180.0 / std::numbers::pi;
@@ -146,7 +145,7 @@ TEST(HardEntries, Moments_AreWithinTheirBoundsOfFinerRulesAndOfTheReference) {
       const Moments fine = FixedPrecision(Precision::kDouble).evaluate(finest, {}).at(0);
       expect_within_bounds(stated, fine, where);
       expect_within_bounds(stated, ReferenceEvaluator().evaluate(finest, {}).at(0), where);
-      // An entry whose stated error meets the tolerance is not computed again. So its true error must meet it, too.
+      // The program accepts an entry if its stated error is within the tolerance. Then its true error must be, too.
       const double asked = entry.tolerance * fine.r_i;
       const bool claims = std::max(stated.r_i_error, stated.r_q_error) <= asked;
       const double error = std::max(std::abs(stated.r_i - fine.r_i), std::abs(stated.r_q - fine.r_q));
@@ -187,7 +186,7 @@ TEST(DivergingSlope, Moments_AreWithinTheirBoundsOfTheReference) {
   }
 }
 
-// Near the horizon hardly anything is emitted. There DOLP needs the most accurate rho.
+// Near the horizon the emission is weak, so DOLP needs a more accurate rho than in other directions.
 class NextToTheHorizon : public testing::TestWithParam<Masking> {
  protected:
   static constexpr std::size_t kPoints = 300;

@@ -1,6 +1,6 @@
-// Entries of a grid share work: slope samples, kernel rows along q, interpolation between slope distributions, and the
-// moments of a few indices. The stated error of an entry must cover its difference from a separate computation of the
-// entry. The environment variable DOLP_PROPERTY_DRAWS sets the number of grids per model.
+// Entries of a grid share work in four ways: slope samples, kernel rows along q, interpolation between slope
+// distributions, and moments of many indices from responses. Some entries are also computed separately. Their stated
+// error must cover the difference. The environment variable DOLP_PROPERTY_DRAWS sets the number of grids per model.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint64_t kSeed = 20261123;
 constexpr std::size_t kChecked = 30;  // entries checked per grid
 
-/// The variables that the entries of a grid share.
+/// The four ways in which entries share work: slope samples, kernel rows, interpolation, responses.
 enum class Sharing { kSlopes, kRows, kShapes, kIndices };
 constexpr std::array kSharings = {Sharing::kSlopes, Sharing::kRows, Sharing::kShapes, Sharing::kIndices};
 
@@ -40,7 +40,7 @@ std::vector<FacetOptics> many_indices(Random& random) {
   return indices;
 }
 
-/// Random directions and indices; random ranges with ratios up to 60 for sigma, up to 30 for q minus its lower limit.
+/// A random grid. Its largest sigma is up to 60 times its smallest. For q minus its lower limit, the ratio is up to 30.
 MomentsRequest random_grid(Random& random, const Model& model, Scattering scattering, Sharing sharing) {
   MomentsRequest request;
   request.distribution = model.distribution;
@@ -50,7 +50,7 @@ MomentsRequest random_grid(Random& random, const Model& model, Scattering scatte
   request.wants_direct = has_direct && scattering == Scattering::kSingle && random.chance(0.5);
   request.tolerance = random.log_uniform(1e-6, 1e-2);
   request.may_interpolate = sharing == Sharing::kShapes;
-  // At 90 degrees the moments with the maskings none and integral may be infinite.
+  // Not 90 degrees, because the moments with masking `none` or `integral` may be infinite there.
   request.theta_deg = {random.uniform(0.0, 89.9), random.chance(0.5) ? std::min(random.theta_deg(), 89.999) : 60.0};
   request.optics = {random.index()};
   if (sharing == Sharing::kSlopes) request.optics.push_back(random.index());
@@ -120,7 +120,7 @@ TEST_P(Grids, StatedErrors_HoldAgainstEveryEntryByItself) {
       }
     }
   }
-  // There is no expectation for kIndices, because there the random indices decide whether the program interpolates.
+  // No test for kIndices: the program uses responses for some random indices and not for others.
   if (sharing == Sharing::kShapes) {
     EXPECT_GT(2 * work.interpolated, entries);
   } else if (sharing != Sharing::kIndices) {
@@ -136,7 +136,7 @@ std::string case_name(const testing::TestParamInfo<std::tuple<Kernel, Sharing>>&
 INSTANTIATE_TEST_SUITE_P(Kernels, Grids, testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kSharings)),
                          case_name);
 
-// The wanted entries have three values of sigma. The one with the heaviest tail (q = 1.2) has the middle sigma.
+// The wanted entries have three values of sigma. The entry with the heaviest tail (q = 1.2) has the middle value.
 TEST(SecondPass, SomeShapesOfAGrid_HeaviestTailIsNotLost) {
   for (const Masking masking : {Masking::kNone, Masking::kVCavity}) {
     MomentsRequest request;

@@ -1,4 +1,4 @@
-// Exact directions, loops with fewer iterations than drivers allow, and each planner separately.
+// Functions of compute/plan/, one by one: cosines of directions, loop iterations, Gauss nodes, rows, levels, tables.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -81,7 +81,7 @@ TEST(Loops, HardDirectionsAndIndicesAtEveryTolerance_StayBelowTheDriversLimit) {
   EXPECT_LT(DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_DOUBLE) * (1.0 + kTableOrderAtMost), kDriverLimit);
 }
 
-// The integrands are Chebyshev polynomials: all have values up to 1, so the error of each degree is visible.
+// The integrands are Chebyshev polynomials. Their values reach 1 at each degree, so an error is never tiny.
 TEST(GaussLegendre, Orders_IntegratePolynomialsOfDegree2nMinus1AndNoMore) {
   for (const int order : {1, 2, 3, 7, 20, DOLP_MAX_ORDER}) {
     for (int degree = 0; degree <= 2 * order; degree += 2) {
@@ -98,14 +98,14 @@ TEST(GaussLegendre, Orders_IntegratePolynomialsOfDegree2nMinus1AndNoMore) {
 
 double tan_deg(double angle_deg) { return std::tan(angle_deg * std::numbers::pi / 180.0); }
 
-// The comment above breakpoints() lists the slopes. There c / (1 + s) = tan(45 - theta/2).
+// Section 8 of shaders/physics/README.md lists the slopes. There c / (1 + s) is tan(45 degrees - theta/2).
 TEST(Breakpoints, Directions_AreAtTheAnglesWhereLinesMeet) {
   constexpr unsigned kBoth = kRootAbove | kRootBelow;
   struct Case {
     double theta_deg;
     Masking masking;
     DirectionVariant variant;
-    std::vector<std::pair<double, unsigned>> expected;  // slope angle in degrees; sides with a square root
+    std::vector<std::pair<double, unsigned>> expected;  // atan(slope) in degrees; Breakpoint::roots
   };
   const std::vector<Case> cases = {
       {0.0, Masking::kNone, {}, {{0, 0}, {45, kBoth}}},
@@ -128,7 +128,7 @@ TEST(Breakpoints, Directions_AreAtTheAnglesWhereLinesMeet) {
   }
 }
 
-// At each bounce after the first, a vertical ray turns by 2 (90 - alpha). It leaves after 90 / (90 - alpha) bounces.
+// Groove with the slope angle alpha, in degrees: a vertical ray leaves after 90 / (90 - alpha) bounces.
 TEST(SlopeWithBounces, Bounces_FollowFromTheAngleOfTheGroove) {
   EXPECT_NEAR(slope_with_bounces(2.0), 1.0, 1e-15);
   EXPECT_NEAR(slope_with_bounces(3.0), tan_deg(60.0), 1e-14);
@@ -171,7 +171,7 @@ TEST(Rows, WantedEntriesOfAGrid_AreEachInOneRowOfShapesAlike) {
 // ---- Orders and levels ---------------------------------------------------------------------------------------------
 
 TEST(Rule, DigitsAndShapes_DecideOrdersAndLines) {
-  EXPECT_DOUBLE_EQ(rule_digits({.margin_digits = 2.0}, 1e-3), 6.25);  // (3 + 2)/0.8; the coarser rule has 80 % of nodes
+  EXPECT_DOUBLE_EQ(rule_digits({.margin_digits = 2.0}, 1e-3), 6.25);  // (3 + 2) / kCoarseShare
   EXPECT_EQ(largest_order(4.0), 64);
   EXPECT_EQ(largest_order(10.0), 80);
   EXPECT_EQ(largest_order(99.0), DOLP_MAX_ORDER);
@@ -287,7 +287,7 @@ TEST(SkyTable, CellsOfAFunctionWithACorner_KeepTheirBoundBesideIt) {
   EXPECT_EQ(SkyTable{}.word(), 0U);
 }
 
-// The facet halves the angle between the beams: omega_i + omega_r is along its normal.
+// The normal of the facet halves the angle between omega_i and omega_r, because a facet is a mirror.
 TEST(BeamGeometry, BeamsInOnePlane_HaveTheFacetBetweenThem) {
   for (const auto& [theta_i_deg, theta_r_deg, delta_phi_deg, slope_deg, beta_deg] :
        std::vector<std::array<double, 5>>{{40, 40, 180, 0, 40},

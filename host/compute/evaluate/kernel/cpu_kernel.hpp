@@ -14,16 +14,16 @@ class CpuKernel {
  public:
   virtual ~CpuKernel() = default;
 
-  /// Builds the masking tables of `shapes`, which are ascending positions in KernelData::shapes, and drops earlier
-  /// tables. If the masking needs tables, `moments` accepts only entries with these shapes.
+  /// Replaces all masking tables by the tables of `shapes`: positions in KernelData::shapes, in ascending order. If the
+  /// masking needs tables, moments() accepts only entries with these shapes.
   virtual void build_masking_tables(std::vector<std::uint32_t> shapes) = 0;
-  /// Returns the moments of `entry`, and adds the sums of the columns (physics/columns.glsl) to `columns`.
+  /// Returns the moments of `entry`. Adds further sums, which physics/columns.glsl explains, to `columns`.
   virtual kernel::MomentsNode moments(const MomentsEntry& entry, std::span<double> columns) = 0;
 
-  /// Returns the sums over the azimuths at `slope`, and writes the sums of the columns to `columns`.
+  /// Returns the sums over the azimuths of the facets with one slope. Writes the further sums to `columns`.
   virtual kernel::AzimuthNode azimuths(const kernel::SlopeNode& slope, std::span<double> columns) = 0;
 
-  /// The pBRDF for k_s = 1 times cos(theta_i) cos(theta_r), in 1/sr, divided by 2^Beam::power (plan/beam.hpp).
+  /// The product of the pBRDF (in 1/sr, with specular factor k_s = 1), cos(theta_i), cos(theta_r) and 2^-Beam::power.
   virtual kernel::MuellerNode mueller(const kernel::BeamNode& beam) = 0;
 };
 

@@ -16,15 +16,15 @@ using sampling_kernel::KernelSource;
 
 namespace {
 
-// Several slope distributions share slope samples. From the narrowest to the widest of them, pieces of the slope axis
-// end at this spacing of ln(slope). Tuned: half the value needs up to 14 % more evaluations.
+// If the widths of the slope distributions differ much, the slope axis is also divided between the smallest and the
+// largest width. This is the largest step of ln(slope). Tuned: half the value needs up to 14 % more evaluations.
 constexpr double kWidthStep = 1.3;
-constexpr double kNodeWidthStep = 0.4;  // the number of nodes is computed for widths m at this spacing of ln(m)
+constexpr double kNodeWidthStep = 0.4;  // largest step of ln(m) between the widths m in corners_of()
 
 constexpr double kNoFacets = 80.0;  // a share of the facets below exp(-kNoFacets) counts as zero
 
 struct SampleRequest {
-  double all = 0.0;  // estimated albedo, weight_of_shape() of orders.glsl
+  double all = 0.0;  // estimate of the albedo, from weight_of_shape()
   double digits = 0.0;
 };
 
@@ -34,15 +34,16 @@ struct End {
   bool is_breakpoint = false;         // true if this end is itself a breakpoint
 };
 
-// The weight of a slope in the moments of a shape is common * exp(-exponent_factor(shape) * exponent), up to a constant
-// factor. Shapes with equal width m share these arrays.
+// In the moments of a shape, slope i has the weight common[i] * exp(-exponent_factor(shape) * exponent[i]), except for
+// a constant factor. The arrays depend only on the width m of the shape.
 struct SlopeWeights {
   double m = 0.0;
   Eigen::ArrayXd exponent;  // common_exponent() of slope.glsl
   Eigen::ArrayXd common;
 };
 
-// Shapes that enclose all wanted shapes: widths m from narrowest to widest, each with the heaviest and lightest tail.
+// Artificial shapes for the choice of the nodes, instead of all wanted shapes. Their widths m lie between the smallest
+// and the largest. There are two shapes for each width: with the heaviest and with the lightest tail.
 std::vector<kernel::ShapeNode> corners_of(const KernelData& data, std::span<const std::uint32_t> shapes) {
   kernel::ShapeNode corner = data.shapes[shapes.front()];
   double widest = corner.m, lightest = corner.q_minus_1;
@@ -82,7 +83,7 @@ struct SlopeSampling::Impl {
   explicit Impl(const KernelData& of)
       : data(of), source(KernelSource::of(of)), rule(std::bit_cast<KernelSource::RuleNode>(of.rule)) {}
 
-  // The ends of the pieces of the slope axis: breakpoints of the direction, and further ends every kWidthStep.
+  // The ends of the pieces of the slope axis: the breakpoints of the direction, and ends between them (kWidthStep).
   std::vector<End> ends_of(std::uint32_t theta, std::span<const kernel::ShapeNode> corners) {
     const kernel::ThetaNode& node = data.thetas[theta];
     const double cut = corners.front().cut;
@@ -149,7 +150,7 @@ struct SlopeSampling::Impl {
       slope.t = scale * hyperbolic.x;
       slope.dt = 2.0 * node.y * scale * hyperbolic.y * piece.extent * on_piece.y;
       for (std::size_t j = 0; j < corners.size(); ++j) {
-        if (requests[j].digits <= slope.digits) continue;  // an earlier shape needs as many digits
+        if (requests[j].digits <= slope.digits) continue;  // enough digits, because of an earlier shape
         const auto shape = std::bit_cast<KernelSource::ShapeNode>(corners[j]);
         const double u = slope.t / shape.m;
         const double mass =
@@ -162,7 +163,7 @@ struct SlopeSampling::Impl {
   }
 
   SlopeWeights weights_of(const SlopeSamples& samples, KernelSource::ShapeNode shape) {
-    shape.q_minus_1 = 1.0;  // so that the weights depend only on m
+    shape.q_minus_1 = 1.0;  // any value: weights for another q differ by a constant factor
     const auto count = static_cast<Eigen::Index>(samples.slopes.size());
     SlopeWeights weights{shape.m, Eigen::ArrayXd(count), Eigen::ArrayXd(count)};
     for (Eigen::Index i = 0; i < count; ++i) {
@@ -174,8 +175,8 @@ struct SlopeSampling::Impl {
     return weights;
   }
 
-  // Sum of a rule over a piece of the slope axis. The weights are scaled to sum to `share`, the exact share of the
-  // facets on this piece. This cancels the error of the rule in the slope density.
+  // Integral over a piece of the slope axis by a Gauss rule. The weights are scaled so that their sum is `share`, the
+  // exact share of the facets on the piece. This cancels the error of the rule in the slope density.
   static kernel::AzimuthNode sum_of(std::uint32_t first, std::uint32_t count, const Eigen::ArrayXd& shape_weights,
                                     double share, std::span<const kernel::AzimuthNode> azimuths) {
     using Azimuths = Eigen::Matrix<double, sizeof(kernel::AzimuthNode) / sizeof(double), Eigen::Dynamic>;
@@ -188,7 +189,7 @@ struct SlopeSampling::Impl {
     return std::bit_cast<kernel::AzimuthNode>(sums);
   }
 
-  // Adds to `sums`, for each column, the sums of the finer rule and their differences from the coarser rule.
+  // Adds four numbers per column to `sums`: i and q by the rule with more nodes, and how much the other rule differs.
   void add_columns(const SampledPiece& piece, const Eigen::ArrayXd& shape_weights, double share,
                    std::span<const double> azimuths, std::span<double> sums) {
     const auto functions = static_cast<Eigen::Index>(sums.size() / DOLP_COLUMN_PARTS);

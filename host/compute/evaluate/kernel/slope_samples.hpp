@@ -1,6 +1,6 @@
-// Without masking and with v-cavity masking, the sums over the azimuths at a slope do not depend on the slope
-// distribution. The slope samples of a direction and an index are these sums at slopes along the slope axis. The
-// moments of a slope distribution are integrals over the samples, with the weights of the distribution.
+// Slope samples are sums over the facet azimuth, for one direction and one refractive index, at some slopes. Without
+// masking and with v-cavity masking, they do not depend on the slope distribution, so all distributions share them. The
+// moments of a distribution are sums over the samples, weighted with its density.
 #pragma once
 
 #include <cstddef>
@@ -28,23 +28,24 @@ struct SampledEntries {
 struct SampledSlope {
   double t = 0.0;
   double dt = 0.0;
-  double digits = 0.0;  ///< digits that the sum over the azimuths needs
+  double digits = 0.0;  ///< decimal digits to which the sum over the azimuths is needed
 };
 
-/// A piece of the slope axis: from `first`, `fine` slopes of the finer rule, then `coarse` ones of the coarser rule.
+/// A piece of the slope axis with two Gauss rules. In SlopeSamples::slopes, the `fine` nodes of the finer rule begin at
+/// the position `first`. The `coarse` nodes of the coarser rule follow.
 struct SampledPiece {
   double start = 0.0;
   double end = 0.0;
   std::uint32_t first = 0;
   std::uint32_t fine = 0;
   std::uint32_t coarse = 0;
-  std::uint32_t direction_piece = 0;  ///< number of the direction's piece (KernelData::pieces) that contains this piece
+  std::uint32_t direction_piece = 0;  ///< number of the piece between two breakpoints that contains this piece
 };
 
 /// The slopes at which the kernel samples one direction and one index, for all wanted shapes.
 struct SlopeSamples {
   SampledEntries entries;
-  double cut = 0.0;  ///< slopes above this one are left out
+  double cut = 0.0;  ///< largest slope; steeper facets are left out
   std::vector<SampledPiece> pieces;
   std::vector<SampledSlope> slopes;
 };
@@ -56,7 +57,7 @@ struct SampledAzimuths {
 
   std::vector<kernel::AzimuthNode> nodes;
   std::size_t per_slope;
-  std::vector<double> columns;  ///< two sums for each column of each slope, slope by slope
+  std::vector<double> columns;  ///< for each slope, i and q of each column
 };
 
 /// Plans slope samples and integrates over them. Any thread may use it. `data` must outlive the object.
@@ -67,7 +68,8 @@ class SlopeSampling {
 
   SlopeSamples plan(SampledEntries entries) const;
   void append(const SlopeSamples& samples, std::vector<kernel::SlopeNode>& nodes) const;
-  /// Writes the moments of the entries of `samples`. The results of their slopes begin at azimuths.nodes[first].
+  /// Computes the moments of samples.entries from the kernel's sums over the azimuths. The sums for samples.slopes[0]
+  /// are in azimuths.nodes[first].
   void integrate(const SlopeSamples& samples, const SampledAzimuths& azimuths, std::size_t first, double unit_roundoff,
                  std::span<Moments> moments) const;
   void compute(SampledEntries entries, CpuKernel& kernel, double unit_roundoff, std::span<Moments> moments) const;

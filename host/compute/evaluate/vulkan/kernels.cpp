@@ -53,7 +53,7 @@ UniquePipeline compile(VkDevice device, VkPipelineLayout layout, std::uint32_t l
   const auto shader =
       created<UniqueShaderModule>(device, vkCreateShaderModule, module_info, "creating a shader module");
 
-  // In the order of DOLP_SPEC_*. The enumerators have the numbers of interface.glsl.
+  // The specialization constants, in the order of DOLP_SPEC_*. The enumerations have the values of interface.glsl.
   const std::array<std::uint32_t, 9> values{local_size,
                                             static_cast<std::uint32_t>(variant.distribution),
                                             static_cast<std::uint32_t>(variant.masking),

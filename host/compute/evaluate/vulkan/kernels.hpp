@@ -47,9 +47,9 @@ class Kernels {
 
   struct Bindings {
     std::array<VkBuffer, kStorageCount> buffers{};
-    std::array<VkBufferView, kTexelCount> texels{};  ///< texels[0] is bound to DOLP_BINDING_RULE_NODES
+    std::array<VkBufferView, kTexelCount> texels{};  ///< for DOLP_BINDING_RULE_NODES and DOLP_BINDING_MASKING_NODES
   };
-  /// Replaces a missing buffer by another one: no kernel reads it, but Vulkan forbids bindings to destroyed buffers.
+  /// Binds some other buffer where one is null. No kernel reads it, but Vulkan forbids bindings to destroyed buffers.
   void bind(const Bindings& bindings);
 
   VkPipeline pipeline(const KernelVariant& variant);

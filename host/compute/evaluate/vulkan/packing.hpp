@@ -30,7 +30,7 @@ class Packing {
   std::size_t node_bytes() const {
     return real_count<Node>() * real_bytes();
   }
-  /// Bytes of the result of one invocation: a Node and `numbers` further numbers. In the buffer all Nodes come first.
+  /// Bytes of the result of one invocation: one Node and `numbers` reals.
   template <class Node>
   std::size_t output_bytes(std::size_t numbers) const {
     return node_bytes<Node>() + numbers * real_bytes();
@@ -39,7 +39,7 @@ class Packing {
     return float64_ ? DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_DOUBLE)
                     : DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_FLOAT);
   }
-  /// In double a node of a masking table takes two texels.
+  /// Texel formats of the rule nodes (2 reals) and of the masking nodes (4 reals). Two uints of a texel hold a double.
   VkFormat rule_texels() const { return float64_ ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32_SFLOAT; }
   VkFormat masking_texels() const { return float64_ ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32B32A32_SFLOAT; }
   std::size_t texels_of_table() const { return masking_nodes() * (float64_ ? 2 : 1); }

@@ -109,7 +109,7 @@ class RowRun final : public Run<Moments> {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       cost_.evaluations += packing_.read<kernel::MomentsNode>(scratch_, i * rows_.width).evaluations;
     }
-    // Each range covers whole rows, so the pieces of a row are always summed in the same order.
+    // A thread sums all pieces of a row, in their order. So rounding does not depend on the number of threads.
     const auto [least, most] = std::ranges::minmax(pieces, {}, &RowPiece::row);
     const std::uint32_t first_row = least.row;
     parallel_ranges(most.row - least.row + std::size_t{1}, kRowsAtOnce, [&](std::size_t first, std::size_t last) {

@@ -25,7 +25,7 @@ struct KernelContext {
   double tile_timeout_s = 0.0;
 };
 
-/// Base of the runs. For each tile, a run records the upload of the inputs, then runs the kernel.
+/// Base class of the runs, which compute one request each. For each tile, a run uploads inputs and runs the kernel.
 class TiledRun {
  public:
   virtual ~TiledRun() = default;
@@ -42,7 +42,6 @@ class TiledRun {
   void add_inputs(std::uint32_t binding, std::size_t count, VkFormat texels = VK_FORMAT_UNDEFINED) {
     add_input(binding, count * packing_.node_bytes<Node>(), texels);
   }
-  /// Creates the buffer for the results and the buffers of the Gauss rules, then binds all buffers.
   void add_results(std::uint32_t binding, std::size_t bytes, const KernelData& data, const KernelVariant& variant);
   template <class NodeOf>
   void upload(std::uint32_t binding, std::size_t count, const NodeOf& node_of) {
@@ -50,7 +49,7 @@ class TiledRun {
     inputs_[binding]->write(scratch_, context_.stream);
   }
   void upload_rule(const KernelData& data);
-  /// `share` is the finished share of the wanted entries. Returns false if the caller cancels the run.
+  /// Calls `progress` with the number of finished entries, `share` times `wanted`. Returns false if the caller cancels.
   static bool goes_on(const Progress& progress, double share, std::size_t wanted) {
     return !progress || progress(static_cast<std::size_t>(share * static_cast<double>(wanted)), wanted);
   }
@@ -79,7 +78,6 @@ class Run : public TiledRun {
 
 std::unique_ptr<Run<Moments>> row_run(const KernelContext& context, const MomentsRequest& request,
                                       const VulkanOptions& options);
-/// Computes slope samples, which serve all slope distributions, for some directions at a time.
 std::unique_ptr<Run<Moments>> slope_run(const KernelContext& context, const MomentsRequest& request,
                                         const VulkanOptions& options);
 std::unique_ptr<Run<ScatteringMatrix>> scattering_run(const KernelContext& context, const ScatteringRequest& request,

@@ -22,7 +22,7 @@ std::uint32_t at_least_one(std::uint64_t count) {
 
 TileSizes sizes_on(const dolp::Device& device, const TileCosts& costs, std::uint64_t invocations,
                    std::uint64_t shapes = 1) {
-  // The costs are sums over buffers, so they also bound the size of each buffer.
+  // No single buffer exceeds its limit, because `bytes` limits even the sum of all buffers.
   const std::uint64_t bytes = std::min(device.max_storage_buffer_bytes, device.memory_bytes / kHeapFraction);
   const std::uint64_t of_dispatch = std::uint64_t{device.max_workgroups} * device.local_size;
   const std::uint64_t tables = costs.shape_texels > 0 ? device.max_texels / costs.shape_texels : shapes;
@@ -36,7 +36,7 @@ std::uint64_t rule_bytes(const Packing& packing, const KernelData& data) {
 
 std::uint64_t tiles_in(std::uint64_t invocations, std::uint32_t tile) { return (invocations + tile - 1) / tile; }
 
-// Orders the slopes so that each group of kLockstep slopes has equal loop bounds. Copies fill incomplete groups.
+// Orders the slopes in groups of kLockstep slopes with equal loop bounds. Repeats a slope where a group is incomplete.
 std::vector<std::uint32_t> in_lockstep(const SlopeBatch& batch, const KernelData& data) {
   std::map<std::uint16_t, std::vector<std::uint32_t>> by_bound;
   for (std::size_t i = 0; i < batch.samples.size(); ++i) {
@@ -72,7 +72,7 @@ RowTiles::RowTiles(const MomentsRequest& request, const dolp::Device& device, co
                 packing.node_bytes<kernel::ShapeNode>() + packing.masking_nodes() * packing.node_bytes<MaskingNode>(),
             .shape_texels = packing.texels_of_table()} {
   const std::uint64_t pieces = rows.rows.size() * DOLP_MAX_PIECES;
-  // A block must have room for the largest chunk, which has rows.width shapes.
+  // At least rows.width shapes, because a kernel row needs the masking tables of all its shapes.
   const std::uint64_t shapes =
       std::min<std::uint64_t>(std::max(options.max_block_shapes, rows.width), rows.shapes.size());
   sizes = sizes_on(device, costs, std::min<std::uint64_t>(options.max_tile_invocations, pieces), shapes);

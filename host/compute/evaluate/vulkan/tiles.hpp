@@ -18,10 +18,10 @@ namespace dolp::vulkan {
 
 using MaskingNode = std::array<double, 4>;
 
-/// Buffer bytes per invocation (a piece of a row, a slope or a beam) and per shape.
+/// Memory that a tile needs per shape and per invocation, which computes a piece of a kernel row, a slope or a beam.
 struct TileCosts {
   std::uint64_t invocation_bytes = 0;  ///< bytes in all buffers that grow with the invocations of a tile
-  std::uint64_t shape_bytes = 1;       ///< bytes of a shape's node and masking table; 1 if tiles bind no shapes
+  std::uint64_t shape_bytes = 1;       ///< bytes of a shape's node and masking table; a divisor, so 1 without tables
   std::uint64_t shape_texels = 0;      ///< texels of a shape's masking table
 };
 
@@ -31,11 +31,11 @@ struct TileSizes {
   std::uint32_t shapes = 1;
 };
 
-/// Number of invocations that run in lockstep in the driver lavapipe, which limits loop iterations. All of them iterate
-/// as often as the one with the most iterations.
+/// The CPU driver lavapipe runs this many invocations in lockstep: each loop continues until the last of them is done.
+/// The driver counts the iterations and stops above a limit.
 inline constexpr std::uint32_t kLockstep = 16;
 
-/// Consecutive chunks of shapes (plan/rows.hpp) whose masking tables are bound together, and the rows that need them.
+/// Consecutive shapes whose masking tables are on the device at a time, and the kernel rows with these shapes.
 struct Block {
   std::uint32_t first_shape = 0;
   std::uint32_t shape_count = 0;
@@ -43,28 +43,28 @@ struct Block {
   std::uint32_t row_count = 0;
 };
 
-/// Slope samples that are planned, sampled and integrated together, and the kernel's input for them.
+/// The slope samples of some directions, and the kernel's input for them. A run computes one batch at a time.
 struct SlopeBatch {
   std::vector<SlopeSamples> samples;
   std::vector<std::size_t> first;  ///< for each of `samples`, the position of its first slope in `slopes`
   std::vector<kernel::SlopeNode> slopes;
-  std::vector<std::uint32_t> in_lockstep;  ///< positions in `slopes`, in groups of kLockstep; copies fill groups
+  std::vector<std::uint32_t> in_lockstep;  ///< positions in `slopes`, in groups of kLockstep with equal loop bounds
 };
 
 struct DispatchCount {
   std::uint32_t tile_invocations = 0;
   std::uint32_t block_shapes = 0;
   std::uint32_t row_width = 1;  ///< largest number of entries per invocation, see plan/rows.hpp
-  std::uint64_t rows = 0;       ///< kernel rows; with slope samples, pairs of a direction and an index
+  std::uint64_t rows = 0;       ///< kernel rows; for slope samples, pairs of a direction and an index
   std::uint64_t slopes = 0;     ///< slopes of all slope samples
   std::uint64_t dispatches = 0;
   std::uint64_t device_bytes = 0;  ///< upper bound of the memory of all buffers
 };
 
-/// The dispatches of a request for moments by kernel rows.
+/// The dispatches of a request for moments, if the kernel computes rows of entries (plan/rows.hpp).
 struct RowTiles {
   RowTiles(const MomentsRequest& request, const dolp::Device& device, const VulkanOptions& options);
-  /// Blocks of at most sizes.shapes shapes. No block divides a chunk.
+  /// Divides the shapes into blocks of at most sizes.shapes shapes. Shapes that share a kernel row stay in one block.
   std::vector<Block> blocks() const;
   DispatchCount count() const;
 
@@ -75,7 +75,7 @@ struct RowTiles {
   TileSizes sizes;
 };
 
-/// The dispatches of a request for moments from slope samples. The request must outlive the object.
+/// The dispatches of a request for moments, if the kernel computes slope samples. The request must outlive the object.
 struct SlopeTiles {
   SlopeTiles(const MomentsRequest& request, const dolp::Device& device, const VulkanOptions& options);
   /// Number of directions in a batch; it limits the memory of a batch.
@@ -103,7 +103,7 @@ struct BeamTiles {
   std::uint32_t beams = 0;  ///< beams per dispatch
 };
 
-/// Numbers the members of a list in the order of their first use, so that a tile binds only these members.
+/// Numbers the items of a list in the order of their first use. So a tile uploads only the items that it needs.
 class Renumbering {
  public:
   explicit Renumbering(std::size_t list_size) : number_(list_size, kUnused) {}

@@ -144,7 +144,7 @@ class VulkanEvaluator::Impl {
   std::optional<vulkan::Kernels> float_kernels_, double_kernels_;
   std::future<void> prepared_;  ///< pipelines in preparation; the destructor waits for the thread
   vulkan::CommandStream stream_;
-  std::unique_ptr<vulkan::TiledRun> run_;  ///< the current run; its buffers must outlive a submission that never ends
+  std::unique_ptr<vulkan::TiledRun> run_;  ///< a member, because the driver may use its buffers after a timeout
 };
 
 VulkanEvaluator::VulkanEvaluator(const VulkanOptions& options) {

@@ -25,7 +25,7 @@ struct VulkanOptions {
   double tile_timeout_s = 600.0;
 };
 
-/// On a processor, dispatches get fewer invocations, so that a call ends within a second after it is cancelled.
+/// Returns `options`, with smaller dispatches if the device is a CPU. So a call ends within a second after cancelling.
 VulkanOptions for_device(VulkanOptions options, const dolp::Device& device, Precision precision);
 
 class VulkanEvaluator : public ModelEvaluator {

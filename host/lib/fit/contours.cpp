@@ -102,8 +102,7 @@ class GrowthMap {
     return wanted;
   }
 
-  /// Computes nodes until they enclose the outer contour. Returns false if `most_evaluations`, with earlier grids, are
-  /// not enough.
+  /// Computes nodes until they enclose the outer contour. Returns false if `most_evaluations` are not enough.
   bool spread(std::size_t most_evaluations) {
     for (Wanted wanted = first_nodes(); !wanted.empty(); wanted = next_nodes()) {
       if (residuals_.evaluations() >= most_evaluations) return false;

@@ -28,7 +28,7 @@ using Columns = std::map<std::string, Array>;
 
 constexpr auto kSignalsEvery = std::chrono::milliseconds(50);
 
-/// Calls `body(progress)` in another thread, so that other Python threads run. A signal like Ctrl-C cancels the call.
+/// Calls `body(progress)` in another thread. Other Python threads can run meanwhile, and Ctrl-C cancels the call.
 template <class Body>
 auto interruptible(const Body& body) {
   std::atomic<bool> goes_on = true;
@@ -44,12 +44,12 @@ auto interruptible(const Body& body) {
       const py::gil_scoped_release end_of_call;
       result.wait();
     }
-    throw interrupt;  // made before the call ended, because it holds the exception that Python has set
+    throw interrupt;  // holds the Python exception of the signal, taken before the wait
   }
   return result.get();
 }
 
-constexpr const char* kOtherBytes = "surrogateescape";  // lets a str hold bytes of file names that are not UTF-8
+constexpr const char* kOtherBytes = "surrogateescape";  // Python's way to keep bytes in a str that are not UTF-8
 
 py::str text_of(const std::string& text) {
   PyObject* const decoded = PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), kOtherBytes);
@@ -137,7 +137,7 @@ std::vector<dolp::Setting> settings_of(const Values& values) {
   return settings;
 }
 
-/// The reverse of value_of(). The TOML text of a setting from a command line becomes a str.
+/// Converts a value to a Python object; the reverse of value_of(). TOML text becomes a str.
 py::object object_of(const dolp::Value& value) {
   const auto object = [](const auto& content) -> py::object {
     using Content = std::decay_t<decltype(content)>;
@@ -158,9 +158,9 @@ py::object object_of(const dolp::Value& value) {
   return std::visit(object, value.content());
 }
 
-/// Issues each remark as a warning of Python for the user's line. Throws if a filter of Python makes it an error.
+/// Issues each remark as a Python warning at the user's line. Throws if a Python filter makes the warning an error.
 void warn(const std::vector<std::string>& remarks) {
-  constexpr int kCaller = 2;  // stack level of the user's line: the frame of the package is level 1
+  constexpr int kCaller = 2;  // stack level of the user's line; level 1 is the dolp package
   const py::object category = py::module_::import("dolp._native").attr("InputWarning");
   for (const std::string& remark : remarks)
     py::module_::import("warnings").attr("warn")(text_of(remark), category, kCaller);
@@ -286,7 +286,7 @@ py::tuple responses_of(const dolp::TableValues& table) {
 
 std::vector<double> vector_of(const Array& values) { return {values.data(), values.data() + values.size()}; }
 
-/// For each column of points that has numbers of materials or bands: the names that these numbers mean.
+/// For each column of points with materials or bands: their names. The column has positions in this list of names.
 py::dict labels_of(const dolp::AxisLabels& labels) {
   py::dict all;
   for (const dolp::Axis axis : dolp::kAllAxes) {
@@ -317,7 +317,7 @@ dolp::Table table_of(const Columns& columns, const std::map<std::string, std::ve
   for (const dolp::Quantity quantity : dolp::kAllQuantities) take(dolp::description_of(quantity).name, table[quantity]);
   for (const dolp::TableCurve& known : dolp::kTableCurves) {
     dolp::Curve& curve = table.*known.curve;
-    take(known.name + std::string("_wavelength"), curve.wavelength_um);  // variables that only files of dolp 0.2 have
+    take(known.name + std::string("_wavelength"), curve.wavelength_um);  // only files of dolp 0.2 have this variable
     take(known.name, curve.wavelength_um.empty() ? curve.used : curve.values);
   }
   table.status.assign(status.data(), status.data() + status.size());
@@ -464,7 +464,7 @@ PYBIND11_MODULE(_native, module) {
     });
   });
   module.def("keys", [] {
-    const auto is_first = [](const dolp::Key& key) { return key.layer <= 1; };  // other films have the same keys
+    const auto is_first = [](const dolp::Key& key) { return key.layer <= 1; };  // omits further films: same keys
     return list_of(dolp::keys() | std::views::filter(is_first), [](const dolp::Key& key) {
       return py::make_tuple(key.key, key.unit, key.allowed(), key.fallback, key.meaning);
     });

@@ -1,4 +1,4 @@
-// The axes of a table. Only this file names and orders them.
+// The axes of lookup tables. Only this file names and orders them.
 #pragma once
 
 #include <array>

@@ -64,9 +64,9 @@ struct Report {
   std::string json;              ///< all values as JSON, as the option --json of the program prints them
   bool is_good = true;           ///< false if the result of an entry misses its tolerance or a check fails
   std::filesystem::path output;  ///< the file that the call wrote; empty if it wrote none
-  /// The lines of `text` that begin with a label, each as a pair: the label and the rest of the line.
+  /// The lines of `text` with a label, such as "entries    5 x 1 x 1". A pair has the label and the rest of the line.
   std::vector<std::pair<std::string, std::string>> rows = {};
-  std::vector<std::string> remarks = {};  ///< one line for each input that was probably meant differently
+  std::vector<std::string> remarks = {};  ///< one line for each suspicious input, such as nm instead of um
 };
 
 /// A validated scene: surface, radiation, geometry, grid and accuracy. Copies of a Scene share its data.
@@ -75,7 +75,7 @@ class DOLP_EXPORT Scene {
   /// Reads a scene file (TOML); "-" is stdin. Applies the settings in their order.
   /// Errors: InputError with file, line, key, value and allowed range.
   static Scene from_file(const std::filesystem::path& path, const std::vector<Setting>& settings = {});
-  /// Reads a scene from text. Error messages begin with the path `name`; files in the text are relative to its folder.
+  /// Reads a scene from text. Error messages begin with `name`. Paths in the text are relative to the folder of `name`.
   static Scene from_text(const std::string& text, const std::vector<Setting>& settings = {},
                          const std::string& name = "scene");
   /// A copy in which a key has another value, for example with("surface.sigma", 0.2). Errors: InputError.
@@ -93,16 +93,16 @@ class DOLP_EXPORT Scene {
   /// The scene with its settings applied, as TOML. The names of files in it are relative to `folder`.
   std::string toml(const std::filesystem::path& folder = ".") const;
 
-  /// The given or default value of a key, in the unit of the key. Empty if the scene does not use the key, as for n if
-  /// the surface has a material. Errors: InputError if the key is unknown or has no number.
+  /// The given or default value of a key, in the unit of the key. Empty if the scene does not use the key: a surface
+  /// with a material does not use surface.n. Errors: InputError if the key is unknown or its value is not a number.
   std::optional<double> number(std::string_view key) const;
-  /// Like number(), for a key with a word, a text or a flag ("true", "false"). Empty also if the text is empty.
+  /// The value of a key as text: a word, a text, "true" or "false". Empty as in number(), or if the text is empty.
   std::optional<std::string> word(std::string_view key) const;
-  /// The values of a key that has an axis or a pair of numbers. Empty if the scene lacks the key.
+  /// The values of a key whose value is an axis or a pair of numbers. Empty if the scene lacks the key.
   std::vector<double> numbers(std::string_view key) const;
-  /// The names of the materials and bands in [grid]. Columns of points choose among them by positions in these lists.
+  /// The names of the materials and bands in [grid]. In points, a material or a band is a position in its list.
   const AxisLabels& labels() const;
-  /// One line for each value that was probably meant differently, and for each assumption where a file lacks data.
+  /// One line for each suspicious value (nm instead of um) and for each assumption (k = 0, if a file lacks k).
   std::vector<std::string> remarks() const;
   /// n and k of the surface at a wavelength. Errors: InputError if the material has no values there.
   std::pair<double, double> refractive_index(double wavelength_um) const;
@@ -119,7 +119,8 @@ class DOLP_EXPORT Scene {
   std::shared_ptr<const Impl> impl_;
 };
 
-/// Settings that remove all on which a response table does not depend, such as the material and the radiation.
+/// Settings that adapt a scene to response tables. They remove what does not influence such a table, such as material
+/// and radiation, and set arbitrary values for keys that every scene must have.
 DOLP_EXPORT std::vector<Setting> surface_settings();
 
 /// The text of an example scene: bare stainless steel at 10.6 um.
@@ -137,7 +138,7 @@ DOLP_EXPORT BuiltInMaterial material(const std::string& name);
 
 /// Results at points, in the order of the points: computed, or interpolated in a table.
 struct Results : ResultColumns {
-  Quantities given;          ///< quantities that results of the scene have; a value that was not computed is NaN
+  Quantities given;          ///< the quantities that `columns` contains; unknown values are NaN
   std::string stokes_units;  ///< unit of the Stokes parameters for UDUNITS, such as "W m-2 um-1"
   /// The global attributes that a table file would have: device, precision, effects, rule, ...
   std::vector<Attribute> attributes;
@@ -152,12 +153,12 @@ class DOLP_EXPORT Table {
  public:
   /// Reads a table that dolp wrote as .nc. Errors: InputError.
   static Table read(const std::filesystem::path& path);
-  /// Makes a table from values like those of Table::values(), with attributes like those of file_attributes(), for
-  /// example from a part of a table. Error messages begin with `name`. Errors: InputError if the values do not fit.
+  /// Makes a table, for example from a part of the values() of another table, with its file_attributes() as attributes.
+  /// Error messages begin with `name`. Errors: InputError if an axis, an attribute or the size of a column is wrong.
   static Table of(TableValues values, const std::string& name = "table");
 
   const TableValues& values() const;
-  /// The attributes of the table in a file: values().attributes, names of conventions, and a hash of the values.
+  /// The attributes of a file of the table: conventions, values().attributes, n, k and E0, and a hash of the values.
   std::vector<Attribute> file_attributes() const;
 
   Table(const Table&) = default;
@@ -165,8 +166,8 @@ class DOLP_EXPORT Table {
   ~Table() = default;
 
   /// Interpolates in the table at points. A missing column takes the only value of its axis, or else the scene's value.
-  /// The error estimates include the error of the interpolation. Errors: InputError for a point outside the axes, or if
-  /// the table lacks the attribute `scene`, a quantity for the results, or an axis that the [grid] of its scene has.
+  /// The error estimates include the error of the interpolation. Errors: InputError for a point outside the axes, and
+  /// for a table without the attribute `scene`, without a required quantity or without an axis of its scene's [grid].
   Results lookup(const std::vector<Column>& points, const Progress& progress = {}) const;
 
   /// Writes the table as .nc, .csv or .npy, by the suffix. The file is complete or absent. Errors: InputError, IoError.
@@ -183,13 +184,12 @@ class DOLP_EXPORT Table {
 struct Fit : FitNumbers {
   Report report;             ///< report on parameters, intervals, correlations, minima and residuals
   bool has_minimum = false;  ///< true if any descent of the fit converged to a minimum
-  Scene scene;  ///< scene with the best of the compared words and with the fitted values; unchanged if has_minimum is
-                ///< false
+  Scene scene;               ///< scene of the best model, with the fitted values; unchanged if has_minimum is false
 };
 
-/// An Evaluator computes results. It sets up the device and kernels at first need, and keeps them until its
-/// destruction. It never switches from the device to the CPU by itself. Errors of all calls: InputError; DeviceError if
-/// no device is usable, or in a child process after fork(), because a Vulkan device does not survive a fork.
+/// Computes results. The first call that needs a device sets up the device and the kernels, and the Evaluator keeps
+/// both. It never switches from the device to the CPU. Errors of all calls: InputError; DeviceError if no device is
+/// usable. A child process gets a DeviceError after fork(), because a Vulkan device does not survive a fork.
 class DOLP_EXPORT Evaluator {
  public:
   explicit Evaluator(EvaluatorOptions options = {});
@@ -200,17 +200,17 @@ class DOLP_EXPORT Evaluator {
   /// Computes the table over the scene's [grid], in memory.
   Table table(const Scene& scene, const RunOptions& options = {});
   /// Computes the table part by part, so that memory does not grow with the table. `take` gets each part as a Table
-  /// with a part of the values of each axis. An exception from `take` ends the call.
+  /// whose axes have only some of the values. An exception from `take` ends the call.
   void table_parts(const Scene& scene, const std::function<void(const Table&)>& take, const RunOptions& options = {});
-  /// Writes the table to a file (.nc, .csv or .npy) part by part, so that memory does not grow with the table. With
-  /// `shard`, the file name gets "N-of-M" before its suffix, and a file that is complete and has the same scene, n, k,
-  /// E0, evaluator and options is kept. A cancelled or killed call leaves its finished parts beside the file; a call
-  /// with `resume` uses them. Errors: InputError, also for a shard number above the count; IoError.
+  /// Writes the table to a file (.nc, .csv or .npy) part by part, so that memory does not grow with the table. A
+  /// cancelled or killed call leaves its finished parts beside the file, and a call with `resume` uses these parts.
+  /// If `shard` is given, writes only this shard, to a file with "N-of-M" before its suffix. Computes nothing if that
+  /// file is complete and has the same scene, n, k, E0, evaluator and options. Errors: InputError, IoError.
   Report write_table(const Scene& scene, const std::filesystem::path& path, const RunOptions& options = {},
                      const Shard& shard = {});
-  /// Computes the response table over the scene's theta, sigma and q: TableValues::responses and the albedo. It does
-  /// not depend on material, wavelength or radiation; its attributes contain the scene with surface_settings(). Each
-  /// response_error is at most the tolerance times the albedo. Errors: InputError for scattering "multiple".
+  /// Computes the response table over the scene's theta, sigma and q: TableValues::responses and the albedo. Material,
+  /// wavelength and radiation do not influence the table; its attributes describe the scene with surface_settings().
+  /// Each response_error is at most the tolerance times the albedo. Errors: InputError for scattering "multiple".
   Table response(const Scene& scene, const RunOptions& options = {});
   /// Writes the response table to a .nc file part by part. Errors: InputError, IoError.
   Report write_response(const Scene& scene, const std::filesystem::path& path, const RunOptions& options = {});
@@ -223,7 +223,7 @@ class DOLP_EXPORT Evaluator {
   /// m00 in double, where m00 is the first element. All 16 elements are NaN where the model has no finite value.
   std::vector<MuellerMatrix> mueller(const Scene& scene, const std::vector<Column>& points,
                                      const RunOptions& options = {});
-  /// Reads geometries from a CSV, computes Mueller matrices and writes a CSV like that of write_points.
+  /// Computes Mueller matrices for the pairs of directions in a CSV. Writes a CSV, as write_points does.
   Report write_mueller(const Scene& scene, const std::filesystem::path& points, const std::filesystem::path& path,
                        const RunOptions& options = {});
   /// Fits numbers of the scene to measured data and computes profile-likelihood intervals. This call may throw IoError.
@@ -239,12 +239,12 @@ class DOLP_EXPORT Evaluator {
 DOLP_EXPORT Report write_lookup(const std::filesystem::path& table, const std::filesystem::path& points,
                                 const std::filesystem::path& path, const Progress& progress = {});
 
-/// Joins all shards of a table into one file. `history` has the meaning of RunOptions::history. Errors: InputError that
-/// names a missing or duplicate shard, or a shard of another table; IoError.
+/// Joins all shards of a table into one file. For `history` see RunOptions::history. Errors: InputError if a shard is
+/// missing, occurs twice or belongs to another table; IoError.
 DOLP_EXPORT Report merge(const std::vector<std::filesystem::path>& shards, const std::filesystem::path& path,
                          const std::string& history = {});
 
-/// All effects of the scene, and what a run at these points does with them. Effect::influence has the tolerance 1e-3.
+/// All effects of the scene, and what a run at these points does with each. Computes Effect::influence only to 1e-3.
 DOLP_EXPORT std::vector<Effect> effects(const Scene& scene, const std::vector<Column>& points, bool keep_all = false);
 
 /// The effects that a table over the scene's grid keeps or drops, with reasons, and the cost as estimated on the CPU.

@@ -10,7 +10,7 @@ enum class EffectState : std::uint8_t {
   kAbsent,     ///< the scene does not have the effect
   kKept,       ///< computed
   kDropped,    ///< the run leaves the effect out, because a bound shows that the result hardly changes
-  kNotNeeded,  ///< the effect is a choice of the model, and no kept effect depends on it
+  kNotNeeded,  ///< a choice of the model, such as the masking, that no kept effect uses
 };
 
 constexpr const char* name_of(EffectState state) {

@@ -41,7 +41,7 @@ class DOLP_EXPORT Cancelled : public std::runtime_error {
 };
 
 /// A callback that gets the number of finished items. Its first call has done = 0 and comes after all inputs are read.
-/// The library calls it from one thread at a time, which may be its own. If it returns false, Cancelled is thrown.
+/// Calls never overlap, but may come from a thread of the library. If the callback returns false, Cancelled is thrown.
 using Progress = std::function<bool(std::size_t done, std::size_t total)>;
 
 }  // namespace dolp

@@ -32,14 +32,14 @@ struct Measurement {
 struct DOLP_EXPORT MeasuredData {
   std::string name = "data";  ///< name of the CSV file, for messages
   std::vector<Setting> settings = {};
-  std::string zenith_column = "theta_deg";  ///< zenith column of the CSV: theta_deg, or theta_i_deg (if bistatic)
+  std::string zenith_column = "theta_deg";  ///< name of the zenith column; theta_i_deg only in bistatic scenes
   bool has_uncertainties = false;           ///< true if all measurements have an uncertainty
   std::vector<Measurement> measurements = {};
-  std::vector<std::string> remarks = {};  ///< one line for each unit that was probably meant differently
+  std::vector<std::string> remarks = {};  ///< one line for each suspicious unit, such as percent or nm
 
-  /// Reads a CSV. The columns are: theta_deg or theta_i_deg; the measured dolp (not negative), q_over_i (signed), or
-  /// one or both of emissivity_s and emissivity_p; if wanted, uncertainty and wavelength_um. Values are fractions, not
-  /// percent. Lines that begin with # are comments. Errors: InputError with file, line, column, value, range.
+  /// Reads a CSV. It must have a zenith column (theta_deg or theta_i_deg) and a measured quantity: dolp (not negative),
+  /// q_over_i (signed), emissivity_s, emissivity_p or both emissivities. It may have uncertainty and wavelength_um.
+  /// Values are fractions. Lines that begin with # are comments. Errors: InputError with file, line, column and value.
   static MeasuredData from_csv(const std::string& csv, const std::string& name = "data",
                                std::vector<Setting> settings = {});
   /// Reads the CSV and the settings of "FILE" or "FILE:KEY=VALUE,KEY=VALUE". FILE "-" is stdin. Errors: InputError.
@@ -72,8 +72,8 @@ struct DOLP_EXPORT Comparison {
   static Comparison from_text(const std::string& argument);
 };
 
-/// What a residual r adds to the objective, which a fit minimises: r^2 for kSquares. The other losses add less than
-/// r^2, mainly if |r| exceeds one uncertainty, so that outliers count less.
+/// A fit minimises the objective, the sum of the losses of all residuals. The loss of a residual r is r^2 for kSquares.
+/// The other losses are smaller than r^2 if |r| is above about one uncertainty, so that outliers count less.
 enum class Loss { kSquares, kHuber, kSoftL1, kCauchy, kTukey };
 
 /// "squares", "huber", "soft-l1", "cauchy", "tukey", in the order of Loss.
@@ -83,8 +83,8 @@ DOLP_EXPORT const std::vector<std::string>& loss_names();
 enum class ModelError {
   kNone,
   /// At each point the truth may lie anywhere between the two ends of the model's bracket (emission.bracket). A
-  /// residual is the distance of the measured value to the bracket. An interval contains the parameter's values at
-  /// which chi^2 itself is below the quantile of its distribution; the degrees of freedom are the number of points.
+  /// residual is the distance of the measured value from the bracket. The 95 % interval of a parameter contains all
+  /// values with chi^2 below the 95 % quantile of the chi^2 distribution, with one degree of freedom per point.
   kBracket,
 };
 
@@ -99,7 +99,7 @@ struct FitOptions {
   std::uint64_t seed = 1;                              ///< seed of the starting points
   Progress progress = {};                              ///< counts the items of each phase; may be empty
   std::function<void(const std::string&)> phase = {};  ///< gets the name of each phase before it begins; may be empty
-  Loss loss = Loss::kSquares;                          ///< kHuber to kTukey need data with uncertainties
+  Loss loss = Loss::kSquares;                          ///< all except kSquares need data with uncertainties
   ModelError model_error = ModelError::kNone;          ///< kBracket needs data with uncertainties
   std::vector<Comparison> compare = {};                ///< each combination of the compared words gets a fit
   std::filesystem::path output = {};  ///< file for the scene with the fitted values; "-" is stdout; empty: no file
@@ -107,22 +107,22 @@ struct FitOptions {
   std::filesystem::path plot = {};
 };
 
-/// A profile-likelihood interval of a parameter. It reaches from the smallest to the largest value that the data do not
-/// exclude. `low` or `high` is empty if the data do not exclude the values up to that end of the parameter's range.
+/// A profile-likelihood interval of a parameter: from the smallest to the largest value that agrees with the data. An
+/// empty `low` or `high` means that the data agree with all values up to this end of the parameter's range.
 struct FitInterval {
   std::optional<double> low, high;
   /// The pieces of the interval in ascending order. There are several if the data exclude values between them.
   std::vector<std::pair<std::optional<double>, std::optional<double>>> pieces = {};
-  bool is_empty = false;  ///< the data exclude all values, even with the model's bracket
+  bool is_empty = false;  ///< true if no value agrees with the data; only with ModelError::kBracket
 };
 
 struct FitParameter {
   std::string key;
   double value = 0.0;
-  std::optional<double> standard_error;  ///< from the covariance matrix; parameters at a bound are held fixed
-  /// Intervals at 68.27 % and 95 %. Their ends are empty if the data have no uncertainties and no degrees of freedom.
+  std::optional<double> standard_error;  ///< from the covariance matrix, as if parameters at a bound were fixed
+  /// Intervals at 68.27 % and 95 %. All ends are empty if there are neither uncertainties nor degrees of freedom.
   FitInterval interval_68, interval_95;
-  /// Only if the fit is doubtful or bad: the intervals with all uncertainties multiplied by sqrt(reduced chi^2).
+  /// The intervals with all uncertainties multiplied by sqrt(reduced chi^2). Empty unless the fit is doubtful or bad.
   std::optional<FitInterval> scaled_68 = {}, scaled_95 = {};
   bool is_at_bound = false;
   std::string why_no_error = {};  ///< why there is no standard error; empty if there is one
@@ -135,9 +135,9 @@ struct FitMinimum {
 
 struct FitNumbers {
   std::vector<FitParameter> parameters = {};  ///< in the order of FitOptions::vary
-  double chi_square = 0.0;                    ///< sum of squared residuals; with another loss the sum of their losses
-  std::size_t degrees_of_freedom = 0;         ///< points minus parameters; with a model error, number of points
-  std::optional<double> p_value = {};         ///< only with uncertainties and the loss "squares"
+  double chi_square = 0.0;                    ///< sum of the losses of all residuals; the loss kSquares is the square
+  std::size_t degrees_of_freedom = 0;         ///< points minus parameters; for ModelError::kBracket, points
+  std::optional<double> p_value = {};         ///< empty without uncertainties, and for losses except kSquares
   std::string fit_quality = {};         ///< "good", "doubtful" (p < 0.05), "bad" (p < 0.001); empty without p_value
   std::vector<FitMinimum> minima = {};  ///< all minima that the fit found, the best first
   std::vector<std::string> degeneracies = {};  ///< combinations of parameters that the data do not determine, in words

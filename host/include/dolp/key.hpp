@@ -9,7 +9,7 @@
 
 namespace dolp {
 
-/// An interval of finite numbers. It contains both ends, except an end that `ends` calls open.
+/// An interval of finite numbers. It contains both ends, except `min` if kOpenBelow and `max` if kOpenAbove.
 struct DOLP_EXPORT NumberRange {
   enum class Ends { kClosed, kOpenBelow, kOpenAbove };
   double min = -std::numeric_limits<double>::infinity();
@@ -29,17 +29,17 @@ struct DOLP_EXPORT Key {
   std::string unit;                      ///< "1" for numbers without a unit, empty for words and texts
   NumberRange range;                     ///< allowed range of a number, and of each value of pairs and axes
   std::vector<std::string> words;        ///< allowed words
-  std::string fallback;                  ///< default value as in a scene file; "required" if none; empty if optional
+  std::string fallback;                  ///< default value, "required" (scenes must have the key), or "" (optional key)
   std::string meaning;                   ///< meaning of the key in one line, with the symbol of its quantity
   std::vector<std::string> rivals = {};  ///< alternative keys; a scene has at most one of them
-  /// Number of the film that the key describes, from 1; 0 if the key describes no film. All films have the same keys.
+  /// Number of the film that the key describes, such as 1 for "surface.coating.1.n"; 0 for keys that describe no film.
   std::size_t layer = 0;
 
   /// The allowed values in words, such as "a number in [0, 90]" or "one of cauchy, gaussian".
   std::string allowed() const;
 };
 
-/// Every key that a scene can have, in the order of a scene file. A scene with another key is refused.
+/// Every key that a scene can have, in the order of a scene file. Scenes with unknown keys are refused.
 DOLP_EXPORT const std::vector<Key>& keys();
 
 }  // namespace dolp

@@ -31,8 +31,8 @@ inline constexpr NumberRange kToleranceRange{1e-10, 1e-2};
 inline constexpr NumberRange kAxisCountRange{1.0, 1e6};
 inline constexpr NumberRange kLabelRange{0.0, 1e6};  ///< positions in the list of labels (names) of an axis
 
-/// Range of q for smith masking with the cauchy distribution. Above 3/2 the mean slope, which smith masking uses, is
-/// finite (shaders/physics/README.md, section 2).
+/// Range of q for smith masking with the cauchy distribution. Smith masking uses the mean slope, which is infinite if q
+/// is 3/2 or less (shaders/physics/README.md, section 2).
 inline constexpr NumberRange kSmithCauchyQRange{1.5, 1e4, NumberRange::Ends::kOpenBelow};
 
 }  // namespace dolp

@@ -11,7 +11,7 @@
 namespace dolp {
 
 /// Values of one variable at scattered points. `name` is the name of the column in CSV files of points: theta_deg,
-/// sigma, q, n, k, wavelength_um, and so on; for Mueller matrices also theta_i_deg, theta_r_deg, delta_phi_deg.
+/// sigma, q, n, k, wavelength_um, ... For Mueller matrices: theta_i_deg, theta_r_deg, delta_phi_deg, sigma, q, n, k.
 struct Column {
   std::string name;
   std::span<const double> values;  ///< one value per point, or one value for all points
@@ -35,7 +35,7 @@ struct RunOptions {
   bool resume = false;       ///< for write_table: continue a cancelled or killed call for the same scene
 };
 
-/// One of `count` parts of a table, of about equal size. Several processes can compute a part each. Default: no parts.
+/// One of `count` parts of a table, of about equal size. Each of several processes can compute one. Default: no parts.
 struct Shard {
   std::size_t number = 0;  ///< number of this part, from 1 to count
   std::size_t count = 0;
@@ -50,7 +50,7 @@ struct TableCheckOptions {
 };
 
 struct DeviceCheckOptions {
-  std::string evaluator = "vulkan";  ///< vulkan; cpu: the kernel source compiled as C++
+  std::string evaluator = "vulkan";  ///< vulkan, or cpu (kernel source compiled as C++)
   std::string device = {};           ///< same meaning as in EvaluatorOptions
   std::string precision = "auto";    ///< float, double, or auto, which checks both
   double tolerance = 1e-4;           ///< tolerance for DOLP and rho of the computed cases

@@ -16,8 +16,8 @@ namespace dolp {
 /// status after the last one.
 /// Units: Stokes parameters are exitances, in W m-2 um-1 at one wavelength and W m-2 over a band; in bistatic mode they
 /// are radiances, in W m-2 sr-1 um-1 and W m-2 sr-1. The other quantities have unit 1.
-/// Conventions: Q = I_s - I_p keeps its sign; U = V = 0 in hemispherical mode. Over a band, rho is a mean. Its weight
-/// is the emission pi B(T) or, without emission, the incident radiation; without either it is constant.
+/// Conventions: Q = I_s - I_p keeps its sign; U = V = 0 in hemispherical mode. Over a band, rho is a weighted mean. The
+/// weight is the emission pi B(T). Without emission it is the incident radiation; without both, it is constant.
 enum class Quantity : std::uint8_t {
   kDolp,    ///< sqrt(Q^2 + U^2) / I; negative if I is negative, NaN if I is 0
   kQOverI,  ///< Q / I, signed: it crosses zero where contributions cancel
@@ -25,10 +25,10 @@ enum class Quantity : std::uint8_t {
   kStokesQ,
   kStokesU,
   kStokesV,
-  kRhoI,         ///< reflectance, with the specular weight k_s and the diffuse part
-  kRhoQ,         ///< polarised part of the reflectance, with k_s and the diffuse part
+  kRhoI,         ///< (rho_s + rho_p) / 2, including the specular weight k_s and the diffuse part
+  kRhoQ,         ///< (rho_s - rho_p) / 2, including k_s and the diffuse part
   kAlbedo,       ///< A(theta): specular reflectance if all facets reflect perfectly, without the weight k_s
-  kEmissivityS,  ///< emissivity that the emission model gives; over a band, its mean with the weight pi B(T)
+  kEmissivityS,  ///< emissivity in the emission model; over a band, a mean with the weight pi B(T)
   kEmissivityP,
   kDolpLow,  ///< kDolpLow and kDolpHigh bound the DOLP that all bounces of light would give
   kDolpHigh,
@@ -45,7 +45,7 @@ inline constexpr std::array<Quantity, kQuantityCount> kAllQuantities = enumerato
 /// Some of the quantities, in the order of the enumeration.
 using Quantities = std::vector<Quantity>;
 
-/// What a scene must have so that its results contain a quantity.
+/// Results have a quantity only if the run computes rho or the moments, or if the scene has emission or a bracket.
 enum class QuantityNeeds : std::uint8_t { kNothing, kReflectance, kMoments, kEmission, kBracket };
 
 struct QuantityDescription {
@@ -55,7 +55,7 @@ struct QuantityDescription {
   const char* ancillary;  ///< names of the variables with the quantity's error bound and status; "" if none
   QuantityNeeds needs;
 
-  /// True if results at points omit the quantity when the scene lacks what the quantity needs.
+  /// True if results at points omit the quantity when the scene lacks the emission or the bracket that it needs.
   constexpr bool is_optional() const { return needs == QuantityNeeds::kEmission || needs == QuantityNeeds::kBracket; }
 };
 

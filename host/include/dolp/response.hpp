@@ -1,5 +1,5 @@
-// A response table tells how much the facets at each local angle of incidence contribute to the reflectance of a rough
-// surface of any material. Only this file names and orders the variables of response tables.
+// Response tables. Such a table has a weight for the facets at each local angle of incidence. The weights give the
+// reflectance of a rough surface of any material. Only this file names and orders the variables of response tables.
 #pragma once
 
 #include <array>
@@ -10,13 +10,13 @@
 
 namespace dolp {
 
-/// A variable of a response table. The table has weights at local angles of incidence beta. Let R = (R_s + R_p) / 2 and
-/// D = (R_s - R_p) / 2 be reflectances of a facet at beta. Sums over beta of weights times R or D are rho_I or rho_Q of
-/// a surface with the specular weight k_s = 1 and no diffuse part.
-/// Accuracy: the error of a sum has two parts. One is at most response_error times a number h, which follows from R and
-/// D as host/programs/cli/README.md explains. For bare materials h is 0.7 to 1.3, and more if total reflection begins
-/// at some beta. The other part arises because R and D are known only at the angles beta: it is at most the largest
-/// difference between R or D and their interpolation, times the albedo (for emission times 1).
+/// A variable of a response table. The table has weights at local angles of incidence beta. Let R_s and R_p be the
+/// reflectances of a facet at beta, R = (R_s + R_p) / 2 and D = (R_s - R_p) / 2. For a surface with the specular weight
+/// k_s = 1 and no diffuse part, rho_I is the sum of response_i R over beta, and rho_Q is the sum of response_q D.
+/// Accuracy: the error of a sum is at most response_error times a factor, plus an error of interpolation. The factor is
+/// 0.7 to 1.3 for bare materials, and larger with total reflection (host/programs/cli/README.md). The interpolation
+/// uses polynomials through R and D at the angles beta. Its error is at most the largest difference between these
+/// polynomials and R or D, times the albedo (for emission, times 1).
 enum class ResponseVariable : std::uint8_t { kResponseI, kResponseQ, kEmissionI, kEmissionQ, kResponseError };
 inline constexpr std::size_t kResponseVariableCount = static_cast<std::size_t>(ResponseVariable::kResponseError) + 1;
 

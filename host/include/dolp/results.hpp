@@ -13,7 +13,7 @@ namespace dolp {
 struct PointResult {
   QuantityArray<double> values;  ///< one value per quantity; NaN if the quantity has no value
   std::uint32_t status = 0;      ///< bits of the enumeration Status
-  /// Estimated change of I, as a fraction of I, because the model loses or creates light. If it is above
+  /// Estimated error of I, as a fraction of I, due to light that the model loses or creates. If it is above
   /// kLargestModelChange, the status has kModelInaccurate. Files do not contain this number.
   double model_change = 0.0;
 

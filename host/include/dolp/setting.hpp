@@ -29,8 +29,8 @@ struct TomlText {
   friend bool operator==(const TomlText&, const TomlText&) = default;
 };
 
-/// The value of a key, or no value. A setting without a value removes its key from the scene or, if the key is the name
-/// of a TOML table ("surroundings"), the whole table.
+/// The value of a key, or no value. A setting without a value removes its key from the scene. If the key is the name of
+/// a TOML table, such as "surroundings", the setting removes the whole table.
 class DOLP_EXPORT Value {
  public:
   using Content = std::variant<std::monostate, bool, double, std::string, std::vector<double>, AxisRange, TomlText>;
@@ -64,8 +64,9 @@ class DOLP_EXPORT Value {
 };
 
 /// A dotted key of a scene ("surface.sigma") and its value. A setting adds the TOML table of its key if the scene lacks
-/// it, and removes alternative keys. The alternatives are: surface.n, .material, .material_file; source.irradiance,
-/// .relative_irradiance, .preset, .file; path.temperature_K, .radiance; spectrum.wavelength_um, .band_um.
+/// it. A setting also removes keys that exclude its key: a scene has one of surface.n, .material and .material_file;
+/// one of source.irradiance, .relative_irradiance, .preset and .file; one of path.temperature_K and .radiance; and one
+/// of spectrum.wavelength_um and .band_um.
 struct DOLP_EXPORT Setting {
   std::string key;
   Value value;

@@ -12,12 +12,12 @@ enum Status : std::uint32_t {
   kOutsideModelDomain = 4,           ///< the entry is outside the model's domain; undefined quantities are NaN
   kIntensityNotPositive = 8,         ///< I <= 0: such radiation does not exist
   kRhoToleranceNotMet = 16,          ///< rho misses the scene's tolerance; DOLP may still meet it
-  /// Estimate: I changes by more than 5 %, because single scattering loses light or a masking function creates light.
-  /// If this is the only bit, the numbers are right for the model, but the model is wrong for the surface.
+  /// The estimated error of I is above 5 %, because single scattering loses light or a masking function creates light.
+  /// If no other bit is set, the numbers are right for the model, but the model is wrong for the surface.
   kModelInaccurate = 32,
 };
 
-/// Largest change of I, as a fraction of I, for which the status does not get the bit kModelInaccurate.
+/// Largest estimated error of I, as a fraction of I, for which the status does not get the bit kModelInaccurate.
 inline constexpr double kLargestModelChange = 0.05;
 
 struct StatusBit {
@@ -41,7 +41,7 @@ inline constexpr std::uint32_t kAnyToleranceNotMet = kToleranceNotMet | kRhoTole
 inline constexpr std::uint32_t kNoDolpPromised =
     kReflectanceOutsideZeroToOne | kOutsideModelDomain | kIntensityNotPositive;
 
-/// True if the accuracy of the DOLP is known: it meets the tolerance, or the status has the bit kToleranceNotMet.
+/// True if the accuracy of the DOLP is known: it meets the tolerance, unless the status has the bit kToleranceNotMet.
 inline bool promises_dolp(std::uint32_t status) { return (status & kNoDolpPromised) == 0; }
 
 }  // namespace dolp

@@ -25,8 +25,8 @@ inline constexpr std::size_t kMostAttributeBytes = 64'000;
 struct Curve {
   std::vector<double> wavelength_um;
   std::vector<double> values;
-  /// The quantity at the wavelengths of the table; one value if the table has no axis of wavelengths. Empty if the
-  /// table is of a band over which the quantity varies.
+  /// n, k or E0 at the wavelengths of the table, or one value if the table has no axis of wavelengths. Empty if n, k or
+  /// E0 varies over the band of the table.
   std::vector<double> used;
   friend bool operator==(const Curve&, const Curve&) = default;
 };
@@ -34,14 +34,14 @@ struct Curve {
 /// Everything in a table except its results.
 struct TableHead {
   Axes axes;                     ///< values in the user's order; empty for an axis that the table lacks
-  AxisLabels labels;             ///< names of materials and bands in the scene; a part of a table has all of them too
+  AxisLabels labels;             ///< names of all materials and bands of the scene, even in a part of a table
   std::vector<double> wind_m_s;  ///< wind speeds from which sigma follows; empty if the scene gives sigma
   std::vector<double> beta_deg;  ///< local angles of incidence of a response table, ascending
   Curve index_n;                 ///< n, k and E0 with which the table was computed; empty curves if the table has none
   Curve index_k;
   Curve irradiance;                         ///< E0 before multiplication by source.scale
   std::string stokes_units = "W m-2 um-1";  ///< for UDUNITS; "W m-2" over a band, with " sr-1" if bistatic
-  /// Attributes in the order of the file. The file has more attributes, which only Table::file_attributes() returns.
+  /// Attributes in the order of the file. A file has a few more, which Table::file_attributes() adds to these.
   std::vector<Attribute> attributes;
 
   /// Number of values of each axis, 1 for an axis that the table lacks.
@@ -59,7 +59,7 @@ struct TableHead {
   std::size_t width_of(ResponseVariable variable) const {
     return description_of(variable).has_beta ? beta_deg.size() : 1;
   }
-  /// Position in each column of the entry at these indices of theta, sigma and q, and at the first value of other axes.
+  /// Position of an entry in its columns. The entry has these indices on theta, sigma and q, and 0 on the other axes.
   std::size_t position(std::size_t theta, std::size_t sigma_index, std::size_t q_index) const {
     return (theta * axes[Axis::kSigma].size() + sigma_index) * axes[Axis::kQ].size() + q_index;
   }

@@ -87,7 +87,7 @@ Evaluator::Evaluator(Evaluator&&) noexcept = default;
 Evaluator& Evaluator::operator=(Evaluator&&) noexcept = default;
 
 Evaluator::~Evaluator() {
-  // A forked process lacks the threads of the Vulkan driver. The destructor of the device would wait for them forever.
+  // Destroys no device in a forked process: the destructor would wait forever for driver threads, which a fork lacks.
   if (impl_ && impl_->owner != getpid()) static_cast<void>(impl_.release());
 }
 

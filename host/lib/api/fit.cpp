@@ -60,7 +60,7 @@ void check_comparison(const Comparison& comparison, const FitOptions& options) {
   }
 }
 
-/// All combinations of the words in FitOptions::compare, as lists of settings. Without words, one empty list.
+/// All combinations of the words in FitOptions::compare, each as a list of settings. No comparison: one empty list.
 std::vector<Settings> combinations(const FitOptions& options) {
   std::vector<Settings> all = {{}};
   for (const Comparison& comparison : options.compare) {
@@ -125,12 +125,12 @@ std::vector<double> fine_zeniths(const MeasuredData& data) {
   return zeniths;
 }
 
-/// The values of the fitted model at the measurements. With `error` kBracket: the values in the bracket that are
-/// nearest to the measured values. Empty if this data set and its scene allow no model.
+/// The values of the fitted model at the measurements. If `error` is kBracket, the values in the bracket that are
+/// nearest to the measured values. Empty if the scene does not allow a Model of the data set, for example no bracket.
 std::vector<double> model_values(const Best& best, MeasuredData data, const FitOptions& options, ModelError error,
                                  ModelEvaluator& evaluator) {
   const std::size_t count = data.measurements.size();
-  // A Model needs at least as many measurements as parameters, so the first measurement may be repeated.
+  // A Model needs at least as many measurements as parameters. So adds copies of the first, and ignores their values.
   data.measurements.resize(std::max(count, options.vary.size()), data.measurements.front());
   try {
     const fit::Model model(best.scene, {data}, options.vary, error);
@@ -147,8 +147,8 @@ struct Bracketed {
   double model, low, high;
 };
 
-/// The quantity that a data set contains, at these zenith angles, with its bracket. Empty if the scene has no bracket,
-/// or if the data are emissivities or have wavelengths.
+/// The value and the bracket of the fitted model at each zenith angle. Empty if the scene has no bracket, or if the
+/// data are emissivities or have wavelengths.
 std::vector<Bracketed> bracketed(const Best& best, MeasuredData data, const std::vector<double>& theta_deg,
                                  const FitOptions& options, ModelEvaluator& evaluator) {
   const Measurement first = data.measurements.front();
@@ -183,7 +183,6 @@ Json brackets(const Best& best, const FitOptions& options, ModelEvaluator& evalu
   return all;
 }
 
-/// The curves of the model against the zenith angle: one for each data set, quantity and wavelength.
 Json curves(const Best& best, const FitOptions& options, ModelEvaluator& evaluator) {
   Json all = Json::array();
   for (const MeasuredData& data : best.model->data()) {
@@ -228,8 +227,8 @@ void add_model_gap(ReportBuilder& report, const Best& best, const FitOptions& op
   report.value("model_gap_in_uncertainties", share);
 }
 
-/// Fits the scene with each combination of compared settings. Adds all combinations to `models`, the best first.
-/// `begin` makes the evaluator for the first scene. Errors: InputError if the scene refuses all combinations.
+/// Fits the scene with each combination of compared settings. Adds all results to `models`, the best first. Calls
+/// `begin` once, to get the evaluator. Errors: InputError if the scene refuses all combinations.
 Best best_of(std::vector<ComparedModel>& models, const SceneValues& scene, const std::vector<MeasuredData>& data,
              const FitOptions& options, const std::function<ModelEvaluator*(const SceneValues&)>& begin) {
   ModelEvaluator* evaluator = nullptr;

@@ -30,14 +30,14 @@ struct Scene::Impl {
 
 struct Table::Impl {
   Impl(TableValues values, std::string of_messages) : table(std::move(values)), name(std::move(of_messages)) {}
-  /// The object that looks up points. The first call makes it. Errors: errors of table_scene and TableLookup.
+  /// The object that looks up points. The first call makes it. Errors: InputError if the table allows no lookup.
   const TableLookup& lookup() const;
 
   const TableValues table;
   const std::string name;  ///< beginning of error messages
 
   mutable std::once_flag is_made;
-  mutable std::optional<SceneValues> scene;  ///< scene of the table; empty before the first lookup, like `between`
+  mutable std::optional<SceneValues> scene;  ///< scene of the table; the first lookup sets `scene` and `between`
   mutable std::optional<TableLookup> between;
 };
 
@@ -48,24 +48,24 @@ std::vector<std::string> files_of(const SceneValues& scene);
 /// Refuses an output file that would overwrite an input file; "-" (stdin, stdout) is no file. Errors: InputError.
 void check_output_is_no_input(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
-/// Results at points. `head` is the head of the table of the run, or of the table in which the points were looked up.
+/// Results at points. Takes the units and attributes from `head`, the head of a table that has the same scene.
 Results results_of(const std::vector<PointResult>& points, const Quantities& quantities, const TableHead& head);
 
-/// Makes points from columns. A column with one value has it at all points. Errors: InputError for a wrong column.
+/// Makes points from columns. A column with one value applies it to all points. Errors: InputError for a wrong column.
 Points points_of_columns(const std::vector<Column>& columns, PointsKind kind);
 
 /// Refuses Vulkan in a process that was forked from one that has used Vulkan. A fork does not copy the threads of the
 /// driver, so calls of Vulkan would wait forever.
 void check_no_fork();
 
-/// Makes an evaluator. `needs_double`: its device must support double precision. Errors: InputError for an unknown
-/// name, or for a device with the evaluator cpu or reference; DeviceError for vulkan if no device is usable.
+/// Makes an evaluator, on a device with double precision if `needs_double`. Errors: InputError for an unknown name, and
+/// if a device is named for the evaluator cpu or reference. DeviceError for vulkan if no device is usable.
 std::unique_ptr<ModelEvaluator> make_evaluator(const EvaluatorOptions& wanted, bool needs_double);
 
 struct Evaluator::Impl {
   explicit Impl(EvaluatorOptions given) : options(std::move(given)) {}
 
-  /// Makes the evaluator ready for a run, with an empty report. It has double precision if the scene needs it.
+  /// Returns the evaluator, with an empty report. Makes a new one if there is none, or none with the needed precision.
   ModelEvaluator* begin(const SceneValues& scene) {
     const bool needs_double = scene.accuracy.precision == Precision::kDouble;
     if (evaluator && (evaluator->has_double() || !needs_double)) {

@@ -40,7 +40,7 @@ bool is_variable(std::string_view name) {
          std::ranges::any_of(kAllAxes, is_described) || std::ranges::any_of(kAllQuantities, is_described);
 }
 
-/// Refuses attributes that a file cannot have. Long ones become variables, so their names must be unique.
+/// Refuses attributes that a file cannot have. A long attribute becomes a variable, whose name must be new.
 void check_attributes(const std::vector<Attribute>& attributes, const std::string& name) {
   std::set<std::string_view> names;
   for (const Attribute& attribute : attributes) {
@@ -72,8 +72,8 @@ void check_values(const TableValues& table, const std::string& name) {
   }
 }
 
-/// Refuses a table that lacks an axis of its scene, because a lookup would use the scene's value instead. Refuses other
-/// axis values than the scene's, because their entries come from another program and may have any error.
+/// Refuses a table that lacks an axis of its scene, because a lookup would use the scene's value instead. Refuses axis
+/// values that the scene's grid lacks: dolp did not compute their entries, so the errors are unknown.
 void check_computed(const TableHead& table, const SceneValues& scene, const std::string& name) {
   constexpr double kFloatRounding = 0x1p-23;  // relative rounding of axis values in single precision
   for (const Axis axis : kAllAxes) {

@@ -1,9 +1,9 @@
-// Constants that control the cost or the accuracy of fits. All except one, which is marked "Proved", are chosen by
-// tests. Three numbers beside a constant are costs: how many parameter sets a fit evaluates at half the constant, at
-// the constant and at twice the constant. They are means over the test problems 900 to 919 of `dolp-bench fit
-// --first-set 900 --entries 20`. With all these values the fits find all global minima. If a constant has no numbers,
-// half and double change no result. "The scale" is how much the objective (chi^2 or another loss) rises one standard
-// deviation from a minimum. "Growth" is how much the objective exceeds its minimum, divided by the scale.
+// Constants that control the cost or the accuracy of fits. Tests chose all of them, except one that is marked "Proved".
+// Three numbers beside a constant are costs: the number of parameter sets that a fit evaluates with half the constant,
+// with the constant, and with twice the constant. Each number is a mean over the 20 problems of `dolp-bench fit
+// --first-set 900 --entries 20`. With all these values the fits find all global minima. For a constant without numbers,
+// half and double change no result. The objective is chi^2, or the sum of another loss. The scale is the rise of the
+// objective one standard deviation from a minimum. The growth is (objective - its minimum) / scale.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ inline constexpr double kAssumedUncertainty = 1e-3;
 
 /// A parameter counts as at its bound if its coordinate (0 to 1 over its range) is closer than this to 0 or 1.
 inline constexpr double kAtBound = 1e-6;
-/// A report names those parameters of an undetermined direction whose component exceeds this share of the largest.
+/// A report names a parameter of an undetermined combination if its component exceeds this share of the largest one.
 inline constexpr double kInDirection = 0.1;
 inline constexpr double kDoubtfulBelow = 0.05;  ///< a fit is doubtful if its p-value is below this
 inline constexpr double kBadBelow = 0.001;      ///< a fit is bad if its p-value is below this
@@ -29,19 +29,20 @@ inline constexpr double kBadBelow = 0.001;      ///< a fit is bad if its p-value
 inline constexpr double kFirstStep = 0.01;  // 1354, 1421, 1425
 inline constexpr double kLeastStep = 1e-6;
 inline constexpr double kMostStep = 0.05;  // 1363, 1421, 1354
-/// How much a step of finite differences should change the model's values: at most this share of an uncertainty or, if
-/// that is more, this multiple of the numerical error of the values.
+/// A step of finite differences should change the model's values by at most kSeenShare uncertainties or, if that is
+/// more, by kErrorsOfAChange times the numerical error of the values.
 inline constexpr double kSeenShare = 0.2;          // 1398, 1421, 1425
 inline constexpr double kErrorsOfAChange = 100.0;  // 1416, 1421, 1379
 /// Largest factor between the steps of finite differences in one linearisation and in the next.
 inline constexpr double kMostChangeOfStep = 10.0;  // 1414, 1421, 1415
 
-/// A descent takes a step if the true decrease of the objective, divided by the decrease that derivatives promise, is
-/// above kLeastRatio. Above kPredictedRatio it may update derivatives from the step.
+/// Limits for the ratio of the true decrease of the objective in a step to the decrease that the derivatives predict. A
+/// descent accepts steps above kLeastRatio. Above kPredictedRatio it may use Broyden's update of the derivatives.
 inline constexpr double kLeastRatio = 1e-3;         // 1421, 1421, 1421
 inline constexpr double kPredictedRatio = 0.5;      // 1402, 1421, 1505
 inline constexpr double kRadiusOfNeighbours = 1.0;  // 1400, 1421, 1412
-/// A path is straight if the squared error of the predicted residuals is below this share of their squared change.
+/// A path is straight if derivatives at its start predict the residuals at its end: the squared error of the prediction
+/// is below this share of the squared change of the residuals.
 inline constexpr double kBent = 0.05;  // 1458, 1421, 1381
 
 /// Number of points of the Sobol sequence for each start of a descent.
@@ -54,40 +55,40 @@ inline constexpr double kCoarseGain = 0.1;  // 1358, 1421, 1416
 inline constexpr double kFarAbove = 30.0;  // 1413, 1421, 1428
 inline constexpr int kPointsOfALine = 8;   // 1386, 1421, 1489
 
-/// Largest relative error of the square root of the growth of the objective at an end of an interval.
+/// Tolerance for the ends of intervals: largest relative error of sqrt(growth).
 inline constexpr double kRootTolerance = 5e-3;  // 1435, 1421, 1404
 /// A descent of a profile ends when derivatives predict a decrease of the objective below this times the scale.
 inline constexpr double kProfileGain = 1e-3;  // 1442, 1421, 1401
-/// Largest number of points on one side of a profile in the search for an end of an interval. The first kProfileSecants
-/// steps are secants. The later steps halve the distance, because secants fail where a profile jumps.
+/// Largest number of points that are computed to find one end of an interval. The first kProfileSecants steps follow
+/// secants. The later steps are bisections, because secants fail where a profile jumps.
 inline constexpr int kMostProfilePoints = 25;  // 1415, 1421, 1421
 inline constexpr int kProfileSecants = 8;      // 1415, 1421, 1416
-/// If two points of a profile differ by less than this share in their distance from the minimum, the profile jumps.
+/// If the points on both sides of an end are closer than this share of their distance to the minimum, a profile jumps.
 inline constexpr double kLeastGap = 1e-3;  // 1422, 1421, 1418
-/// Largest ratio of the distances from the minimum of two successive points of a profile.
+/// Each point of a profile is at most this many times as far from the minimum as the point before.
 inline constexpr double kMostGrowth = 3.0;  // 1414, 1421, 1427
-/// Where the growth is below this share of the first of ProfileOptions::rises, derivatives may be updated from steps.
+/// A descent of a profile may end with updated derivatives where the growth is below this share of its 68 % limit.
 inline constexpr double kTrustedShare = 0.8;  // 1424, 1421, 1329
 inline constexpr double kFirstProbe = 0.01;   // 1411, 1421, 1415
-/// Other branches of a valley are searched at this share of the interval's width beyond an end of the interval.
+/// A valley may have more branches. The search for them begins at this share of the interval's width beyond an end.
 inline constexpr double kBeyond = 0.02;  // 1425, 1421, 1410
-/// A point beyond an end of an interval lies on another branch if its growth is below this share of the growth at the
-/// end. Proved: kRootTolerance allows the growth at the end to be too small by a share of 0.01 at most.
+/// A point beyond an end of an interval lies on another branch if its growth is below this share of the limit. Proved:
+/// at the end itself, kRootTolerance ensures a growth of at least 0.99 of the limit.
 inline constexpr double kClearlyLower = 0.97;  // 1421, 1421, 1793
 
 /// A descent to a grid point of the contours ends when derivatives predict a decrease below this times the scale.
 inline constexpr double kNodeGain = 1e-2;
-/// Step of the first grid of contours along each principal axis, in standard deviations. Here a standard deviation is
-/// at least kLeastDeviation and at most kMostDeviation of the range.
+/// Step of the first grid of contours along each principal axis, in standard deviations. A deviation below
+/// kLeastDeviation or above kMostDeviation (shares of the range) is replaced by this limit.
 inline constexpr double kStepOfDeviation = 0.5;
 inline constexpr double kLeastDeviation = 1e-4;
 inline constexpr double kMostDeviation = 1.0 / 12.0;
-/// The neighbours of a node are computed too if the growth at the node is below this. This limit is above the higher
-/// contour level, because its contour may cross a cell whose corners all lie above the level.
+/// If the growth at a node is below this number, its neighbours are computed too. The number is above the level of the
+/// outer contour, because this contour may cross a cell whose corners all lie above the level.
 inline constexpr double kSpreadGrowth = 9.0;
 /// Largest number of grids of contours that are tried. Each grid has twice the step of the grid before.
 inline constexpr std::size_t kMostGrids = 3;
-/// Number of steps of the drawn grid of contours for one step of the computed grid.
+/// The drawn grid of contours divides each step of the computed grid into this many steps.
 inline constexpr int kPartsOfACell = 4;
 
 }  // namespace dolp::fit

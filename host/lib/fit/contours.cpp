@@ -61,7 +61,7 @@ class GrowthMap {
   Eigen::Vector2d position(const GridNode& node) const {
     return result_.valley_points.front().where.at(pair_) + steps_ * Eigen::Vector2d(node.first, node.second);
   }
-  /// True for a node in the range of both parameters, or about one step outside. The latter moves to the bound.
+  /// True for a node in the range of both parameters or about one step outside. beside() moves it to the bound.
   bool is_near_range(const GridNode& node) const {
     const Eigen::Vector2d at = position(node);
     return (steps_.inverse() * (at - at.cwiseMax(0.0).cwiseMin(1.0))).norm() < 1.5;
@@ -102,7 +102,7 @@ class GrowthMap {
     return wanted;
   }
 
-  /// Computes nodes until they enclose the outer contour. False if this takes more than `most_evaluations` in all.
+  /// Computes nodes until they enclose the outer contour. Returns false if `most_evaluations` are not enough.
   bool spread(std::size_t most_evaluations) {
     for (Wanted wanted = first_nodes(); !wanted.empty(); wanted = next_nodes()) {
       if (residuals_.evaluations() >= most_evaluations) return false;
@@ -115,7 +115,7 @@ class GrowthMap {
     return true;
   }
 
-  /// The growth on a finer grid. It interpolates residuals, because valleys may be narrower than a cell.
+  /// The growth on a finer grid, from interpolated residuals. Interpolated growth would miss a valley inside a cell.
   Contours drawn() const {
     GridNode low, high;
     for (const auto& [node, point] : nodes_) {

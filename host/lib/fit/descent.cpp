@@ -8,8 +8,8 @@
 namespace dolp::fit {
 namespace {
 
-/// A loss and its derivative with respect to the squared residual. With these widths of the losses, fits to normally
-/// distributed errors have 95 % of the efficiency of least squares.
+/// A loss and its derivative with respect to the squared residual. The constants in the losses are chosen so that fits
+/// to normally distributed errors have 95 % of the efficiency of least squares.
 std::pair<double, double> loss_of(double square, Loss loss) {
   switch (loss) {
     case Loss::kSquares:
@@ -43,7 +43,7 @@ bool is_on_bound(double coordinate) {
   return coordinate <= kRounding || coordinate >= 1.0 - kRounding;
 }
 
-/// Sets the components of `step` not in `held`, to minimise the damped sum of squares within the ranges of parameters.
+/// Keeps the components `held` of `step`. The others minimise the damped sum of squares within the parameters' ranges.
 Eigen::VectorXd bounded_step(const Linearisation& where, Eigen::VectorXd step, const std::vector<Eigen::Index>& held,
                              double damping, const Eigen::VectorXd& weights) {
   std::vector<Eigen::Index> free;
@@ -83,8 +83,8 @@ Linearisation moved(const Linearisation& near, Linearisation to) {
 struct Walk {
   Minimum* minimum;
   bool is_stale;        ///< the derivatives were computed at an earlier point
-  bool is_updated;      ///< the derivatives were updated from steps
-  double shrink = 2.0;  ///< if the next step fails, it divides the radius by this
+  bool is_updated;      ///< the derivatives contain Broyden's updates
+  double shrink = 2.0;  ///< divisor of the radius if the next step fails
   bool is_done = false;
   double promised = 0.0;
   Eigen::VectorXd point = {};
@@ -95,8 +95,8 @@ struct Walk {
     if (!where.jacobian.allFinite()) minimum->objective = std::numeric_limits<double>::infinity();
     is_done = !std::isfinite(minimum->objective);
     if (is_done) return;
-    // A parameter at its bound stays there until the others are done: if the model is an even function of it (as of k
-    // at k = 0), finite differences at the bound predict a decrease that does not exist.
+    // A parameter at its bound stays there until the other parameters are done. At k = 0 the model is an even function
+    // of k: finite differences at this bound predict a decrease that does not exist.
     std::vector<Eigen::Index> held = minimum->held;
     for (Eigen::Index j = 0; j < where.at.size(); ++j) {
       if (is_on_bound(where.at[j])) held.push_back(j);
@@ -154,7 +154,7 @@ void refresh(Residuals& residuals, std::vector<Walk>& walks, const DescentOption
   }
 }
 
-/// Computes the derivatives where descents ended without new ones, if their objective is above secant_below.
+/// Computes derivatives for descents that ended with stale or updated ones, if their objective is above secant_below.
 void finish(Residuals& residuals, std::vector<Walk>& walks, const DescentOptions& options) {
   std::vector<Linearisation*> guessed;
   for (Walk& walk : walks) {
@@ -236,8 +236,8 @@ std::pair<Eigen::VectorXd, double> predict_step(const Neighbour& neighbour, doub
   if (near.jacobian.size() == 0) return {near.at + step, std::numeric_limits<double>::infinity()};
   step = bounded_step(near, step, neighbour.held, scale / kRadiusOfNeighbours,
                       Eigen::VectorXd::Ones(near.residuals.size()));
-  // If the model is an even function of a parameter (as of k at k = 0), a descent cannot leave the bound. So a
-  // parameter that is not held goes at most half the way.
+  // A descent cannot leave a bound where the model is an even function of the parameter, such as k = 0. So a parameter
+  // that is not held goes only half of the way to a bound.
   for (Eigen::Index j = 0; j < step.size(); ++j) {
     const bool is_held = std::ranges::find(neighbour.held, j) != neighbour.held.end();
     const double to = near.at[j] + step[j];

@@ -33,8 +33,8 @@ struct DescentOptions {
   int most_steps = 40;
   /// The descent ends when derivatives predict a decrease of the objective below this times `scale`.
   double least_gain = 1e-5;
-  /// If set, Broyden's updates may replace computed derivatives while they predict steps well. Above this objective, a
-  /// descent does not end with updated derivatives: they are computed.
+  /// If set, Broyden's updates may replace computed derivatives as long as the derivatives predict the steps well. A
+  /// descent that ends above this objective computes the derivatives at its end.
   std::optional<double> secant_below = {};
 };
 
@@ -51,18 +51,18 @@ struct Minimum {
 /// evaluator for the points to try, and one for the finite differences. Errors: errors of the evaluator; Cancelled.
 void descend(Residuals& residuals, std::vector<Minimum>& all, const DescentOptions& options);
 
-/// A point to find. Its coordinates in `held` are given; a descent finds the other coordinates.
+/// A point that follow() finds, starting from the point `near`. `to` gives its coordinates in `held`.
 struct Neighbour {
   const Minimum* near;
   std::vector<Eigen::Index> held;
-  Eigen::VectorXd to;  ///< coordinates of the new point; only the coordinates in `held` are used
+  Eigen::VectorXd to;  ///< coordinates of the new point; only those in `held` matter
 };
 
-/// Finds the lowest objective of each neighbour at its held coordinates. The descent begins where the derivatives at
-/// the point `near` predict the minimum.
+/// For each neighbour, minimises the objective over the coordinates that are not held. The descent begins where the
+/// derivatives at the point `near` predict this minimum.
 std::vector<Minimum> follow(Residuals& residuals, const std::vector<Neighbour>& all, const DescentOptions& options);
 
-/// What the derivatives at the point `near` predict for a neighbour: its coordinates, and the sum of squares there.
+/// Predicts a neighbour from the derivatives at the point `near`: its coordinates and its sum of squared residuals.
 std::pair<Eigen::VectorXd, double> predict_step(const Neighbour& neighbour, double scale);
 
 /// True if the derivatives at `from` predict the residuals at `to` well; kBent is the limit.

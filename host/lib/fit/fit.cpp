@@ -43,10 +43,10 @@ double coarse_tolerance(const Model& model) {
 
 bool is_at_bound(double coordinate) { return coordinate < kAtBound || coordinate > 1.0 - kAtBound; }
 
-/// A direction in the space of the coordinates that the data do not determine. Its largest component is 1 or -1.
+/// An undetermined combination of parameters, as a direction in the space of coordinates. Its largest component is +-1.
 struct Direction {
   Eigen::VectorXd along;
-  /// True if no residual changes along this direction. Else residuals change by less than one standard deviation.
+  /// True if no residual changes along the direction. False if residuals change by less than one standard deviation.
   bool is_null = false;
 };
 
@@ -58,7 +58,7 @@ struct Covariance {
 
 Covariance covariance_of(const Minimum& minimum, Loss loss, double scale) {
   constexpr double kNullShare = 1e-4;  // singular values below this share of the largest belong to null directions
-  // A parameter is ignored if residuals change by less than this many standard deviations over its range.
+  // Ignores a parameter whose whole range changes the residuals by less than this many standard deviations.
   constexpr double kLeastDeviations = 1e-3;
   Eigen::MatrixXd jacobian =
       loss_weights(minimum.where.residuals, loss).cwiseSqrt().asDiagonal() * minimum.where.jacobian;
@@ -165,7 +165,7 @@ class Fit {
         profile_(model, fine_tolerance(model), Differences::kForward, evaluator, poll_) {}
 
   std::optional<FitResult> run(double most_aic) {
-    constexpr int kMostRestarts = 4;  // largest number of restarts from lower minima that profiles find
+    constexpr int kMostRestarts = 4;  // a restart begins at a lower minimum that a profile has found
     SearchOptions search{options_.starts, options_.seed, options_.loss, model_.has_uncertainties(), guess_scale()};
     search.count = [this](std::size_t done, std::size_t total) { count(done, total); };
     if (options_.phase) options_.phase("descents of the search");
@@ -189,15 +189,15 @@ class Fit {
     total_ = total;
   }
 
-  /// Degrees of freedom. A model error subtracts no parameters, because they only choose the bracket.
+  /// Degrees of freedom: points minus parameters. With a model error, points, because intervals limit chi^2 itself.
   std::size_t freedom() const {
     return model_.observation_count() - (model_.has_model_error() ? 0 : model_.parameters().size());
   }
 
   bool has_scale() const { return model_.has_uncertainties() || freedom() > 0; }
 
-  /// The scale (rise of the objective one standard deviation from a minimum) as guessed before the search: 1 with
-  /// uncertainties, otherwise the square of a hundredth of the largest measured value.
+  /// A guess of the scale (rise of the objective one standard deviation from a minimum) before the search. It is 1 with
+  /// uncertainties, otherwise (largest measured value / 100)^2.
   double guess_scale() const {
     if (model_.has_uncertainties()) return 1.0;
     double largest = 0.0;
@@ -207,14 +207,14 @@ class Fit {
     return std::pow(std::max(0.01 * largest, fine_.tolerance()), 2);
   }
 
-  /// The scale at a minimum: 1 with uncertainties, otherwise the mean squared residual, at least the squared tolerance.
+  /// The scale at a minimum: 1 with uncertainties, otherwise the mean squared residual, but at least tolerance^2.
   double find_scale(const Minimum& minimum) const {
     if (model_.has_uncertainties()) return 1.0;
     const double mean = freedom() > 0 ? minimum.objective / static_cast<double>(freedom()) : 0.0;
     return std::max(mean, fine_.tolerance() * fine_.tolerance());
   }
 
-  /// The growth of the objective at the ends of an interval with the probability `level`, divided by the scale.
+  /// The growth, (objective - minimum) / scale, at the ends of an interval that has the probability `level`.
   double rise_at(double level) const {
     if (model_.has_uncertainties()) {
       const double freedoms = model_.has_model_error() ? static_cast<double>(freedom()) : 1.0;
@@ -224,7 +224,7 @@ class Fit {
     return std::pow(boost::math::quantile(t, 0.5 * (1.0 + level)), 2);
   }
 
-  /// The covariance matrix. With a model error it is NaN, because residuals are 0 inside of a bracket.
+  /// The covariance matrix. With a model error its elements are NaN: inside of a bracket residuals do not change.
   Covariance find_covariance() const {
     if (!model_.has_model_error()) return covariance_of(minima_.front(), options_.loss, result_.scale);
     const Eigen::Index count = minima_.front().where.at.size();
@@ -250,7 +250,7 @@ class Fit {
     result_.valley_points = {best};
   }
 
-  /// Sets the intervals. False if a profile led to a lower minimum, which is then the first of minima_.
+  /// Sets the intervals. Returns false if a profile found a lower minimum, which is now the first of minima_.
   bool find_intervals(double scale, bool may_restart, bool is_scaled) {
     const std::optional<Profiles> profiles = find_profiles(scale, may_restart);
     if (!profiles) return false;
@@ -286,7 +286,7 @@ class Fit {
     descend(fine_, bottoms, {options_.loss, result_.scale});
     Minimum& bottom = bottoms.front();
     if (!bottom.has_converged || bottom.objective >= minima_.front().objective) return false;
-    // A bottom that is lower by less than one standard deviation is the best minimum, found better. So it replaces it.
+    // If the new minimum is lower by less than one standard deviation, it is a more exact value of the best minimum.
     if (bottom.objective > minima_.front().objective - result_.scale) minima_.erase(minima_.begin());
     minima_.insert(minima_.begin(), std::move(bottom));
     return true;
@@ -319,8 +319,8 @@ class Fit {
     add_criteria();
   }
 
-  /// Names the parameters that the data do not determine. If a direction is not null, one of its parameters must have
-  /// an interval that is open at both ends.
+  /// Describes the undetermined combinations of parameters. Leaves out a combination that changes residuals, unless one
+  /// of its parameters has an interval that is open at both ends.
   void name_degeneracies() {
     result_.determined = covariance_.rank;
     for (const Direction& direction : covariance_.unconstrained) {

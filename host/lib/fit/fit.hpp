@@ -20,13 +20,13 @@ namespace dolp::fit {
 struct FitResult : FitNumbers {
   Eigen::MatrixXd correlation;  ///< NaN for parameters at a bound and for parameters that the data do not determine
   std::optional<double> reduced_chi_square;  ///< empty without degrees of freedom
-  /// Rise of chi_square one standard deviation from a minimum: 1 or, if uncertainties lack, the mean squared residual.
+  /// Rise of chi_square one standard deviation from a minimum: 1 or, without uncertainties, the mean squared residual.
   double scale = 1.0;
   std::size_t determined = 0;          ///< rank of the Jacobian: number of parameters that the data determine
   double numerical_error = 0.0;        ///< largest error bound of the model's values, divided by the uncertainty
   double tolerance = 0.0;              ///< tolerance of the model's values
   std::uint32_t status = 0;            ///< status bits of all points, combined by OR
-  Eigen::VectorXd residuals;           ///< (measured - model) / uncertainty; if uncertainties lack, measured - model
+  Eigen::VectorXd residuals;           ///< (measured - model) / uncertainty; without uncertainties, measured - model
   Eigen::VectorXd predicted;           ///< the model's values
   std::size_t evaluations = 0;         ///< parameter sets for which the model was computed
   std::vector<Minimum> valley_points;  ///< the best minimum, then the computed points of the profile likelihoods
@@ -36,25 +36,25 @@ struct FitResult : FitNumbers {
 
 std::string fit_quality(const std::optional<double>& p_value);
 
-/// Finds the minima of the objective and the intervals of the parameters. For a doubtful or bad fit, it also computes
-/// FitParameter's intervals with larger uncertainties, but only if the AIC is at most `most_aic`. Returns nullopt if no
-/// descent converged. Errors: errors of the evaluator; Cancelled.
+/// Finds the minima of the objective and the intervals of the parameters. If the fit is doubtful or bad and its AIC is
+/// at most `most_aic`, also computes FitParameter::scaled_68 and scaled_95. Returns nullopt if no descent converged.
+/// Errors: errors of the evaluator; Cancelled.
 std::optional<FitResult> fit(const Model& model, ModelEvaluator& evaluator, const FitOptions& options,
                              double most_aic = std::numeric_limits<double>::infinity());
 
-/// How much the objective exceeds its minimum on a grid of two parameters, if all other parameters minimise it.
+/// The objective on a grid over two parameters, minimised over all other parameters.
 struct Contours {
   std::array<std::size_t, 2> parameters{};  ///< positions of the two parameters in FitOptions::vary
   std::array<Eigen::MatrixXd, 2> values;    ///< values of the two parameters at each point of the grid
-  Eigen::MatrixXd growth;       ///< this excess in squared standard deviations; NaN far outside the outer contour
-  std::size_t evaluations = 0;  ///< number of parameter sets that were computed
+  Eigen::MatrixXd growth;                   ///< (objective - its minimum) / scale; NaN far outside the outer contour
+  std::size_t evaluations = 0;              ///< number of parameter sets that were computed
 };
-/// Levels of `growth`. Their contours contain 68.27 % and 95 % of all pairs: chi^2 with two degrees of freedom.
+/// Levels of `growth` for the contours at 68.27 % and 95 %: quantiles of chi^2 with two degrees of freedom.
 inline constexpr std::array kContourLevels = {2.2957, 5.9915};
 
 /// Computes Contours for the two parameters with the largest correlation. Empty if no correlation is known. The grid
 /// lies along the principal axes of their covariance. It spreads from the best minimum until the outer contour is
-/// enclosed. If this needs more parameter sets than the fit, the grid becomes coarser or stays incomplete. Errors:
+/// enclosed. If this needs more parameter sets than the fit used, the grid becomes coarser or stays incomplete. Errors:
 /// errors of the evaluator; Cancelled.
 std::optional<Contours> contours_of(const Model& model, ModelEvaluator& evaluator, const FitResult& result,
                                     const FitOptions& options);

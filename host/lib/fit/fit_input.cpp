@@ -91,7 +91,7 @@ std::vector<std::string> remarks_on(const MeasuredData& data) {
   return remarks;
 }
 
-/// Position of the colon in "FILE:KEY=VALUE". KEY has no slash, space or colon; FILE may have some.
+/// Position of the colon before KEY in "FILE:KEY=VALUE". FILE may have colons too; KEY has no slash, space or colon.
 std::size_t keys_begin(const std::string& argument) {
   for (std::size_t colon = argument.find(':'); colon != std::string::npos; colon = argument.find(':', colon + 1)) {
     const std::string_view rest = std::string_view(argument).substr(colon + 1);
@@ -120,7 +120,7 @@ std::vector<std::string> pieces_of(std::string_view text) {
 
 constexpr const char* kForm = "must be KEY=LOW:HIGH or KEY=LOW:HIGH:START";
 
-/// The keys that a fit may vary: keys of numbers, except in [accuracy], because these do not change the model.
+/// The keys that a fit may vary: all keys of numbers, except keys in [accuracy], which do not change the model.
 std::vector<std::string> number_keys() {
   std::vector<std::string> keys;
   for (const Key& description : dolp::keys()) {

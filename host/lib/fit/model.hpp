@@ -13,14 +13,13 @@
 
 namespace dolp::fit {
 
-/// Checks a range. Errors: InputError that begins with `origin` if the scene does not allow the key, the limits or the
-/// start.
+/// Errors: InputError that begins with `origin` if the scene does not allow the key, the limits or the start.
 void check_range(const FitRange& range, const std::string& origin);
 
 struct Prediction {
-  /// One row per measurement: the predicted observable and 0. For DOLP: the signed Q/I and U/I, so that DOLP is the
-  /// length of the row. With a bracket as model error: the value in the bracket that is nearest to the measured value,
-  /// and 0.
+  /// One row per measurement. The row contains the predicted observable and 0. For DOLP, the row contains Q/I and U/I,
+  /// so that DOLP is its length. With ModelError::kBracket, the first number is instead the value in the bracket that
+  /// is nearest to the measured value, and the second is 0.
   Eigen::MatrixX2d components;
   Eigen::VectorXd error;     ///< bound of the numerical error of each predicted observable
   std::uint32_t status = 0;  ///< status bits of all points, combined by OR
@@ -29,8 +28,7 @@ struct Prediction {
 /// The model at the measurements of all data sets, as a function of the parameters (the keys that the fit varies).
 class Model {
  public:
-  /// Errors: InputError if scene, data and parameters do not fit together, for example if a parameter occurs twice or
-  /// if the scene refuses an end of a range.
+  /// Errors: InputError if scene, data and parameters do not fit together, for example if a parameter occurs twice.
   Model(const SceneValues& scene, std::vector<MeasuredData> data, std::vector<FitRange> parameters,
         ModelError error = ModelError::kNone);
 
@@ -57,9 +55,9 @@ class Model {
     const MeasuredData* data = nullptr;
     Eigen::Index first_row = 0;  ///< row of the first measurement of the data set in Prediction::components
     SceneValues scene;  ///< scene of the data set, at the shortest wavelength in the data if they have wavelengths
-    std::optional<EmissionModel> other_end;  ///< emission model at the bracket's other end; empty without model error
+    std::optional<EmissionModel> other_end;  ///< emission model at the bracket's second end; empty without model error
     std::vector<double> wavelength_um;       ///< wavelengths in the data, ascending; empty if the data have none
-    std::vector<OpticalConstants> indices;   ///< n and k of a tabulated material at each of wavelength_um
+    std::vector<OpticalConstants> indices;   ///< n and k at these wavelengths, if the material is tabulated
   };
 
   void check() const;

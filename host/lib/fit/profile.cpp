@@ -33,7 +33,7 @@ class Side {
   std::size_t parameter() const { return static_cast<std::size_t>(parameter_); }
   const std::vector<ProfilePoint>& points() const { return points_; }
   const std::optional<Minimum>& lower() const { return lower_; }
-  /// The coordinate where the growth meets the rise, or the last coordinate. Empty if the start lies above the rise.
+  /// The coordinate where the growth reaches rises[rise], or the last coordinate. Empty if the start lies above it.
   const std::optional<double>& end(std::size_t rise) const { return ends_[rise]; }
   const Minimum* last_below(std::size_t rise) const {
     const double most = (1.0 + kRootTolerance) * std::sqrt(options_->rises[rise]);
@@ -42,7 +42,7 @@ class Side {
     return last == points_.rend() ? nullptr : &last->found;
   }
 
-  /// The next point to compute for the profile, as a neighbour of the nearest known point.
+  /// The next point of the profile to compute. Its descent begins near the nearest known point.
   Neighbour next() {
     ++tries_;
     distance_ = std::clamp(next_distance(), 0.0, most_);
@@ -56,7 +56,7 @@ class Side {
   }
 
   void add(Minimum found) {
-    // A point that lies below the best minimum by more than this times the scale belongs to another minimum.
+    // If the objective is below the best minimum by more than this share of the scale, there is a lower minimum.
     constexpr double kLowerMinimum = 0.01;
     if (found.objective < least_ - kLowerMinimum * options_->scale) {
       lower_ = std::move(found);
@@ -86,12 +86,12 @@ class Side {
     return std::ranges::find_if(points_, [&](const ProfilePoint& point) { return point.root >= wanted(); });
   }
 
-  /// Sets ends_ for each rise that the profile has met, or cannot meet.
+  /// Sets ends_ for each rise that the growth has reached or cannot reach on this side.
   void settle() {
     for (; !is_done(); ++rise_, tries_ = 0) {
       const PointPosition above = first_above();
       if (above == points_.cbegin()) continue;
-      // A start just below a rise is not an end. So an end must be clearly higher than the start.
+      // The start is no end, even if it lies just below the rise. So an end must be clearly higher than the start.
       const double least = std::min(wanted(), points_.front().root + kRootTolerance * wanted());
       const auto met = std::find_if(points_.cbegin() + 1, points_.cend(), [&](const ProfilePoint& p) {
         return p.root >= least && std::abs(p.root - wanted()) <= kRootTolerance * wanted();
@@ -114,8 +114,8 @@ class Side {
     for (; !is_done(); ++rise_) ends_[rise_] = coordinate(distance);
   }
 
-  /// The distance where a line through two points meets wanted(): the points around it or, if all lie below, the last
-  /// two.
+  /// The distance where a line reaches wanted(). The line goes through the points just below and above wanted() or, if
+  /// no point lies above, through the last two points.
   double next_distance() const {
     if (points_.size() == 1) return first_distance();
     const PointPosition above = first_above();
@@ -132,7 +132,7 @@ class Side {
                        : farthest;
   }
 
-  /// The distance at which the growth meets the rise, according to the derivatives at the start.
+  /// The distance at which the growth reaches the rise, as predicted by the derivatives at the start.
   double first_distance() const {
     const ProfilePoint& first = points_.front();
     Neighbour probe{&first.found, {parameter_}, first.found.where.at};
@@ -165,7 +165,7 @@ void merge(std::vector<Stretch>& all, Stretch stretch) {
   all.insert(std::ranges::find_if(all, [&](const Stretch& other) { return other.low > stretch.low; }), stretch);
 }
 
-/// An end of an interval, as far as the profile of the parameter is known.
+/// An end of an interval, as far as it is known: a search for other branches may move it.
 struct ProfileEnd {
   Eigen::Index parameter;
   std::size_t rise;
@@ -192,7 +192,7 @@ class Profiler {
 
   Profiles run() {
     constexpr int kMostSearches = 4;
-    // Returns points with a growth up to this times the second rise, because contours reach beyond the second rise.
+    // Keeps points with a growth up to this times the 95 % rise: contours need points beyond the intervals.
     constexpr double kKeptRise = 1.6;
     complete(0);
     for (int i = 0; i < kMostSearches && !result_.lower && search_other_branches(); ++i) {
@@ -281,8 +281,8 @@ class Profiler {
     return first < sides_.size();
   }
 
-  /// Where to search beyond an end: from the ends of other sides that no straight path joins to it, and from points of
-  /// other sides that lie beyond the end and clearly below the rise.
+  /// The ways to search beyond an end. One begins at the end of each other side, unless a straight path (is_straight)
+  /// leads from this end to it. Others begin at points of sides that lie beyond the end and clearly below the rise.
   std::vector<Neighbour> ways_beyond(const ProfileEnd& end) const {
     if (result_.stretches.size() == 1) return {};  // the profile of a single parameter has no other branch
     const std::vector<Stretch>& all = result_.stretches[static_cast<std::size_t>(end.parameter)][end.rise];

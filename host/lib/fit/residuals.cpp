@@ -16,7 +16,7 @@ std::array<double, 2> offsets_at(double at, double step) {
   return {inward, has_both_sides ? -step : 2.0 * inward};
 }
 
-/// The derivative at a point: the slope of a line through it and one neighbour, or of a parabola through it and two.
+/// The derivative at a point, from a line (one neighbour) or a parabola (two neighbours) through the values.
 Eigen::MatrixX2d derivative(const Eigen::MatrixX2d& centre, const Prediction* beside, std::size_t count,
                             const std::array<double, 2>& offsets) {
   const auto [a, b] = offsets;
@@ -104,7 +104,7 @@ void Residuals::differentiate(Linearisation& point, Eigen::Index j, const Predic
   const Eigen::MatrixX2d& centre = point.components;
   const Eigen::MatrixX2d slopes = derivative(centre, beside, count, offsets_at(point.at[j], point.steps[j]));
   for (Eigen::Index i = 0; i < slopes.rows(); ++i) {
-    // DOLP is the length of (Q, U)/I. It has a kink where these components change their sign; the components have none.
+    // DOLP is the length of (Q, U)/I and has a kink where Q = U = 0. So computes its slope from slopes of Q/I and U/I.
     const double length = is_length_[static_cast<std::size_t>(i)] ? centre.row(i).norm() : 0.0;
     const double slope = length > 0.0 ? centre.row(i).dot(slopes.row(i)) / length : slopes(i, 0);
     point.jacobian(i, j) = weights_[i] * slope;
@@ -112,14 +112,13 @@ void Residuals::differentiate(Linearisation& point, Eigen::Index j, const Predic
   point.steps[j] = next_step(point.steps[j], point, *beside);
 }
 
-// The error of a central difference with step s has two parts: e/s if the values have the error e, and s^2 F/(6 L^3) if
-// the function has the size F and varies over the length L. The sum is smallest if the step changes the function by
-// (3 e F^2)^(1/3). If the values are far more accurate than an uncertainty, a fifth of an uncertainty is enough.
+// The error of a central difference with step s has two parts. An error e of the model's values contributes e/s. The
+// third derivative contributes s^2 F/(6 L^3) if the values have the size F and vary over the length L. The sum is
+// smallest if the step changes the values by (3 e F^2)^(1/3). A change by kSeenShare of an uncertainty is enough.
 double Residuals::next_step(double step, const Linearisation& point, const Prediction& beside) const {
   const double change = (beside.components - point.components).cwiseAbs().maxCoeff();
   if (!std::isfinite(change) || change <= 0.0) return step;
   const double largest = point.components.cwiseAbs().maxCoeff();
-  // The numerical error counts as at least a thousandth of the tolerance, even if its bound is smaller.
   const double error = std::clamp(beside.error.maxCoeff(), 1e-3 * tolerance_, tolerance_);
   const double balanced = std::cbrt(3.0 * error * largest * largest);
   const double seen = std::max(kSeenShare / weights_.maxCoeff(), kErrorsOfAChange * error);

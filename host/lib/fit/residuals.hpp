@@ -11,7 +11,7 @@ namespace dolp::fit {
 /// The residuals at a point, and their derivatives with respect to its coordinates.
 struct Linearisation {
   Eigen::VectorXd at;  ///< coordinates of the point: 0 to 1 over the range of each parameter
-  /// (model - measured) / uncertainty; if uncertainties lack, model - measured. NaN if the model has no value.
+  /// (model - measured) / uncertainty; without uncertainties, model - measured. NaN if the model has no value.
   Eigen::VectorXd residuals = {};
   Eigen::MatrixXd jacobian = {};     ///< measurements x parameters; empty before it is computed
   Eigen::MatrixX2d components = {};  ///< Prediction::components at the point
@@ -33,15 +33,15 @@ class Residuals {
   double tolerance() const { return tolerance_; }
   std::size_t evaluations() const { return evaluations_; }  ///< number of parameter sets computed so far
 
-  /// Both take one call of the evaluator for all points: at() for the residuals, linearise() for derivatives.
+  /// at() computes residuals, linearise() computes derivatives. Each function computes all points in one batch.
   std::vector<Linearisation> at(const std::vector<Eigen::VectorXd>& points);
   void linearise(const std::vector<Linearisation*>& points);
 
   Eigen::VectorXd values(const Eigen::VectorXd& point) const;
   std::vector<Prediction> predict(const std::vector<Eigen::VectorXd>& points);
-  /// The observables that belong to rows of Prediction::components.
+  /// The predicted observables, from Prediction::components.
   Eigen::VectorXd observed(const Eigen::MatrixX2d& components) const;
-  const Eigen::VectorXd& weights() const { return weights_; }  ///< 1 / uncertainty; 1 if uncertainties lack
+  const Eigen::VectorXd& weights() const { return weights_; }  ///< 1 / uncertainty; 1 without uncertainties
 
  private:
   void differentiate(Linearisation& point, Eigen::Index j, const Prediction* beside, std::size_t count) const;
@@ -53,7 +53,7 @@ class Residuals {
   ModelEvaluator& evaluator_;
   Progress progress_;
   Eigen::VectorXd measured_, weights_;
-  std::vector<bool> is_length_;  ///< true for measurements of DOLP, the length of a row in components
+  std::vector<bool> is_length_;  ///< for each measurement: true for DOLP, which is the length of a row
   std::size_t evaluations_ = 0;
 };
 

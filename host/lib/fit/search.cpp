@@ -69,7 +69,7 @@ double scale_of(const SearchOptions& options, const Minimum& minimum) {
   return minimum.objective / std::max(1.0, freedom);
 }
 
-/// Moves a point perpendicular to `line` to where, by the derivatives, the sum of the squared residuals is smallest.
+/// Moves a point perpendicular to `line`, to the smallest sum of squared residuals that the derivatives predict.
 Eigen::VectorXd on_floor(const Eigen::VectorXd& point, const Eigen::VectorXd& residuals,
                          const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& line) {
   const Eigen::VectorXd along = line.normalized();
@@ -81,7 +81,7 @@ Eigen::VectorXd on_floor(const Eigen::VectorXd& point, const Eigen::VectorXd& re
   return moved.cwiseMax(0.0).cwiseMin(1.0);
 }
 
-/// True if the objective falls from point to point, except for rises of at most `scale` above its lowest value so far.
+/// True if the objective never rises by more than `scale` above its lowest value so far, beginning with `from`.
 bool falls(double from, std::span<const Linearisation> points, Loss loss, double scale) {
   double least = from;
   return std::ranges::all_of(points, [&](const Linearisation& point) {
@@ -92,7 +92,7 @@ bool falls(double from, std::span<const Linearisation> points, Loss loss, double
   });
 }
 
-/// True if the objective falls from one minimum to another along a line, or along the floor of the valley beside it.
+/// True if falls() holds on the line from one minimum to another, or on the floor of the valley beside this line.
 bool leads_down(Residuals& residuals, const Minimum& from, const Minimum& to, const SearchOptions& options) {
   const double scale = scale_of(options, to);
   const Eigen::VectorXd line = to.where.at - from.where.at;
@@ -127,8 +127,8 @@ std::vector<Minimum> distinct(std::vector<Minimum> all, Residuals& residuals, co
   return kept;
 }
 
-/// Descends from several points, a few steps per round, and returns where the descents end. After a round, drops each
-/// descent whose derivatives lead to a point of a lower descent.
+/// Descends from several points, a few steps per round, and returns where the descents end. After each round, drops a
+/// descent if a straight path (is_straight) leads from its point to a lower point of another descent.
 std::vector<Minimum> descend_apart(Residuals& residuals, std::vector<Minimum> starts, const SearchOptions& options,
                                    const DescentOptions& descent) {
   std::vector<Minimum> arrived, passed;

@@ -54,7 +54,7 @@ from ._response import moments, response
 from ._runs import Plan, devices, evaluate, lookup, mueller, plan, table, write_table
 from ._scene import Material, Scene, keys, material, materials
 
-# Omits the exceptions, because `help` would print the methods of their base classes. The text above names them.
+# Omits the exceptions: for each of them `help` would print many inherited methods. The text above names them.
 __all__ = ["Fit", "Material", "Plan", "Scene", "citation", "devices", "evaluate", "fit", "keys", "lookup", "material", "materials",
            "moments", "mueller", "plan", "response", "table", "write_table"]
 __version__ = _native.version()

@@ -110,7 +110,7 @@ def label_values(values: Any) -> Any:
 
 
 def check_names(what: str, given: Iterable[str], known: list[str]) -> None:
-    """Errors: InputError for a name that is not in `known`; the message suggests a similar name."""
+    """Checks that `known` contains all `given` names. Errors: InputError, which suggests a similar name."""
     for name in given:
         if name in known:
             continue
@@ -121,7 +121,7 @@ def check_names(what: str, given: Iterable[str], known: list[str]) -> None:
 
 
 def floats(name: str, values: Any) -> np.ndarray:
-    """Values as floats. Errors: InputError for masked arrays and dates, whose conversion would silently change them."""
+    """Converts values to floats. Errors: InputError for masked arrays and dates, whose meaning floats would lose."""
     if isinstance(values, np.ma.MaskedArray):
         raise InputError(f"{name}: is a masked array, and results have no mask: fill or compress it")
     try:

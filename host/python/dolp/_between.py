@@ -1,4 +1,4 @@
-"""Lookups in a table that has a scene key as an axis, at a number between two of the computed values of this key."""
+"""Lookups in a table with a scene key as an axis. They interpolate between the computed values of this key."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -12,17 +12,17 @@ from ._native import InputError
 
 _MOST = 5  # values of the key that a lookup uses: four give the result, the fifth gives the error estimate
 _LEAST = 3  # with fewer values of the key the error estimate is infinite
-_SAFETY = 16.0  # stated error divided by the change due to the fifth value; equals kInside in core/table
+_SAFETY = 16.0  # error estimate divided by the change of the result due to the fifth value; as kInside in core/table
 _MISSED, _RHO_MISSED = 2, 16  # status bits: DOLP, or rho, misses its tolerance
 _SMOOTH = ("stokes_i", "stokes_q", "stokes_u", "stokes_v", "rho_i", "rho_q", "albedo", "emissivity_s", "emissivity_p",
            "dolp_low", "dolp_high")
 
 
 def between_tables(table: xr.Dataset, key: str, at: Any, look_up: Callable[[xr.Dataset], xr.Dataset]) -> xr.Dataset:
-    """The results at the value `at` of the scene key `key`, a dimension of the table. `look_up` gives the results at
-    the four nearest values of the key, and a polynomial interpolates between these results.
+    """The results at the value `at` of the scene key `key`, a dimension of the table. A polynomial interpolates
+    between the results that `look_up` returns at the four nearest values of the key.
 
-    The error estimate includes `_SAFETY` times the change of the result if a fifth value is used too. Errors:
+    The error estimate includes `_SAFETY` times the change of the result by the fifth nearest value. Errors:
     InputError if `at` is outside the table.
     """
     value = floats(key, at)
@@ -68,7 +68,7 @@ def between_tables(table: xr.Dataset, key: str, at: Any, look_up: Callable[[xr.D
 
 
 def _weights(values: np.ndarray, used: np.ndarray, at: float) -> np.ndarray:
-    """Lagrange weights of the results at `values`, for interpolation at `at`. Zero except at the positions `used`."""
+    """Lagrange weights of `values` for interpolation at `at`. The weight is 0 if a position is not in `used`."""
     weights = np.zeros(len(values))
     for i in used:
         weights[i] = np.prod([(at - values[j]) / (values[i] - values[j]) for j in used if j != i])

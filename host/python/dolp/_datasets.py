@@ -15,7 +15,7 @@ from ._arguments import floats, short
 from ._native import InputError
 from ._points import COORDINATES, KEY_ATTRIBUTES, Frame
 
-# Attribute of a table with scene keys as axes: for each such key a line KEY=[VALUE, ...], the values on its axis.
+# Name of an attribute of tables that have scene keys as axes. It has a line KEY=[VALUE, ...] for each such axis.
 _COMPUTED = "computed_values"
 
 
@@ -61,7 +61,7 @@ def concatenated(tables: list[xr.Dataset], key: str, values: np.ndarray) -> xr.D
     joined.attrs.pop("scene_hash", None)
     computed = _attributes_of(first).get(_COMPUTED)
     _set_attribute(joined, _COMPUTED, "\n".join(filter(None, [computed, f"{key}={values.tolist()}"])))
-    if "scene_overrides" in first.attrs:  # removes the line of `key`, because native_table adds one
+    if "scene_overrides" in first.attrs:  # removes the value of `key`, which native_table sets for each lookup
         before, _, after = f"\n{first.attrs['scene_overrides']}\n".rpartition(f"\n{key}=")
         rest = after.partition("\n")[2]
         joined.attrs["scene_overrides"] = f"{before}\n{rest}".strip("\n")
@@ -71,8 +71,8 @@ def concatenated(tables: list[xr.Dataset], key: str, values: np.ndarray) -> xr.D
 def native_table(table: xr.Dataset) -> _native.Table:
     """Converts a Dataset to a table of the library.
 
-    A scalar coordinate becomes an axis with one value. But if its name is a scene key, the scene gets the value.
-    Dimensions may have any names and order: the coordinate with the name of an axis shows the dimension of this axis.
+    A scalar coordinate becomes an axis with one value or, if its name is a scene key, sets this key of the scene.
+    Dimensions may have any names and order: an axis lies along the dimension of the coordinate with the axis's name.
     """
     attributes = _attributes_of(table)
     overrides = [str(attributes.get("scene_overrides", "")), *_values_of_keys(table, str(attributes.pop(_COMPUTED, "")))]
@@ -104,7 +104,7 @@ def native_table(table: xr.Dataset) -> _native.Table:
 
 
 def _values_of_keys(table: xr.Dataset, computed: str) -> list[str]:
-    """Overrides KEY=VALUE of the scene, one for each coordinate of `table` whose name is a scene key."""
+    """Returns an override KEY=VALUE of the scene for each coordinate of `table` whose name is a scene key."""
     known = {key: json.loads(values) for key, _, values in (line.partition("=") for line in computed.split("\n")) if key}
     overrides = []
     for key in [str(name) for name in table.coords if name in KEY_ATTRIBUTES]:

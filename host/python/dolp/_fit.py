@@ -23,10 +23,10 @@ class Fit:
     """The result of a fit. `print` shows it as a report.
 
     `params`: dictionary of the fitted values; `fit[key]` is one of them.
-    `stderr`: dictionary of the standard errors of these values. An error is None if the parameter is at a bound, if the
-    error would reach beyond the range, or if the data do not determine the parameter. Then `why_no_error` in the
-    parameter's entry of values["parameters"] gives the reason. If a parameter is at its bound, the errors of the other
-    parameters assume that it stays there.
+    `stderr`: dictionary of the standard errors of these values. A parameter has no standard error (None) if it is at a
+    bound, if its error would reach beyond its range, or if the data do not determine it. `why_no_error` in the
+    parameter's entry of values["parameters"] gives the reason. The standard errors of other parameters assume that
+    parameters at a bound stay there.
     `covariance`: matrix in the order of `params`; NaN for a parameter without a standard error.
     `scene`: the scene with the fitted values, and with the best of the models that the argument `compare` asks for.
     `fit_quality`: "good", "doubtful" (p < 0.05), "bad" (p < 0.001), or None without a p-value.
@@ -53,8 +53,8 @@ class Fit:
 
     def conf_interval(self, level: float = 0.95, *, scaled: bool = False) -> dict[str, tuple[float | None, float | None] | None]:
         """Confidence intervals at a level of 0.68 or 0.95. An end is None if the data do not limit the parameter there.
-        An interval is None if the data exclude all values. `scaled`: if the fit is doubtful or bad, the intervals are
-        for uncertainties that are larger by the factor sqrt(reduced chi^2).
+        An interval is None if the data exclude all values. `scaled`: in a doubtful or bad fit, multiplies all
+        uncertainties by sqrt(reduced chi^2).
         """
         if level not in (0.68, 0.95):
             raise InputError(f"level = {level}: must be 0.68 or 0.95")
@@ -87,7 +87,7 @@ class Fit:
         return axes
 
     def _model(self, name: str, quantity: str, points: dict[str, Any]) -> tuple[xr.DataArray, tuple[Any, Any] | None]:
-        """Values of the fitted model for a data set, and both ends of the bracket, or None if the scene allows none."""
+        """Values of the fitted model for a data set, and both ends of its bracket (None if there is no bracket)."""
         scene = self.scene.with_(self._overrides[name])
         try:
             own = evaluate(scene.with_({"emission.bracket": True}), evaluator="cpu", **points)

@@ -30,10 +30,10 @@ class Frame(NamedTuple):
 
 def columns_of(points: Mapping[str, Array], labels: Mapping[str, list[str]] = {},
                has_keys: bool = False) -> tuple[Frame, dict[str, np.ndarray]]:
-    """Returns the shape, dimensions and coordinates to which the arrays of `points` broadcast, and the columns for the
-    library. A column has one value for all points, or one value per point.
+    """Broadcasts the arrays of `points`. Returns the shape, dimensions and coordinates of the result, and the points as
+    columns for the library. A column has one value for all points, or one value per point.
 
-    `labels`: the known names of materials and bands. Instead of names, the columns have positions in these lists.
+    `labels`: the known names of materials and bands. Columns have positions in these lists instead of names.
     """
     check_names("points", [name for name in points if not (has_keys and "." in name)], list(COORDINATES))
     points = {name: _positions(name, values, labels[name]) if name in labels else values
@@ -71,7 +71,7 @@ def columns_of(points: Mapping[str, Array], labels: Mapping[str, list[str]] = {}
 
 
 def _positions(name: str, values: Any, labels: list[str]) -> Any:
-    """The position of each value in `labels`. A value is a whole label, or a part that only one label contains."""
+    """The position in `labels` of each value. A value is a label, or a part of a label that no other label has."""
     def position(value: Any) -> float:
         wanted = str(value).casefold()
         alike = [i for i, label in enumerate(labels) if wanted in label.casefold()]
@@ -89,7 +89,7 @@ def _positions(name: str, values: Any, labels: list[str]) -> Any:
 
 def _dimensions(points: Mapping[str, np.ndarray],
                 shape: tuple[int, ...]) -> tuple[tuple[str, ...], dict[str, xr.Variable]]:
-    """Names of the dimensions. Also coordinates, for each dimension along which only one column of points varies."""
+    """Names and coordinates of the dimensions. Only dimensions along which a single column varies have coordinates."""
     dims, coordinates = [], {}
     for axis, size in enumerate(shape):
         along = [column for column, values in points.items()

@@ -18,10 +18,10 @@ def response(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **axe
     """The response table over the scene's grid, from which `moments` gets the reflectances of any material. The Dataset
     has the contents of the table's file.
 
-    `axes` (theta_deg, sigma or wind_m_s, q) replace axes of the scene. The dimension beta has angles of incidence on
-    a facet. response_i and response_q are the weights of a smooth surface's reflectances at these angles. With masking
-    smith or v-cavity, emission_i and emission_q are the weights for direct emission. albedo and response_error lack the
-    dimension beta. `long_name` describes each variable. Material, wavelength and radiation of the scene do not matter.
+    `axes` (theta_deg, sigma or wind_m_s, q) replace axes of the scene. Material, wavelength and radiation of the scene
+    do not matter. The dimension beta has angles of incidence on a facet. response_i and response_q are weights at these
+    angles, by which you multiply the reflectances of a smooth surface. With masking smith or v-cavity, emission_i and
+    emission_q are weights for direct emission. albedo and response_error do not depend on beta.
 
     >>> r = dolp.response(scene, theta_deg=[0, 60], sigma=[0.1, 0.2])
     >>> r.response_i.dims, bool(abs(r.response_i.sum("beta") - r.albedo).max() < 1e-12)
@@ -42,13 +42,13 @@ def response(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **axe
 
 def moments(response: xr.Dataset, *, n: Array | None = None, k: Array = 0.0, r_s: xr.DataArray | None = None,
             r_p: xr.DataArray | None = None) -> xr.Dataset:
-    """rho_i, rho_q, albedo and rho_error of materials, for k_s = 1 without a diffuse part, from a response table or a
-    part of one.
+    """Computes rho_i, rho_q, albedo and rho_error of materials from a response table or a part of one. The specular
+    weight k_s is 1, and there is no diffuse part.
 
-    A material is given by n and k, as for `evaluate`, or by the reflectances r_s and r_p of its smooth surface. r_s and
-    r_p are DataArrays over the response's beta and may have more dimensions. rho_error is a bound of the errors of
-    rho_i and rho_q. A response table replaces the reflectances by polynomials through their values at beta. If you give
-    n and k, rho_error includes the error due to these polynomials, from 256 angles. Otherwise you must add this error.
+    Give n and k of the materials, as for `evaluate`, or the reflectances r_s and r_p of smooth surfaces. r_s and r_p
+    are DataArrays over the response's beta and may have more dimensions. rho_error is a bound of the errors of rho_i
+    and rho_q. The calculation replaces the reflectances by polynomials through their values at beta. If you give n and
+    k, rho_error includes the error of these polynomials at 256 angles. Otherwise you must add this error yourself.
 
     >>> r = dolp.response(scene, theta_deg=60)
     >>> m = dolp.moments(r, n=[1.3, 1.5, 4], k=0.05)
@@ -97,14 +97,14 @@ def _coefficients(beta: xr.DataArray) -> xr.DataArray:
 
 
 def _size(mean: xr.DataArray, half: xr.DataArray) -> xr.DataArray:
-    """Factor on response_error: the largest 2^m |a_m|, with the Chebyshev coefficients a_m of both `curves`."""
+    """The factor for response_error. It is the largest 2^m |a_m|, where a_m are Chebyshev coefficients of a curve."""
     growth = xr.DataArray(2.0 ** np.arange(mean.sizes["beta"]), dims="m")
     curves = mean, half / np.sin(np.deg2rad(mean.beta)) ** 2
     return np.maximum(*((growth * abs(curve.dot(_coefficients(mean.beta), "beta"))).max("m") for curve in curves))
 
 
 def _distance(response: xr.Dataset, index: xr.DataArray, r_s: xr.DataArray, r_p: xr.DataArray) -> xr.DataArray:
-    """Largest distance, over _ANGLES angles, of (r_s + r_p) / 2 and (r_s - r_p) / 2 from interpolation in beta."""
+    """Largest error, at _ANGLES angles, if polynomials in beta replace (r_s + r_p) / 2 and (r_s - r_p) / 2."""
     beta, c0 = response.beta, float(response.attrs["c0"])
     x = np.polynomial.chebyshev.chebpts1(_ANGLES)
     cosine = xr.DataArray(c0 * np.sinh(0.5 * (1 + x) * np.arcsinh(1 / c0)), dims="angle")

@@ -79,8 +79,8 @@ def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_
     `points` (theta_deg, sigma or wind_m_s, q, wavelength_um, n, k): arrays of the same shape are combined value by
     value, unlike the axes of `table`. Numbers that you do not give come from the scene. A complex n gives n and k. Any
     other number of the scene can be given too, with its key as the name; each of its values is a separate run.
-    DataArrays keep their dimensions and coordinates. If an array that is no DataArray is the only one along a
-    dimension, it names this dimension (theta, sigma, q, n, k or wavelength, as in tables) and is its coordinate.
+    DataArrays keep their dimensions and coordinates. Without DataArrays, a dimension along which only one array varies
+    gets the name (theta, sigma, q, n, k or wavelength, as in tables) and the values of this array.
 
     >>> float(dolp.evaluate(scene, theta_deg=40).dolp.round(4))
     0.0295
@@ -108,12 +108,12 @@ def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_
 def lookup(table: Path | xr.Dataset, **points: Array) -> xr.Dataset:
     """Values between the entries of a table. Their error estimates include the error of interpolation.
 
-    `table`: a file, or a Dataset from `table` or from such a file, or a part of a Dataset. A part may have fewer values
-    of an axis, such as `t.sel(k=0.1)`, and fewer variables, but must have dolp, the Stokes parameters, error_estimate,
-    status and the attribute `scene`. Dimensions may have any names and order, for example after
-    `t.swap_dims(sigma="wind_m_s")`. Axes with values that were not computed, such as after `t.interp(theta=33)`, give
-    an InputError. The attribute values_hash belongs to the whole table; a lookup checks it in a file, but not in a
-    Dataset. If a file has only a part of a table, read it by `xarray.load_dataset`.
+    `table`: the file of a table, or a Dataset with a table or a part of one. A part may have fewer values of an axis,
+    such as `t.sel(k=0.1)`, and fewer variables. It must have dolp, the Stokes parameters, error_estimate, status and
+    the attribute `scene`. Dimensions may have any names and order, for example after `t.swap_dims(sigma="wind_m_s")`.
+    Axis values that were not computed, such as after `t.interp(theta=33)`, give an InputError. A lookup in a file
+    compares its values with its attribute values_hash, the hash of the whole table. A lookup in a Dataset does not: so
+    read a file with a part of a table by `xarray.load_dataset`.
     `points`: as for `evaluate`. You can leave out an axis of the table that has only one value.
     The file of the last lookup stays in memory. A Dataset is copied in each call.
 
@@ -204,7 +204,7 @@ def native_scene(scene: Scene) -> _native.Scene:
 
 
 def with_axes(scene: Scene, axes: Mapping[str, Array]) -> _native.Scene:
-    """The scene with `axes` in place of axes of its grid. The names in `axes` are column names, such as theta_deg."""
+    """Replaces axes of the scene's grid by `axes`. The names in `axes` are column names, such as theta_deg."""
     native = native_scene(scene)
     check_names("axes", axes, [column for column, *_ in _native.axes()])
     return native.with_([(f"grid.{axis}", label_values(values) if axis in native.labels() else axis_values(axis, values))
@@ -228,8 +228,8 @@ def _check_varied(what: str, keys: Iterable[str], columns: Iterable[str]) -> Non
 
 def _over_keys(run: Callable[..., _native.Parts], scene: _native.Scene, columns: dict[str, np.ndarray],
                varied: dict[str, np.ndarray]) -> _native.Parts:
-    """The results of points at which the scene keys in `varied` have several values. Each combination of these values
-    is one run. The results have the attributes that are equal in all runs."""
+    """Computes points that have different values of the scene keys in `varied`. Each combination of these values takes
+    one run. The results keep only attributes that are equal in all runs."""
     different, which = np.unique(np.stack(np.broadcast_arrays(*varied.values()), axis=-1), axis=0, return_inverse=True)
     size = max(values.size for values in (*columns.values(), *varied.values()))
     which = np.broadcast_to(which.ravel(), size)

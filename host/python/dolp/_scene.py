@@ -15,10 +15,10 @@ from ._native import InputError
 class Scene:
     """A surface, its radiation and surroundings, and the accuracy of results, from a scene file or from its text.
 
-    Parameters: a path or `text`, and `overrides`, a dict with values for any keys. None removes a key or a whole
-    table of keys; so does "none" for a key without words as values. A complex surface.n gives n and k. `scene[key]` is
-    the value of a key, or None if the scene has no value. You can copy and pickle a scene and send it to another
-    process. That process reads the files that the scene names from the same paths.
+    Parameters: a path or `text`, and `overrides`, a dict with values for any keys. The value None removes a key or a
+    whole table of keys. The text "none" also removes it, unless words are allowed values of the key. A complex
+    surface.n gives n and k. `scene[key]` is the value of a key, or None if the scene has no value. You can copy and
+    pickle a scene and send it to another process, which reads the files of the scene from the same paths.
 
     >>> smooth = dolp.Scene(scene, {"surface.sigma": 0.01, "title": "a mirror", "surface.n": 1.5 + 0.1j})
     >>> smooth.title, smooth["surface.k"], smooth["surface.masking"], smooth["grid.q"], smooth["path.radiance"]

@@ -6,8 +6,8 @@
 namespace dolp::fit {
 namespace {
 
-/// For each place (values of two parameters), how much the smallest chi^2 over the third parameter exceeds chi^2 of the
-/// fit. Scans the range of the third parameter, then smaller and smaller ranges around its best value.
+/// For each place (values of two parameters), minimises chi^2 over the third parameter and subtracts chi^2 of the fit.
+/// Scans the range of the third parameter, then smaller and smaller ranges around its best value.
 std::vector<double> brute_growth(Residuals& residuals, const FitResult& result, const std::array<std::size_t, 2>& pair,
                                  const std::vector<Eigen::Vector2d>& places) {
   constexpr int kSteps = 40;
@@ -37,7 +37,7 @@ std::vector<double> brute_growth(Residuals& residuals, const FitResult& result, 
 
 class FitContours : public FitTest {
  protected:
-  /// Compares contours of n, k and sigma with brute_growth. `off` is the tolerance of sqrt(growth of chi^2).
+  /// Fits n, k and sigma, and compares the contours with brute_growth. `off` is the tolerance of sqrt(growth of chi^2).
   void expect_true(int points, std::uint64_t seed, double off) {
     const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0), number("surface.k", 0.0, 5.0),
                                               number("surface.sigma", 0.02, 1.0)};
@@ -64,7 +64,7 @@ class FitContours : public FitTest {
     const std::vector<double> right = brute_growth(residuals, result, pair, places);
     for (std::size_t i = 0; i < places.size(); ++i)
       EXPECT_NEAR(roots[i], std::sqrt(std::max(0.0, right[i])), off) << places[i].transpose();
-    // Outside the contours chi^2 must not be far below the level of the outer contour.
+    // Outside the box around the contours, the growth must not be far below the level of the outer contour.
     places.clear();
     for (int i = 0; i < 225; ++i) places.emplace_back(i % 15 / 14.0, i / 15 / 14.0);
     const std::vector<double> growths = brute_growth(residuals, result, pair, places);
@@ -76,7 +76,7 @@ class FitContours : public FitTest {
   }
 };
 
-// The tolerance is 0.1: residuals are not linear between grid nodes, and descents stop before they reach the minimum.
+// The tolerance is 0.1, because residuals are not linear between grid nodes, and descents stop before the minimum.
 TEST_F(FitContours, EightPoints_AreWhereTheLeastOfTheThirdParameterSays) { expect_true(8, 7, 0.1); }
 
 // The tolerance is larger: four points cannot distinguish n, k and sigma. So the valley of chi^2 is bent.

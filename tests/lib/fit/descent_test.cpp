@@ -4,9 +4,8 @@
 namespace dolp::fit {
 namespace {
 
-// predict_step fixes a parameter at its bound if the step would cross the bound. Least squares determine the step of
-// the others. The returned step leads fixed parameters only half of the way to the bound. kScale is so small that it
-// damps no step.
+// If a step would cross the bound of a parameter, predict_step puts this parameter on the bound and computes the other
+// parameters again by least squares. It returns only half of the step to the bound. The tiny kScale damps no step.
 TEST(PredictStep, ParametersLeaveTheBounds_OthersAreSolvedAgain) {
   constexpr double kScale = 1e-14;
   constexpr double kRounding = 1e-6;  // rounding error of normal equations with almost parallel columns

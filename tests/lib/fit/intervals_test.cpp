@@ -5,7 +5,7 @@ namespace dolp::fit {
 namespace {
 
 TEST_F(FitTest, LinearParameter_IntervalsAreThoseOfTheCovariance) {
-  // rho is linear in k_s. Emission from a surface as warm as the surroundings keeps Q/I nearly linear, too.
+  // rho is linear in k_s, and Q/I is nearly linear, because I changes little with k_s.
   const FitResult result =
       fitted(measured(kNoise), {number("surface.specular", 0.2, 1.0)}, {}, {"surface.specular=0.6"});
   const FitParameter& one = result.parameters.front();
@@ -28,8 +28,8 @@ TEST_F(FitTest, IntervalEnds_LieWhereTheBestOfTheOthersHasGrownSo) {
       ASSERT_TRUE(end.has_value());
       const FitResult held =
           fitted(data, {number("surface.n", 1.1, 4.0)}, {}, {"surface.sigma=" + std::to_string(*end)});
-      // The end of an interval has an error of 0.5 % of sqrt(growth), so 1 % of the growth, which is the increase of
-      // chi^2 above its minimum. to_string has six digits.
+      // At an end, sqrt(growth) has an error of up to 0.5 %, so the growth of chi^2 has 1 %. The tolerance is 1.5 %,
+      // because to_string writes only six digits.
       EXPECT_NEAR(held.chi_square - result.chi_square, is_95 ? 3.841 : 1.0, 0.015 * (is_95 ? 3.841 : 1.0));
     }
   }
@@ -44,7 +44,7 @@ TEST_F(FitTest, DoubtfulFit_ScaledIntervalsAreThoseOfLargerUncertainties) {
   for (Measurement& one : data.measurements) *one.uncertainty *= std::sqrt(*result.reduced_chi_square);
   const FitResult wider = fitted(data, parameters);
   EXPECT_EQ(fit_quality(wider.p_value), "good");
-  // Tolerance as a share of the half-width: each end has an error of 0.5 % of sqrt(growth of chi^2).
+  // Tolerance of an end, as a share of its distance from the best value. Ends have errors of 0.5 % of sqrt(growth).
   constexpr double kRoot = 0.02;
   for (std::size_t j = 0; j < 2; ++j) {
     const FitParameter &one = result.parameters[j], &other = wider.parameters[j];
@@ -58,8 +58,8 @@ TEST_F(FitTest, DoubtfulFit_ScaledIntervalsAreThoseOfLargerUncertainties) {
   }
 }
 
-// For each k below the minimum, chi^2 has two minima in n: one at the bound of n, and a lower one inside the range. If
-// intervals followed only the minimum at the bound, they would miss most of the interval of k.
+// For each k below its best value, chi^2 has two minima in n: one at the bound of n, and a lower one inside the range.
+// If intervals followed only the minimum at the bound, they would miss most of the interval of k.
 TEST_F(FitTest, MinimumAtABound_IntervalHasTheOtherBranch) {
   MeasuredData data;
   data.name = "paint";

@@ -4,7 +4,7 @@
 namespace dolp::fit {
 namespace {
 
-constexpr double kQuantile68 = 22.436339987;  // 68 % and 95 % quantiles of chi^2 with 20 degrees of freedom
+constexpr double kQuantile68 = 22.436339987;  // 68.27 % and 95 % quantiles of chi^2 for 20 degrees of freedom
 constexpr double kQuantile95 = 31.410432844;
 
 // Some data lie between both ends of the bracket, where the residual is 0. Others lie outside, where the residual is
@@ -36,7 +36,7 @@ TEST_F(FitTest, ModelErrorOfTheBracket_ResidualIsTheDistanceFromTheInterval) {
   }
 }
 
-// At the ends of n's interval, chi^2 minimised over sigma is a quantile of its distribution with 20 degrees of freedom.
+// At the ends of n's intervals, chi^2 minimised over sigma equals the quantile for 20 degrees of freedom.
 TEST_F(FitTest, ModelErrorOfTheBracket_IntervalsEndAtTheQuantileOfChiSquared) {
   const SceneValues scene = parse_scene(kScene, "scene");
   const FitRange sigma = number("surface.sigma", 0.05, 0.5);
@@ -68,8 +68,8 @@ TEST_F(FitTest, ModelErrorOfTheBracket_IntervalsEndAtTheQuantileOfChiSquared) {
                InputError);
 }
 
-// The data are far from both ends of the bracket, so no value of n is consistent with them. If the fit scales the
-// uncertainties to the scatter of the data, some values of n are.
+// Every second measured value is far outside the bracket, so no value of n agrees with the data. If the uncertainties
+// are scaled to the scatter of the data, some values of n agree.
 TEST_F(FitTest, ModelErrorOfTheBracket_ThatExplainsNothing_LeavesEmptyIntervals) {
   MeasuredData data = measured(0.0);
   for (std::size_t i = 0; i < 20; i += 2) data.measurements[i].value += 20.0 * kNoise;

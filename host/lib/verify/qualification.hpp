@@ -40,8 +40,7 @@ struct ErrorCheck {
   double error = 0.0;      ///< distance to the reference
   double estimate = 0.0;   ///< bound that the result states; infinite if it states none
   double reference = 0.0;  ///< bound of the error of the reference, in the unit of `error`
-  /// Above 1, the stated bound is wrong: (error - reference) / estimate. If reference > error: min(1, error /
-  /// estimate).
+  /// (error - reference) / estimate; above 1, the stated bound is wrong. At most 1 if reference > error.
   double ratio() const;
   bool is_within_estimate() const { return ratio() <= 1.0; }
   bool is_above(double tolerance) const { return error > tolerance + reference; }

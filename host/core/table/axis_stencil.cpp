@@ -56,8 +56,7 @@ Stencil LookupAxis::stencil(const Location& location, std::size_t count, int shi
   if (location.is_value) return {location.next, 1, {1.0}};
   const auto size = static_cast<std::ptrdiff_t>(values_.size());
   const auto wanted = std::min(static_cast<std::ptrdiff_t>(count), size);
-  const auto next =
-      static_cast<std::ptrdiff_t>(location.next);  // the value lies between values_[next - 1] and values_[next]
+  const auto next = static_cast<std::ptrdiff_t>(location.next);  // values_[next - 1] < the value < values_[next]
   const std::ptrdiff_t centred = std::clamp<std::ptrdiff_t>(next - wanted / 2, 0, size - wanted);
   const std::ptrdiff_t first = std::clamp<std::ptrdiff_t>(
       std::clamp<std::ptrdiff_t>(centred + shift, next + 1 - wanted, next - 1), 0, size - wanted);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr auto kTheta = static_cast<std::size_t>(Axis::kTheta);
 constexpr auto kQ = static_cast<std::size_t>(Axis::kQ);
-// Number of values that an interpolation reads on each axis. The first two axes have labels: a point is at a value.
+// Number of values that an interpolation reads on each axis. The first two axes have labels and are not interpolated.
 constexpr std::array<std::size_t, kAxisCount> kWindow = {2, 2, 4, 4, 4, 4, 6, 6, 6};
 constexpr std::size_t kMostRows =
     std::size_t{4} * 4 * 4 * 4 * 6 * 6;  // most rows that an interpolation reads; a row has the entries along q
@@ -29,13 +29,13 @@ constexpr std::size_t kLeastValues = 4;  // an axis with fewer values gives no r
 // bistatic lookups, 147 err by more than stated at half of both factors, 2 at these values, 0 at double.
 constexpr double kInside = 16.0;
 constexpr double kAtEnds = 37.0;
-// Tuned. The change may be small by chance. So kFastestFall times the change with one value fewer is its least size
-// and, on a short axis, also kFastestFallOfTwo times the change with two values fewer. Of these lookups, 44 err by more
-// than stated at half of both factors, 2 at these values, 0 at double.
+// Tuned. The change may be small by chance. So it counts as at least kFastestFall times the change with one value fewer
+// and, on a short axis, as at least kFastestFallOfTwo times the change with two values fewer. Of these lookups, 44 err
+// by more than stated at half of both factors, 2 at these values, 0 at double.
 constexpr double kFastestFall = 0.2;
 constexpr double kFastestFallOfTwo = 0.25;
 // Tuned. A kink of the masking adds to the estimate this factor times the interpolation error of a ramp that begins at
-// the kink. Of these lookups, 38, 4, 2 and 2 err by more than stated at 0, half, this value and double.
+// the kink. Of these lookups, 38, 4, 2 and 2 err by more than stated with the factors 0, 1, 2 and 4.
 constexpr double kKinkMargin = 2.0;
 
 using enum Quantity;
@@ -181,7 +181,7 @@ struct TableLookup::Rows {
     for (std::size_t k = 0; k < q.count; ++k) along[k] = lookup.position(kQ, q.first + k);
   }
 
-  /// Sum over the read entries of weight * value(position of the entry). `kOfSizes` takes |weight| instead of weight.
+  /// Sum over the read entries of weight * value(position of the entry). With `kOfSizes`, |weight| replaces weight.
   template <bool kOfSizes = false, class Value>
   double sum(const Value& value) const {
     bool is_dense = true;  // true if the values of a row are neighbours in memory
@@ -242,9 +242,8 @@ struct TableLookup::Lines {
   static constexpr std::size_t kMostValues = kMostStencil + 1;
   boost::container::static_vector<Change, kMostChanges> changes;
   std::array<std::array<double, kMostChanges>, kMostValues>
-      factors{};  ///< change j is the sum of factors[i][j] times value i of a line
-  std::array<std::size_t, kMostValues>
-      along{};  ///< position of each value of a line, relative to its element of `begin`
+      factors{};                                 ///< change j is the sum of factors[i][j] times value i of a line
+  std::array<std::size_t, kMostValues> along{};  ///< table offset of each value from the start of a line
   std::size_t count = 0;
   Window::Corners begin;
   double factor = 1.0;  ///< error divided by change; includes the absolute weights of the other axes

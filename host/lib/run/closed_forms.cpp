@@ -40,8 +40,7 @@ double critical_angle(const FacetOptics& optics) {
 }
 
 constexpr double kHorizon_deg = 90.0;
-constexpr double kMirrorSpread_deg =
-    2.0 * kMirrorSlope * 180.0 / std::numbers::pi;  // deflection of a ray by this slope
+constexpr double kMirrorSpread_deg = 2.0 * kMirrorSlope * 180.0 / std::numbers::pi;  // deflection of the rays
 
 /// Adds r_i and r_q times each function of the sky at the zenith of the reflected rays, `zenith_deg` +- `spread_deg`.
 void add_sky(Moments& moments, const SkyBasis& sky, double zenith_deg, double spread_deg) {

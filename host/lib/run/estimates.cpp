@@ -66,7 +66,7 @@ struct Sample {
 
 Sample sample_of(const SceneValues& scene, const SceneEntries& entries) {
   Sample sample{scene, spread_entries(entries), {1.0}};
-  // Float is enough for an estimate. In double, entries that miss the tolerance would take longer than the table.
+  // Float is enough for an estimate. In double, entries that cannot meet the tolerance would cost more than the table.
   sample.scene.accuracy = {.tolerance = kTolerance, .precision = Precision::kFloat};
   if (sample.scene.emission) sample.scene.emission->has_bracket = false;
   if (spectral_samples(scene, entries) <= kBandWavelengths) return sample;

@@ -95,8 +95,8 @@ class PartRequests {
 };
 
 /// The responses (moments with polynomials instead of reflectances) from which a run combines the moments of many
-/// indices. A run of a part of a grid uses those of the whole grid. Null if responses would save nothing, for example
-/// with few indices or if several bounces count.
+/// indices. A run of a part of a grid uses the responses of the whole grid. Null if responses would save nothing, for
+/// example with few indices or if several bounces count.
 std::shared_ptr<const ResponseBasis> run_basis(const SceneValues& scene, const SceneEntries& entries,
                                                const EffectPlan& plan);
 

@@ -29,7 +29,7 @@ MomentsRequest response_request(const Surface& surface);
 
 /// Distance between weights a and b of an entry, which response_error bounds if b is exact. Equation: the sum over m of
 /// 2^-m |sum over j of T_m(x_j) f_j (a_j - b_j)|, with Chebyshev polynomials T_m at the positions x_j of the angles
-/// beta_j. For response_q (`is_of_q`), f_j is sin^2(beta_j); otherwise it is 1.
+/// beta_j. With `is_of_q` (weights of Q), f_j is sin^2(beta_j); otherwise it is 1.
 double response_distance(std::span<const double> a, std::span<const double> b, bool is_of_q);
 
 struct ResponseOutcome {

@@ -74,7 +74,7 @@ double normal_reflectance(const OpticalConstants& index) {
 }
 
 /// Finds the row with the largest `change`. Compares R of a row with R on the line between the neighbouring rows. A
-/// quarter of the difference is the error, because neighbours are twice as far apart as successive rows.
+/// quarter of the difference estimates the error, because neighbours are twice as far apart as successive rows.
 CoarseRows coarsest_rows(const Material& material, const std::vector<Interval>& used) {
   CoarseRows worst;
   const std::vector<double>& um = material.n.wavelength_um;

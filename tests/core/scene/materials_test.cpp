@@ -69,8 +69,7 @@ TEST(Material_BuiltIn, IsLinearBetweenTheRowsOfTheFile) {
 }
 
 TEST(Material_BuiltIn, IsWithinTheThinningOfTheWholeRecord) {
-  constexpr double kThinning =
-      1e-3;  // largest error of thinned tables, relative to |n + i k|; see host/data/materials.csv
+  constexpr double kThinning = 1e-3;  // largest error of thinned tables, over |n + ik|; see host/data/materials.csv
   struct Case {
     const char* name;
     double n, k;

@@ -8,7 +8,7 @@
 namespace dolp {
 namespace {
 
-// Two values with a smaller relative difference count as equal, because one may have been typed with fewer digits.
+// Values with a smaller relative difference count as equal, such as 0.3 and the computed axis value 0.1 + 0.2.
 constexpr double kSame = 4.0 * std::numeric_limits<double>::epsilon();
 
 bool is_same(double a, double b) { return std::abs(a - b) <= kSame * std::max(std::abs(a), std::abs(b)); }
@@ -56,13 +56,13 @@ Stencil LookupAxis::stencil(const Location& location, std::size_t count, int shi
   if (location.is_value) return {location.next, 1, {1.0}};
   const auto size = static_cast<std::ptrdiff_t>(values_.size());
   const auto wanted = std::min(static_cast<std::ptrdiff_t>(count), size);
-  const auto next = static_cast<std::ptrdiff_t>(location.next);  // values_[next - 1] < value < values_[next]
+  const auto next = static_cast<std::ptrdiff_t>(location.next);  // values_[next - 1] < the value < values_[next]
   const std::ptrdiff_t centred = std::clamp<std::ptrdiff_t>(next - wanted / 2, 0, size - wanted);
   const std::ptrdiff_t first = std::clamp<std::ptrdiff_t>(
       std::clamp<std::ptrdiff_t>(centred + shift, next + 1 - wanted, next - 1), 0, size - wanted);
   Stencil stencil{static_cast<std::size_t>(first), static_cast<std::size_t>(wanted), {}};
   const std::array<double, kMostStencil>& factors = factors_[stencil.count][stencil.first];
-  // The weight of value i is factors[i] times the distances of the location from all other values.
+  // Weight of value i: factors[i] times the product over the other values of the stencil of (location - value).
   double before = 1.0;
   for (std::size_t i = 0; i < stencil.count; ++i) {
     stencil.weights[i] = before * factors[i];

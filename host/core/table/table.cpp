@@ -109,7 +109,7 @@ ResultColumns columns_of(std::span<const PointResult> results, const Quantities&
 
 std::vector<TableBox> boxes_in_order(const PerAxis& counts, std::size_t most) {
   if (size_of(counts) == 0) return {};
-  // A box has all values of the fastest axes, some values of the next axis, and a single value of each slower axis.
+  // A box has all values of the last axes, some values of one axis before them, and one value of each earlier axis.
   std::size_t cut = counts.size() - 1;
   std::size_t of_one = 1;
   while (cut > 0 && of_one * counts[cut] <= most) of_one *= counts[cut--];
@@ -165,7 +165,7 @@ std::string values_hash(const TableLayout& layout, const ValueSums& sums) {
   std::uint64_t hash = kHashStart;
   for (const Axis axis : kAllAxes) {
     const std::vector<double>& values = head.axes[axis];
-    if (description_of(axis).has_labels) {  // hashes texts, because a part of a table numbers labels differently
+    if (description_of(axis).has_labels) {  // hashes texts: a label may have another number in a part of a table
       for (const double value : values) hash = hashed(hashed(hash, head.label(axis, value)), std::uint64_t{0});
     } else if (axis != Axis::kTemperature || !values.empty()) {  // an absent temperature axis is not hashed
       hash = hashed(hash, std::span(values));

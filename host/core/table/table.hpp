@@ -15,7 +15,7 @@ namespace dolp {
 
 inline constexpr std::size_t kMostTableEntries = std::size_t{1} << 36U;
 
-/// Name and value of the attribute with the conventions that table files follow.
+/// Name and value of the attribute that names the metadata conventions of table files.
 inline constexpr const char* kConventions = "Conventions";
 inline constexpr const char* kConventionsOfFiles = "CF-1.8";
 
@@ -33,10 +33,10 @@ const Content* find_attribute(const TableHead& head, std::string_view name) {
   return found == head.attributes.end() ? nullptr : std::get_if<Content>(&found->value);
 }
 
-/// The names of the coordinates that are not axes, as the attribute `coordinates` lists them.
+/// Names of the coordinates that are no axes, such as wind speed and n, separated by blanks, for the file.
 std::string coordinates_of(const TableHead& head);
 
-/// The layout of a table, which is known before its values.
+/// The layout of a table: everything that is known before its values.
 struct TableLayout {
   TableHead head;
   Quantities quantities;
@@ -46,8 +46,8 @@ struct TableLayout {
 
 TableLayout layout_of(const TableValues& table);
 
-/// Calls use(of, width) for each variable, in the order in which files have them. of(values) is the variable's column
-/// in TableValues, and `width` is the number of its values per entry.
+/// Calls use(of, width) for each variable, in the order of the file. `of` is a function that returns the variable's
+/// column in a TableValues; `width` is the number of values per entry.
 template <class Use>
 void for_each_variable(const TableLayout& layout, const Use& use) {
   for (const Quantity quantity : layout.quantities)
@@ -63,7 +63,7 @@ void for_each_variable(const TableLayout& layout, const Use& use) {
 
 ResultColumns columns_of(std::span<const PointResult> results, const Quantities& quantities);
 
-/// A part of a table: `count` values of each axis, from the positions `first`.
+/// A part of a table: on each axis, `count` values from position `first`.
 struct TableBox {
   PerAxis first = {};
   PerAxis count = {};
@@ -77,7 +77,7 @@ TableHead head_of(const TableHead& whole, const TableBox& box);
 /// Name of the attribute with the hash of a table's values, by which a reader detects damage.
 inline constexpr const char* kValuesHash = "values_hash";
 
-/// One checksum per variable, in the order of for_each_variable. The sums of all parts add up to the sums of the table.
+/// One checksum per variable, in the order of for_each_variable. The table's checksum is the sum over its parts.
 using ValueSums = std::vector<std::uint64_t>;
 
 /// The checksums of a part of a table that begins at the positions `first`.
@@ -85,7 +85,7 @@ ValueSums sums_of(const TableValues& part, const TableLayout& layout, const PerA
 
 void add(ValueSums& sums, const ValueSums& of_part);
 
-/// Hash of the checksums of all values, and of the axes and curves in the head of the table.
+/// Hash over the checksums of all values, the axes, and the optical curves (n, k and E0) that layout.head stores.
 std::string values_hash(const TableLayout& layout, const ValueSums& sums);
 
 }  // namespace dolp

@@ -80,7 +80,7 @@ std::string csv_rows(const TableValues& part, const TableLayout& layout) {
   });
 }
 
-/// Source: NumPy enhancement proposal "A Simple File Format for NumPy Arrays", version 1.0.
+/// Format: NumPy enhancement proposal "A Simple File Format for NumPy Arrays", version 1.0.
 std::string npy_header(const TableLayout& layout) {
   constexpr std::size_t kAlignment = 64;
   constexpr std::size_t kPreambleSize = 10;

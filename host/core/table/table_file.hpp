@@ -12,12 +12,12 @@
 
 namespace dolp {
 
-/// Appends the first cells of a row to `text`, each with a comma after it. The results of the row follow.
+/// Appends the leading cells of CSV row `row` to `text`, each with a comma after it. result_rows() adds the results.
 using RowStart = std::function<void(std::string& text, std::size_t row)>;
 
 std::string result_header(const Quantities& quantities, bool has_status = true);
 
-/// CSV rows. Each row has the cells that `start` appends, then the quantities in the given order, then the status.
+/// CSV rows. A row has the cells that `start` appends, then the quantities in the given order, then the status.
 std::string result_rows(const ResultColumns& results, std::size_t rows, const Quantities& quantities,
                         const RowStart& start);
 
@@ -49,18 +49,18 @@ enum class TableFormat { kNetcdf, kCsv, kNpy };
 /// Errors: InputError for an unknown suffix.
 TableFormat format_of(const std::filesystem::path& path);
 
-/// Refuses an output path that a table cannot have, before the table is computed. Errors: InputError for a suffix other
-/// than .nc, .csv and .npy, IoError for a folder or file that cannot be written. "-" is standard output.
+/// Refuses an unsuitable output path before the table is computed. Errors: InputError if the suffix is not .nc, .csv or
+/// .npy; IoError if the folder or file cannot be written. "-" is standard output.
 void check_output_path(const std::filesystem::path& path);
 
 /// The suffix of the path chooses the format.
 /// .nc: NetCDF-4 with the conventions CF-1.8, not compressed. The status is an int, because CF-1.8 has no unsigned int.
-/// .csv and "-": one row per entry, with the columns `wavelength_um,n,k,theta_deg,sigma,q` and the variables. Each
-/// attribute is a line `# name: value` before the header; further lines of a value begin with `#` and three blanks.
+/// .csv and "-": one row per entry. The columns are the axes of the table, such as `wavelength_um,theta_deg`, then the
+/// variables. Each attribute is a line `# name: value` before the header; further lines of a value begin with `#   `.
 /// .npy: a structured array with the shape of the axes and the column names of a .csv, such as `t["dolp"][i, j, k]`.
 void write_table(const TableValues& table, const std::filesystem::path& path);
 
-/// The texts of a .csv or .npy file: its beginning, and the rows of a part. The parts follow in the order of the table.
+/// The text of a .csv or .npy file is table_start(), then table_rows() of each part in the order of the table.
 std::string table_start(const TableLayout& layout, TableFormat format);
 std::string table_rows(const TableValues& part, const TableLayout& layout, TableFormat format);
 

@@ -18,24 +18,24 @@ namespace {
 
 constexpr auto kTheta = static_cast<std::size_t>(Axis::kTheta);
 constexpr auto kQ = static_cast<std::size_t>(Axis::kQ);
-// Number of values that an interpolation reads on each axis.
+// Number of values that an interpolation reads on each axis. The first two axes have labels and are not interpolated.
 constexpr std::array<std::size_t, kAxisCount> kWindow = {2, 2, 4, 4, 4, 4, 6, 6, 6};
 constexpr std::size_t kMostRows =
-    std::size_t{4} * 4 * 4 * 4 * 6 * 6;  // most rows along q that an interpolation reads; axes with labels count once
-constexpr int kMostShift = 3;            // values by which the window of read values may move away from unknown entries
+    std::size_t{4} * 4 * 4 * 4 * 6 * 6;  // most rows that an interpolation reads; a row has the entries along q
+constexpr int kMostShift = 3;            // most values by which the read window moves away from unknown entries
 constexpr std::size_t kLeastValues = 4;  // an axis with fewer values gives no reliable error estimate
-// Tuned. An interpolation error is estimated as kInside times the change of the result by one more value of the axis.
-// In the first and last interval, and without a further value, it is kAtEnds times this change. Of 581,000 bistatic
-// lookups, 147, 2 and 0 err by more than the stated error with half, this and double.
+// Tuned. The interpolation error is estimated from the change of the result if one more value of the axis is used. It
+// is kInside times this change, or kAtEnds times in the first and last interval and without a further value. Of 581,000
+// bistatic lookups, 147 err by more than stated at half of both factors, 2 at these values, 0 at double.
 constexpr double kInside = 16.0;
 constexpr double kAtEnds = 37.0;
-// Tuned. A small change may be chance. So it counts as at least kFastestFall times the change with one value fewer and,
-// on a short axis, kFastestFallOfTwo times the change with two values fewer. With half, this and double, 44, 2 and 0 of
-// these lookups err by more than the stated error.
+// Tuned. The change may be small by chance. So it counts as at least kFastestFall times the change with one value fewer
+// and, on a short axis, as at least kFastestFallOfTwo times the change with two values fewer. Of these lookups, 44 err
+// by more than stated at half of both factors, 2 at these values, 0 at double.
 constexpr double kFastestFall = 0.2;
 constexpr double kFastestFallOfTwo = 0.25;
-// Tuned. A kink of the masking adds this factor times the interpolation error of a ramp that begins at the kink. With
-// 0, half, this and double, 38, 4, 2 and 2 of these lookups err by more than the stated error.
+// Tuned. A kink of the masking adds to the estimate this factor times the interpolation error of a ramp that begins at
+// the kink. Of these lookups, 38, 4, 2 and 2 err by more than stated with the factors 0, 1, 2 and 4.
 constexpr double kKinkMargin = 2.0;
 
 using enum Quantity;
@@ -101,7 +101,7 @@ std::vector<double> masking_kinks(const SceneModel& scene) {
   if (masking != Masking::kVCavity) return {};
   const CosSin view = cos_sin_deg(view_deg);
   const double cos_azimuth = cos_sin_deg(scene.geometry.relative_azimuth_deg).cos;
-  // (1 - G) cos^2(beta) of v-cavity, if its G were not limited to 1. It changes its sign at the kink.
+  // The v-cavity masking is min(1, G). (1 - G) cos^2(beta), with the local angle beta, changes its sign at the kink.
   const auto hidden = [&](double theta_deg) {
     const CosSin theta = cos_sin_deg(theta_deg);
     const double cos2_beta = 0.5 * (1.0 + theta.cos * view.cos + theta.sin * view.sin * cos_azimuth);
@@ -112,7 +112,6 @@ std::vector<double> masking_kinks(const SceneModel& scene) {
   for (int theta_deg = 0; theta_deg < 90; ++theta_deg) {
     const double below = hidden(theta_deg);
     const double above = hidden(theta_deg + 1);
-    // The secant finds the angle of the kink within 0.01 degrees, which hardly changes the kink's interpolation error.
     if ((below > 0.0) != (above > 0.0)) kinks_deg.push_back(theta_deg + below / (below - above));
   }
   return kinks_deg;
@@ -133,12 +132,12 @@ struct TableLookup::Window {
   bool is_entry() const {
     return std::ranges::all_of(stencils, [](const Stencil& of_axis) { return of_axis.count == 1; });
   }
-  /// Rank of the last value of `axis` that is not above the point.
+  /// Rank of the largest value of `axis` that is not above the value of the point.
   std::size_t below(std::size_t axis) const {
     return locations[axis].is_value ? locations[axis].next : locations[axis].next - 1;
   }
 
-  /// Table positions of the corners of the cell around the point. They leave out the position on the axis `without`.
+  /// Table positions of the corners of the cell around the point, without the part that the axis `without` adds.
   using Corners = boost::container::static_vector<std::size_t, std::size_t{1} << kAxisCount>;
   Corners corners(const TableLookup& lookup, std::size_t without) const {
     Corners corners = {0};
@@ -156,14 +155,14 @@ struct TableLookup::Window {
   }
 };
 
-/// The entries that an interpolation reads, as rows along q. They are the same for all quantities.
+/// The entries that an interpolation reads, in rows: entries of a row differ only in q. All quantities share the rows.
 struct TableLookup::Rows {
   struct Row {
     std::size_t begin = 0;
     double weight = 1.0;
   };
   boost::container::static_vector<Row, kMostRows> rows;
-  std::array<std::size_t, kMostStencil> along{};  ///< position of each value of a row, relative to the row's first
+  std::array<std::size_t, kMostStencil> along{};  ///< position of each value of a row, relative to Row::begin
   Stencil q;
 
   Rows(const TableLookup& lookup, const Window& window) : q(window.stencils[kQ]) {
@@ -171,7 +170,7 @@ struct TableLookup::Rows {
     for (std::size_t axis = 0; axis < kQ; ++axis) {
       const Stencil& stencil = window.stencils[axis];
       const std::size_t before = rows.size();
-      for (std::size_t i = stencil.count; i-- > 0;) {  // ends with i = 0, which overwrites the row that all others read
+      for (std::size_t i = stencil.count; i-- > 0;) {  // i = 0 comes last: it overwrites the rows that every i reads
         const std::size_t begin = lookup.position(axis, stencil.first + i);
         for (std::size_t row = 0; row < before; ++row) {
           const Row next = {rows[row].begin + begin, rows[row].weight * stencil.weights[i]};
@@ -182,7 +181,7 @@ struct TableLookup::Rows {
     for (std::size_t k = 0; k < q.count; ++k) along[k] = lookup.position(kQ, q.first + k);
   }
 
-  /// Sum over the entries of weight x value(position). With `kOfSizes`, |weight| replaces weight.
+  /// Sum over the read entries of weight * value(position of the entry). With `kOfSizes`, |weight| replaces weight.
   template <bool kOfSizes = false, class Value>
   double sum(const Value& value) const {
     bool is_dense = true;  // true if the values of a row are neighbours in memory
@@ -204,7 +203,7 @@ struct TableLookup::Rows {
   static double used(double weight) {
     return kOfSizes ? std::abs(weight) : weight;
   }
-  /// sum() with loops whose length the compiler knows. The CPU can compute the two partial sums in parallel.
+  /// sum() for rows of a length that the compiler knows. The sums over even and odd k can run in parallel on the CPU.
   template <std::size_t kCount, bool kOfSizes, class Value>
   double sum_dense(const Value& value) const {
     std::array<double, kCount> weights;
@@ -228,28 +227,28 @@ struct TableLookup::Rows {
   }
 };
 
-/// Estimates the interpolation error along one axis, on lines of entries through the corners of the point's cell.
+/// Estimates the interpolation error along an axis, from lines of entries along it through the corners of the cell.
 struct TableLookup::Lines {
-  /// Change of the result if the interpolation uses one more value at either end: a divided difference.
+  /// Change of the result if one more value, at either end, is used: a divided difference times distances().
   struct Change {
-    std::size_t first = 0;  ///< position on the line of the first value that the change uses
+    std::size_t first = 0;  ///< number in the line of the first value that the change uses
     std::size_t count = 0;
-    /// Level 0 uses the window and one more value, or the whole axis; each next level one value fewer. kLevels: a kink.
+    /// Level 0: one value more than the window, or the whole axis; each next level: one fewer. A kink has kLevels.
     std::size_t level = 0;
   };
-  static constexpr std::size_t kLevels = 3;  // levels of changes on a short axis; other axes have one level fewer
-  // Two changes for each level, but one at level 0 of a short axis, and one change for a kink.
+  static constexpr std::size_t kLevels = 3;  // levels on a short axis (see is_short); other axes have one level fewer
+  // On a short axis: one change at level 0, two at each of levels 1 and 2, and one for a kink. Other axes have fewer.
   static constexpr std::size_t kMostChanges = 6;
   static constexpr std::size_t kMostValues = kMostStencil + 1;
   boost::container::static_vector<Change, kMostChanges> changes;
   std::array<std::array<double, kMostChanges>, kMostValues>
-      factors{};                                 ///< factors[i][j] multiplies value i of a line in change j
-  std::array<std::size_t, kMostValues> along{};  ///< position of each value along a line
+      factors{};                                 ///< change j is the sum of factors[i][j] times value i of a line
+  std::array<std::size_t, kMostValues> along{};  ///< table offset of each value from the start of a line
   std::size_t count = 0;
   Window::Corners begin;
-  double factor = 1.0;  ///< converts a change to an error, including the weights of the other axes
+  double factor = 1.0;  ///< error divided by change; includes the absolute weights of the other axes
   bool has_error = false;
-  bool is_short = false;  ///< true if the window and one more value make up the whole axis
+  bool is_short = false;  ///< true if level 0 uses the whole axis
   bool is_unknown = false;
 
   Lines(const TableLookup& lookup, const Window& window, std::size_t number) {
@@ -291,7 +290,8 @@ struct TableLookup::Lines {
     }
   }
 
-  /// Adds a change for the kink of the masking with the largest error. A ramp that begins at the kink stands for it.
+  /// Adds a change for the kink of the masking at which the ramp max(theta - kink, 0) has the largest interpolation
+  /// error. This error is scaled by the second difference of the table, divided by that of the ramp.
   void add_kink(const LookupAxis& axis, double theta_deg, const Stencil& stencil, std::size_t start,
                 const std::vector<double>& kinks_deg) {
     const std::size_t last = stencil.first + stencil.count - 1;
@@ -308,7 +308,7 @@ struct TableLookup::Lines {
       kink_deg = kink;
     }
     if (largest == 0.0 || stencil.count < 3) return;
-    std::size_t middle = stencil.first + 1;  // middle of the three values whose second difference is used
+    std::size_t middle = stencil.first + 1;  // middle value of the second difference across the kink
     while (middle + 1 < last && axis.coordinate_at(middle) + axis.coordinate_at(middle + 1) < 2.0 * kink_deg) ++middle;
     const std::span<const double> difference = axis.divided_difference(middle - 1, 3);
     const double of_ramp = difference[1] * std::max(axis.coordinate_at(middle) - kink_deg, 0.0) +
@@ -319,7 +319,7 @@ struct TableLookup::Lines {
     changes.push_back({middle - 1 - start, 3, kLevels});
   }
 
-  /// Computes each change separately, so that changes that need no unknown entry of the line are known.
+  /// Computes each change from its own values only, so that an unknown entry spoils only changes that use it.
   void known_changes(const double* values, double* sums) const {
     for (std::size_t j = 0; j < changes.size(); ++j) {
       sums[j] = 0.0;
@@ -344,7 +344,7 @@ struct TableLookup::Lines {
 #pragma GCC unroll 6
         for (std::size_t j = 0; j < kMostChanges; ++j) sums[j] += of_value[j] * value;
       }
-      // A change that uses an unknown entry is NaN. Then the comparison below keeps the change of the earlier lines.
+      // A change that uses an unknown (NaN) entry is NaN and does not count: the comparison below is then false.
       if (!std::isfinite(sums[0])) known_changes(values, sums);
 #pragma GCC unroll 6
       for (std::size_t j = 0; j < kMostChanges; ++j) {
@@ -359,7 +359,7 @@ struct TableLookup::Lines {
     }
     if (largest[0] < 0.0) return kInfinity;
     if (largest[0] == 0.0) return 0.0;
-    // On a coarse axis the level-0 changes of all lines may be small by chance, but not those of the next levels, too.
+    // On a coarse axis all changes of level 0 may be small by chance. The next levels guard against this.
     largest[0] = std::max(largest[0], kFastestFall * largest[1]);
     if (is_short) largest[0] = std::max(largest[0], kFastestFallOfTwo * largest[2]);
     return factor * (largest[0] + std::max(largest[kLevels], 0.0));
@@ -401,7 +401,7 @@ bool TableLookup::make_known(Window& window, double theta_deg) const {
   std::size_t count = kWindow[kTheta];
   const int away = theta_deg > 45.0 ? -1 : 1;
   while (!is_known(window)) {
-    // The window moves away from unknown entries by up to kMostShift values. If that fails, it gets one value fewer.
+    // The window moves away from unknown entries by up to kMostShift values. If this fails, the window becomes shorter.
     if (++shift > kMostShift) {
       shift = 0;
       if (--count < 2) return false;

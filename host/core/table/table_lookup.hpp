@@ -16,28 +16,28 @@ namespace dolp {
 std::vector<double> masking_kinks(const SceneModel& scene);
 
 /// Interpolates the results of a table at points between its entries.
-/// Method: a product of polynomials, one for each axis. They have degree five along theta, ln sigma and ln(q - 1),
-/// degree three along the logarithms of wavelength, temperature, n and k, and less on axes with few values. On an axis
-/// with labels a point must be at a value. DOLP follows from the interpolated Stokes parameters.
-/// Stated errors: the errors of the entries that are read, plus an interpolation error for each axis. This is estimated
-/// from the change of the result if one more value of the axis is used, so it misses structure that is narrower than
-/// the grid. On an axis with fewer than four values it is infinite between the values.
+/// Method: a product of polynomials, one for each axis. The degree is five in theta, ln sigma and ln(q - 1), three in
+/// the logarithms of wavelength, temperature, n and k, and less on axes with few values. On an axis with labels
+/// (materials, bands) a point must be at a value. DOLP follows from the interpolated Stokes parameters.
+/// Stated errors: the errors of the read entries, plus an interpolation error for each axis. The estimate of this error
+/// comes from the change of the result if one more value of the axis is used, so it misses structure narrower than the
+/// grid. Between the values of an axis with fewer than four values the estimate is infinite.
 class TableLookup {
  public:
-  /// `table` must outlive the object. Errors: InputError that begins with `name`, for an axis with equal values, and
-  /// for a table without dolp, its error, the Stokes parameters or the status, or with an error of rho but no rho.
+  /// `table` must outlive the object. Errors: InputError that begins with `name` if an axis has equal values, or if the
+  /// table lacks dolp, its error, a Stokes parameter or the status, or has an error of rho without rho.
   TableLookup(const TableValues& table, const SceneModel& scene, const std::string& name);
 
   const AxisLabels& labels() const { return table_.labels; }
   /// Null if the table lacks the axis.
   const LookupAxis* axis(Axis axis) const;
-  /// The quantities of a result: those of every scene, and the optional quantities that the table has.
+  /// The quantities of a result: those that every result has, and the optional quantities that the table has.
   Quantities quantities() const;
 
   /// A value on each axis; values on axes that the table lacks are ignored.
   using Point = AxisArray<double>;
-  /// The result at a point inside the axes. Quantities that the table lacks are NaN. The window of values that are read
-  /// avoids entries outside the model's domain. If it cannot, the result is NaN with status 4, outside the domain.
+  /// The result at a point inside the axes. Quantities that the table lacks are NaN. The interpolation reads no entries
+  /// outside the model's domain. If this is impossible, the result is NaN with status 4 (outside the domain).
   PointResult at(const Point& point) const;
   PointResult at(double theta_deg, double sigma, double q) const {
     Point point{};
@@ -54,19 +54,19 @@ class TableLookup {
 
   std::size_t position(std::size_t axis, std::size_t rank) const { return axes_[axis].position(rank) * strides_[axis]; }
   bool is_known(const Window& window) const;
-  /// Moves the window away from unknown entries, or gives it fewer values; false if unknown entries remain in it.
+  /// Moves the window of read values away from unknown (NaN) entries or shortens it. Returns false if neither helps.
   bool make_known(Window& window, double theta_deg) const;
   std::uint32_t cell_status(const Window& window) const;
   void finish(PointResult& result, const PointResult& change, double error, double rho_error) const;
   void add_status(PointResult& result) const;
 
   const TableValues& table_;
-  double tolerance_;               ///< tolerance of DOLP and rho, which decides status bits
+  double tolerance_;               ///< tolerance of DOLP and rho; a larger stated error sets a status bit
   std::vector<double> kinks_deg_;  ///< zeniths of the source at which the masking has a kink
   std::vector<LookupAxis> axes_;   ///< axes in the table's order; an absent axis has one value
   PerAxis strides_ = {};           ///< step in the table from one value of an axis to the next
-  Quantities interpolated_;        ///< the quantities that are smooth functions of the axes and not 0 everywhere
-  std::vector<char> is_known_;     ///< for each theta, ascending: true if I is finite in all of its entries
+  Quantities interpolated_;        ///< the smooth quantities that are not 0 in the whole table
+  std::vector<char> is_known_;     ///< per theta, in ascending order: true if I is finite in all its entries
 };
 
 }  // namespace dolp

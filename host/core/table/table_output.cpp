@@ -17,16 +17,16 @@ namespace fs = std::filesystem;
 constexpr std::size_t kConvertedRowsAtOnce = std::size_t{1} << 17U;  // rows in memory, for a .csv or .npy
 constexpr std::string_view kIdentityEnd = "; ";
 
-// The partial file is beside the target if `path` is a link, because the link may be on another file system.
+// If `path` is a link, the partial file is beside the target of the link, which may be on another file system.
 fs::path partial_path(const fs::path& path) { return follow_links(path).string() + ".partial"; }
 fs::path progress_path(const fs::path& path) { return partial_path(path).string() + ".txt"; }
 
-/// A line of a progress file: `text`, after a hash of it that reveals damage. `hash`: start value of this hash.
+/// A line of a progress file: a hash and `text`. The hash starts from `hash` and covers `text`, so it reveals damage.
 std::string progress_line(std::uint64_t hash, std::string_view text) {
   return fmt::format("{:016x} {}\n", hashed(hash, text), text);
 }
 
-/// The text of the first line of `lines`; nullopt if the hash in this line is not that of the text.
+/// The text of the first line of `lines`; nullopt if the hash in the line is wrong. `hash`: as for progress_line().
 std::optional<std::string_view> first_text(std::string_view lines, std::uint64_t hash) {
   constexpr std::size_t kHashSize = 17;
   const std::string_view line = lines.substr(0, lines.find('\n') + 1);
@@ -90,7 +90,7 @@ void TableOutput::open_progress() {
   if (parts_done_ == 0) file_->resize(0);
 }
 
-/// Reuses finished parts of an earlier run. Returns the length of their lines in the progress file.
+/// Reuses finished parts of an earlier run. Returns the length of the progress file up to the last reused part.
 std::uint64_t TableOutput::reuse_finished_parts() {
   std::string text(progress_->size(), '\0');
   progress_->read_at(0, text.data(), text.size());
@@ -115,7 +115,7 @@ std::uint64_t TableOutput::reuse_finished_parts() {
   return parts_done_ > 0 ? taken : 0;
 }
 
-/// The start value of progress_line for part number parts_done_, which has the checksums `of_part`.
+/// The hash from which progress_line() starts for part number parts_done_. `of_part`: checksums of the part.
 std::uint64_t TableOutput::part_hash(const ValueSums& of_part) const {
   std::uint64_t hash = hashed(hashed(kHashStart, job_.identity), std::uint64_t{parts_done_});
   for (const std::uint64_t sum : of_part) hash = hashed(hash, sum);

@@ -13,17 +13,17 @@
 
 namespace dolp {
 
-/// Writes a table file part by part. A resumable table with several parts is in PATH.partial until it is complete, and
-/// PATH.partial.txt lists the finished parts. Any other table is in a file without a name until it is complete.
+/// Writes a table file part by part. The file PATH appears when the table is complete. Before that, a resumable table
+/// with several parts is in PATH.partial, and PATH.partial.txt lists the finished parts; other tables have no name.
 class TableOutput {
  public:
   struct Job {
     std::filesystem::path path;
     TableLayout layout;
-    std::vector<TableBox> parts = {};  ///< parts that write() gets, in this order; empty: any parts, in any order
-    std::string identity = {};         ///< names and values that a resumed run must share; empty: not resumable
+    std::vector<TableBox> parts = {};  ///< parts in the order of the calls of write(); empty: any part may come
+    std::string identity = {};         ///< names and values that must be equal in a resumed run; empty: not resumable
     bool is_resumed = false;           ///< continues PATH.partial if this file exists
-    Progress progress = {};            ///< called while finished parts are read, with 0 as the number of done entries
+    Progress progress = {};            ///< called while finished parts are read; reports 0 done entries
   };
   /// If `is_resumed`, reuses the finished parts of an earlier run, up to the first part that is missing or changed.
   /// Errors: errors of check_output_path; InputError if the partial file has another identity or is in use by another
@@ -42,7 +42,7 @@ class TableOutput {
   /// Adds the attributes `more` and makes the file at PATH. Errors: IoError, Cancelled; then PATH is unchanged.
   void finish(const std::vector<Attribute>& more);
 
-  /// A hint how to resume from the partial file; nullopt if there is no partial file.
+  /// Text that tells the user how to resume; nullopt if there is no partial file.
   std::optional<std::string> rest() const;
 
  private:
@@ -63,7 +63,7 @@ class TableOutput {
   std::string note_;
 };
 
-/// The first difference of two identities "name value; ...", such as "evaluator cpu, not vulkan"; nullopt if equal.
+/// First difference of two texts "name value; ...", for example "evaluator cpu, not vulkan"; nullopt if they are equal.
 std::optional<std::string> difference(const std::string& identity, const std::string& wanted);
 
 }  // namespace dolp

@@ -26,8 +26,8 @@ constexpr std::size_t kMostAngles = 1024;                      // most angles of
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostShrinking = 1032;  // deflate, which other tools may use, compresses at most by this factor
-constexpr std::size_t kMostStoredTextBytes = 64U << 20U;  // the longest text, the scene, has at most 16 MiB
+constexpr std::size_t kMostShrinking = 1032;  // largest compression factor of deflate, which other tools may use
+constexpr std::size_t kMostStoredTextBytes = 64U << 20U;  // the longest text, the scene, is shorter: at most 16 MiB
 
 constexpr const char* kPartHint =
     "as in a part of a table; in Python dolp.lookup(xarray.load_dataset(FILE), ...) takes parts";
@@ -65,7 +65,7 @@ class Reader {
 
   const Hdf5Handle& file() const { return file_; }
 
-  /// A variable of the file, else an empty handle. Refuses a variable whose values are in another file.
+  /// The variable `name`, or an empty handle if the file lacks it. Refuses a variable whose values are in another file.
   Hdf5Handle find(const std::string& name) const {
     const htri_t exists = H5Lexists(file_.id(), name.c_str(), H5P_DEFAULT);
     check(exists, name);
@@ -90,7 +90,7 @@ class Reader {
     return shape;
   }
 
-  /// Refuses a variable with more values than a file of this size can hold, before memory is allocated for them.
+  /// Refuses a variable that claims more values than a file of this size can hold, before memory is allocated.
   void check_claim(const std::string& name, std::size_t bytes) const {
     if (bytes / kMostShrinking <= bytes_) return;
     fail(fmt::format("{}: {} bytes are claimed, which a file of {} cannot hold", name, bytes, bytes_));
@@ -126,7 +126,7 @@ std::vector<double> read_list(const Reader& reader, const std::string& name, std
   return values;
 }
 
-/// Reads texts, either of one length, padded with zero bytes, or of any length. `read` fills memory for `count` texts.
+/// Reads `count` texts, of equal length (padded with zero bytes) or of variable length. `read` copies them to memory.
 template <class Read>
 std::vector<std::string> read_texts(const Reader& reader, const std::string& name, const Hdf5Handle& type,
                                     const Hdf5Handle& space, std::size_t count, const Read& read) {
@@ -190,7 +190,7 @@ std::optional<std::string> find_text(const Reader& reader, const Hdf5Handle& obj
   return text ? std::optional(*text) : std::nullopt;
 }
 
-/// The attributes, in the order in which they were made; if the file lacks this order, sorted by name.
+/// The attribute at `position`, in the order of creation or, if the file does not keep this order, sorted by name.
 Hdf5Handle attribute_at(const Reader& reader, hsize_t position) {
   for (const H5_index_t index : {H5_INDEX_CRT_ORDER, H5_INDEX_NAME}) {
     Hdf5Handle attribute(
@@ -299,7 +299,7 @@ struct TableReader::Impl {
   void read_curves() {
     for (const TableCurve& described : kTableCurves) {
       Curve& curve = head.*described.curve;
-      // Files of dolp 0.2 have the scene's n, k and E0 as variables over separate wavelengths, not as the attribute.
+      // Files of dolp 0.2 store n, k and E0 of the scene as variables with their own wavelengths, not in an attribute.
       curve.wavelength_um = read_list(reader, described.name + std::string("_wavelength"), kMostTableEntries);
       const bool is_of_scene = !curve.wavelength_um.empty();
       std::vector<double>& values = is_of_scene ? curve.values : curve.used;
@@ -319,7 +319,7 @@ struct TableReader::Impl {
       first.push_back(box.first[axis]);
       count.push_back(box.count[axis]);
     }
-    if (reader.shape_of(variable, name).size() > count.size()) {  // this variable has also the dimension beta
+    if (reader.shape_of(variable, name).size() > count.size()) {  // a variable with the further dimension beta
       first.push_back(0);
       count.push_back(width);
     }

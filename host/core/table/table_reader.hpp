@@ -22,11 +22,11 @@ class TableReader {
   const TableHead& head() const { return layout().head; }
 
   TableValues read(const TableBox& box) const;
-  /// Reads the entries at `positions`, which ascend, and checks the hash of the whole table. Errors: also Cancelled.
+  /// Reads the entries at the ascending `positions`, and checks the hash of the whole table. Further error: Cancelled.
   TableValues read_entries(std::span<const std::size_t> positions, const Progress& progress) const;
 
   ValueSums sums_of(const TableValues& part, const TableBox& box) const;
-  /// Refuses a file without a hash, or whose values differ from those that dolp wrote. `sums`: checksums of all parts.
+  /// Refuses a file that lacks a hash, or whose values changed since dolp wrote them. `sums`: checksums of the table.
   void check_hash(const ValueSums& sums) const;
 
  private:

@@ -130,14 +130,14 @@ class Writer {
     put_text(object, "flag_meanings", fmt::format("{}", fmt::join(meanings, " ")));
   }
 
-  /// Reserves space for the variable in the file. Values are not compressed, because that takes longer than writing.
-  /// They are contiguous, because pointers to chunks have no checksum.
+  /// Reserves space for the variable in the file. Values are not compressed, because compression takes longer than
+  /// writing. Values are contiguous, because chunks need pointers, which have no checksum.
   Hdf5Handle define(const char* name, hid_t type, const std::vector<hsize_t>& shape, const void* fill,
                     H5D_alloc_time_t allocation = H5D_ALLOC_TIME_EARLY) const {
     const Hdf5Handle creation = take(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     check(H5Pset_attr_creation_order(creation.id(), kOrdered));
     check(H5Pset_obj_track_times(creation.id(), false));
-    // Filling the space would write each variable twice. HDF5 requires filling for texts of variable length.
+    // Without fill values, each variable is written only once. HDF5 requires fill values for texts of variable length.
     if (H5Tis_variable_str(type) <= 0) check(H5Pset_fill_time(creation.id(), H5D_FILL_TIME_NEVER));
     check(H5Pset_alloc_time(creation.id(), allocation));
     if (fill) check(H5Pset_fill_value(creation.id(), type, fill));
@@ -171,7 +171,7 @@ void put_long_text(const Writer& writer, const std::string& name, const std::str
   const std::vector<hsize_t> shape = {text.size()};
   const Hdf5Handle length =  // this variable is never written, so that it takes no space
       writer.define((name + "_length").c_str(), H5T_IEEE_F32BE, shape, nullptr, H5D_ALLOC_TIME_LATE);
-  // The netCDF library marks a dimension without coordinates by this text and the length in ten characters.
+  // The netCDF library knows a dimension without coordinates by the text below, with the length in ten characters.
   std::string digits = std::to_string(text.size());
   digits.insert(0, 10 - std::min<std::size_t>(digits.size(), 10), ' ');
   writer.check(H5DSset_scale(length.id(), ("This is a netCDF dimension but not a netCDF variable." + digits).c_str()));
@@ -198,7 +198,7 @@ void put_attributes(const Writer& writer, const TableHead& head) {
   if (const std::string data = spectral_data_of(head); !data.empty()) put_more(writer, {{kSpectralData, data}});
 }
 
-/// Writes a coordinate. `along`: its dimension (an empty handle for a single value); null if it is itself a dimension.
+/// Writes a coordinate. `along`: its dimension, empty for a single value; null if the coordinate defines a dimension.
 template <class Described>
 Hdf5Handle put_coordinate(const Writer& writer, const Described& described, const std::vector<double>& values,
                           const Hdf5Handle* along = nullptr) {
@@ -243,7 +243,7 @@ AxisVariables put_axes(const Writer& writer, const TableHead& head) {
   return axes;
 }
 
-/// Creates a variable over the axes of the table. `beta`: coordinate of its last dimension; null for most variables.
+/// Creates a variable over the axes of the table and, if `beta` is not null, over the further dimension beta.
 Hdf5Handle define_over_axes(const Writer& writer, const TableHead& head, const AxisVariables& axes, const char* name,
                             hid_t type, const void* fill, const Hdf5Handle* beta = nullptr) {
   std::vector<hsize_t> shape;
@@ -267,7 +267,7 @@ std::uint64_t offset_of(const Writer& writer, const Hdf5Handle& variable) {
   return offset;
 }
 
-/// Defines a variable. Returns the offset of its values. `qualifiers`: names of its error and status variables, or "".
+/// Defines a variable. Returns the offset of its values. `qualifiers`: names of the variables of its error and status.
 template <class Described>
 std::uint64_t put_variable(const Writer& writer, const TableHead& head, const AxisVariables& axes,
                            const Described& described, const std::string& units, const char* qualifiers,
@@ -347,7 +347,7 @@ struct TableStore::Impl {
     if (layout.has_status) offsets.push_back(put_status(writer, head, axes));
   }
 
-  /// Calls use(offset, values) for each run of values that follow each other both in a part and in the file.
+  /// Calls use(offset in the file, values) for each run of values that is contiguous in the part and in the file.
   template <class Values, class Use>
   void each_run(Values& part, const PerAxis& first, const Use& use) const {
     std::size_t variable = 0;

@@ -22,7 +22,6 @@ class TableStore {
 
   /// Writes a part. Returns the checksums of the part, for the caller to add up. Errors: IoError, Cancelled.
   ValueSums write(const TableValues& part, const PerAxis& first);
-  /// Reads a part that was written. Errors: IoError.
   TableValues read(const TableBox& box) const;
   /// The checksums of a part as the file contains it; nullopt if the part cannot be read.
   std::optional<ValueSums> measured(const TableBox& box) const;

@@ -18,8 +18,8 @@ using Json = ReportBuilder::Json;
 
 constexpr double kStrongCorrelation = 0.9;
 constexpr double kTooGood = 0.999;  // above this p-value, the uncertainties look too large
-// Limits for Akaike's criterion of a model minus the criterion of the best model. Up to kAlike the data cannot tell the
-// model from the best one. Up to kPossible the model may be true.
+// Limits for the difference of Akaike's criterion between a model and the best model. Up to kAlike the data cannot tell
+// the two apart. Up to kPossible the model may be true.
 constexpr double kAlike = 1.3;
 constexpr double kPossible = 4.0;
 
@@ -145,7 +145,7 @@ void add_misfit(ReportBuilder& report, const fit::Model& model, const FitResult&
                 "as many parameters as points: no interval can be given");
 }
 
-/// With a model error, adds which share of the parameters' ranges the 95 % intervals cover, and how to narrow them.
+/// If the model has an error, adds how much of each parameter's range its 95 % interval covers, and how to narrow it.
 void add_model_error(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   if (!model.has_model_error()) return;
   const auto is_empty_95 = [](const auto& parameter) { return parameter.interval_95.is_empty; };

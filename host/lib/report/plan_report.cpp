@@ -22,11 +22,11 @@ struct PlannedRun {
   SceneValues scene;
   EffectPlan plan;
   std::vector<Effect> effects;
-  Looked looked;  ///< entries and wavelengths for which influences were computed
+  Looked looked;  ///< entries and wavelengths from which add_influences() computed influences
   double model_change = 0.0;
   RunPrediction run;
   double rule_digits = 0.0;
-  int most_nodes = 0;                  ///< largest number of nodes on a slope interval or an arc; 0 without moments
+  int most_nodes = 0;                  ///< largest number of nodes per slope interval or azimuth arc; 0 without moments
   std::vector<std::string> pipelines;  ///< Vulkan pipelines of the first refinement level; may be empty
   vulkan::DispatchCount dispatches;    ///< dispatches of the first refinement level
   std::vector<AxisForecast> lookup;
@@ -89,7 +89,7 @@ PlannedRun planned_run(const SceneValues& scene, const std::string& device, Effe
   PlannedRun planned;
   planned.scene = scene;
   const Device limits = device_of(device, scene, planned);
-  const std::size_t without_a_run = peak_resident_bytes();  // peak memory before the prediction: scene and driver
+  const std::size_t without_a_run = peak_resident_bytes();  // peak memory of scene and driver, before the prediction
   const SceneEntries entries = grid_entries(scene);
   planned.plan = std::move(plan);
   planned.effects = effects_of(scene, entries, planned.plan);
@@ -99,7 +99,7 @@ PlannedRun planned_run(const SceneValues& scene, const std::string& device, Effe
                             {[&](const MomentsRequest& request) { add_request(planned, request, limits); },
                              [&](const ScatteringRequest& request) { add_request(planned, request, limits); }});
   if (planned.dispatches.row_width > 1) {
-    // The prediction counts nodes of single entries. A device gives all entries of a row the largest number.
+    // The prediction counts the nodes of each entry. A device uses the largest number of a row for the whole row.
     planned.run.first_evaluations *=
         static_cast<double>(planned.dispatches.rows) / static_cast<double>(planned.run.moments);
     planned.run.is_exact = false;

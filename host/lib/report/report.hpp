@@ -14,7 +14,7 @@
 namespace dolp {
 
 inline constexpr double kMebibyte = 1048576.0;
-inline constexpr double kPoints = 100.0;  ///< converts DOLP to points: one point is 0.01
+inline constexpr double kPoints = 100.0;  ///< converts DOLP to percentage points
 inline constexpr double kPercent = 100.0;
 
 /// A value, and its path in the JSON: keys separated by slashes.
@@ -29,7 +29,7 @@ Keyed<T> key(const char* path, const T& value) {
   return {path, value};
 }
 
-/// Builds a report as text and JSON. The JSON gets those arguments of a line that are Keyed.
+/// Builds a report as text and JSON. Of the arguments of a line, only those made by key() go into the JSON.
 class ReportBuilder {
  public:
   using Json = nlohmann::ordered_json;

@@ -190,7 +190,7 @@ ReportBuilder quality_report(const Quality& quality) {
 
 ReportBuilder device_report(const Device& device, std::size_t position) {
   const Quality in_float = quality_in(device, position, Precision::kFloat);
-  Device examined = device;  // kernels may fail even if the driver calls the device usable
+  Device examined = device;  // its kernels may fail although the driver calls the device usable
   if (device.usable) examined.why_not = in_float.why_not;
   examined.usable = examined.why_not.empty();
   const Quality in_double = quality_in(examined, position, Precision::kDouble);

@@ -26,7 +26,7 @@ struct HardCaseReport {
   std::string left_out;  ///< why a precision is missing; empty if none is missing
   std::size_t failures() const;
 };
-/// A line for each precision, distribution and masking, and a line for each failing case or, with `all`, for each case.
+/// One line per precision, distribution and masking, and one per failing case. With `all`, one line per case.
 ReportBuilder hard_case_report(const HardCaseReport& cases, bool all);
 
 ReportBuilder device_report(const DeviceList& list);

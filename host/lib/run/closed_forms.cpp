@@ -11,7 +11,7 @@
 namespace dolp {
 namespace {
 
-// Largest slope of a facet that counts as part of a mirror. The error estimate includes the share of steeper facets.
+// Facets with slopes up to this value count as a mirror. The error estimate contains the share of steeper facets.
 constexpr double kMirrorSlope = 1e-6;
 
 double steep_share(const Surface& surface, const SlopeShape& shape) {
@@ -23,13 +23,13 @@ double steep_share(const Surface& surface, const SlopeShape& shape) {
 constexpr double kRelativeError = 1e-12;
 // The quadrature stops if two successive approximations differ relatively by less than this.
 constexpr double kAgreement = 1e-13;
-// Bound of the rounding error of the reflectance 1 - absorptance: a few operations with numbers up to 1.
+// Bound of the rounding error of 1 - absorptance: a few roundings of numbers up to 1.
 constexpr double kReflectanceRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
 // Below this cosine the integrand counts as 0: there it is negligible, and the square of the cosine may underflow.
 constexpr double kSmallestCosine = 1e-100;
 
-/// Angle in rad between ray and surface at which total reflection begins, suddenly (k = 0) or nearly so; otherwise 0.
+/// Angle in rad between ray and surface below which reflection is total (k = 0) or nearly total; 0 if there is none.
 double critical_angle(const FacetOptics& optics) {
   if (optics.measured) return 0.0;
   const OpticalConstants& index = optics.index;
@@ -40,9 +40,9 @@ double critical_angle(const FacetOptics& optics) {
 }
 
 constexpr double kHorizon_deg = 90.0;
-constexpr double kMirrorSpread_deg = 2.0 * kMirrorSlope * 180.0 / std::numbers::pi;  // spread of the reflected rays
+constexpr double kMirrorSpread_deg = 2.0 * kMirrorSlope * 180.0 / std::numbers::pi;  // deflection of the rays
 
-/// Adds the moments with the functions of the sky, for rays that leave within `spread_deg` of the zenith `zenith_deg`.
+/// Adds r_i and r_q times each function of the sky at the zenith of the reflected rays, `zenith_deg` +- `spread_deg`.
 void add_sky(Moments& moments, const SkyBasis& sky, double zenith_deg, double spread_deg) {
   const Eigen::RowVectorXd at = sky.at(zenith_deg);
   const Eigen::RowVectorXd above = sky.at(std::max(zenith_deg - spread_deg, 0.0));
@@ -73,9 +73,9 @@ Moments closed_form(const Surface& surface, const Direction& direction, const Sl
 Moments grazing_limit_moments(const FacetOptics& index, double q) {
   boost::math::quadrature::tanh_sinh<double> integrator;
   const double critical = critical_angle(index);
-  // Integrates over psi = pi/2 - phi, because sin(psi) = x is accurate near x = 0, where powers of x are not smooth.
+  // Integrates over psi = pi/2 - phi: near psi = 0, where the integrand is not smooth, x = sin(psi) is accurate.
   const auto integral = [&](auto&& of_cosine) {
-    // Without the second parameter (distance to the nearer end), Boost allows no nodes that round to an end.
+    // With the unused second parameter (distance to an end), Boost accepts nodes that round to an end of the interval.
     const auto integrand = [&](double psi, double) {
       const double x = std::sin(psi);
       return x > kSmallestCosine ? std::pow(x, 4.0 - 2.0 * q) * of_cosine(x) : 0.0;

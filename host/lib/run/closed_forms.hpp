@@ -12,11 +12,11 @@ namespace dolp {
 Moments closed_form(const Surface& surface, const Direction& direction, const SlopeShape& shape,
                     const FacetOptics& index, const SkyBasis* sky);
 
-/// Moments at exactly 90 degrees where the true moments are infinite: with masking none or `integral`, and the cauchy
-/// distribution with q <= 3/2. All are divided by the same infinite factor, so their quotients are the limits theta ->
-/// 90 degrees. Equation: the integral of x^(4-2q) R over the facet azimuth phi, with x = cos(phi). A facet that
-/// contributes is vertical, and x is the cosine of the angle of incidence on it. R is (R_s + R_p) / 2 for r_i, (R_p -
-/// R_s) / 2 for r_q. Accuracy: the errors of r_i and r_q are at most 1e-12 r_i + 2e-15 albedo (tests GrazingLimit_*).
+/// Moments at exactly 90 degrees with masking `none` or `integral` and the cauchy distribution with q <= 3/2, where the
+/// true moments are infinite. The returned ones are divided by one infinite factor, so that their quotients are limits
+/// for theta -> 90 degrees. Equation: the integral of x^(4-2q) R over the azimuth phi of vertical facets, where x =
+/// cos(phi) is the cosine of the angle of incidence. R is (R_s + R_p) / 2 for r_i, (R_p - R_s) / 2 for r_q, 1 for
+/// albedo. Accuracy: the errors of r_i and r_q are at most 1e-12 r_i + 2e-15 albedo (tests GrazingLimit_*).
 Moments grazing_limit_moments(const FacetOptics& index, double q);
 
 }  // namespace dolp

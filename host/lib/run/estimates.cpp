@@ -23,9 +23,9 @@ using enum Quantity;
 
 constexpr double kTolerance = 1e-3;
 constexpr std::size_t kBandWavelengths = 8;
-constexpr std::size_t kDrawnPoints = 24;  // number of points that an estimate computes if the entries are points
+constexpr std::size_t kDrawnPoints = 24;  // number of entries that an estimate computes from a list of points
 
-/// Largest number of values of an axis in an estimate. For sigma and q both ends are enough: effects are largest there.
+/// Most values of an axis in an estimate. For sigma and q both ends are enough, because effects are largest at an end.
 std::size_t most_values(Axis axis) {
   if (axis == Axis::kMaterial) return 64;
   if (axis == Axis::kTheta || axis == Axis::kBand) return 8;
@@ -60,7 +60,7 @@ SceneEntries spread_entries(const SceneEntries& entries) {
 
 struct Sample {
   SceneValues scene;
-  SceneEntries entries;         ///< each entry occurs once for each of the wavelengths
+  SceneEntries entries;         ///< each chosen entry, repeated for each wavelength
   std::vector<double> weights;  ///< weights of the wavelengths in the integral over a band; {1} without a band
 };
 
@@ -71,7 +71,7 @@ Sample sample_of(const SceneValues& scene, const SceneEntries& entries) {
   if (sample.scene.emission) sample.scene.emission->has_bracket = false;
   if (spectral_samples(scene, entries) <= kBandWavelengths) return sample;
   using Rule = boost::math::quadrature::gauss<double, kBandWavelengths>;
-  std::vector<double> shares;  // nodes as positions in the band: 0 at its lower end, 1 at its upper end
+  std::vector<double> shares;  // positions of the nodes in the band, from 0 (lower end) to 1 (upper end)
   sample.weights.clear();
   for (std::size_t i = 0; i < kBandWavelengths / 2; ++i) {
     for (const double sign : {-1.0, 1.0}) {

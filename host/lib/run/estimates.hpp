@@ -24,9 +24,9 @@ struct Looked {
   std::string text() const;     ///< "32 entries and 8 wavelengths of the band"
 };
 
-/// Sets Effect::influence of each kept effect: the largest change of (Q/I, U/I) if the effect were dropped. It stays
-/// empty if the accuracy of DOLP is unknown at all entries. Accuracy: within a factor of 2 of the largest change at all
-/// entries (tests Estimates_*).
+/// Sets Effect::influence of each effect that the plan keeps: the largest change of the vector (Q/I, U/I) in a few
+/// entries if the effect is left out. It stays empty if the accuracy of DOLP is unknown in all of them. Accuracy:
+/// within a factor of 2 of the largest change in all entries (tests Estimates_*).
 Looked add_influences(std::vector<Effect>& rows, const SceneValues& scene, const SceneEntries& entries);
 
 struct ScatteringGap {

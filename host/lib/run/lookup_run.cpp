@@ -32,8 +32,8 @@ std::optional<double> value_of(const SceneValues& scene, Axis axis) {
   return values[axis];
 }
 
-/// How messages name the values of an axis. Wind speeds replace sigma if the points give them, or if the scene gives
-/// them and the points do not give sigma.
+/// How messages name the values of an axis. Sigma appears as a wind speed if the points give wind speeds. If the points
+/// give neither sigma nor wind speeds, the scene decides.
 struct AxisWords {
   bool is_wind = false;
   const char* name = "";
@@ -53,7 +53,7 @@ AxisWords words_of(Axis axis, const SceneValues& scene, const Points& points) {
   return {false, description_of(axis).column};
 }
 
-/// The coordinate of each point on an axis: from the column, else the only value of the axis, else from the scene.
+/// The value of each point on an axis: from the points, else the only value of the axis, else from the scene.
 std::vector<double> values_of(Axis number, const TableLookup& lookup, const SceneValues& scene, const Points& points) {
   const LookupAxis& axis = *lookup.axis(number);
   const AxisWords words = words_of(number, scene, points);
@@ -91,7 +91,7 @@ void check_no_films(const Points& points) {
                                points.where(), points.films.begin()->first.first + 1));
 }
 
-/// Refuses a column for an axis that the table lacks, if a value in it differs from the value in the table's scene.
+/// Refuses points with a column for an axis that the table lacks, unless the column has the value of the table's scene.
 /// Refuses columns of n and k if the material of the scene depends on the wavelength.
 void check_index(const TableLookup& lookup, const SceneValues& scene, const Points& points) {
   const Material& material = scene.surface.material;
@@ -112,13 +112,13 @@ void check_index(const TableLookup& lookup, const SceneValues& scene, const Poin
   }
 }
 
-constexpr std::size_t kLines = 3;        // number of lines along an axis; each line has other values of the other axes
-constexpr std::size_t kParts = 4;        // number of parts of an axis; one cell at each end of a part is examined
-constexpr std::size_t kStretch = 8;      // number of values around a cell on which a lookup in the cell depends
+constexpr std::size_t kLines = 3;        // number of lines of entries along an axis; their other coordinates differ
+constexpr std::size_t kParts = 4;        // an axis is divided into so many parts; the cells at their ends are examined
+constexpr std::size_t kStretch = 8;      // number of values around a cell that a lookup in the cell needs
 constexpr std::size_t kLeastValues = 4;  // smallest number of values for which a lookup states an error
-// A lookup reads six values along theta, sigma and q, and four along each other axis. In dense grids the error that it
-// states is proportional to the spacing to the power kOrderOfSix or kOrderOfFour. Errors of the values that it reads
-// grow by up to kWeightsOfSix or kWeightsOfFour, the sum of the absolute weights in the middle of a cell.
+// A lookup reads six values along theta, sigma and q, and four along each other axis. kOrder...: in dense grids the
+// stated error is proportional to this power of the spacing. kWeights...: sum of the absolute weights in the middle of
+// a cell, by which the interpolation may increase the errors of the entries.
 constexpr double kOrderOfSix = 5.0;
 constexpr double kOrderOfFour = 3.0;
 constexpr double kWeightsOfSix = 356.0 / 256.0;
@@ -157,7 +157,7 @@ class Forecast {
   }
 
  private:
-  /// The number of values for which the error is about `wanted`; 0 if it exceeds kMostForecastValues.
+  /// Number of values with which the error is about `wanted`; 0 if this needs more than kMostForecastValues.
   std::size_t needed(Axis axis, double wanted, std::size_t lines) {
     const double order = is_read_with_four(axis) ? kOrderOfFour : kOrderOfSix;
     for (std::size_t values = 2 * kLeastValues; values <= kMostForecastValues; values *= 2) {
@@ -220,7 +220,7 @@ class Forecast {
     return table;
   }
 
-  SceneValues scene_;  ///< the given scene, with the grid of the current line
+  SceneValues scene_;  ///< the given scene; its grid is replaced for each line
   const Axes& grid_;   ///< the grid of the given scene
   const EffectPlan& plan_;
   CpuEvaluator evaluator_;

@@ -22,19 +22,19 @@ std::vector<PointResult> lookup_points(const TableLookup& lookup, const SceneVal
 struct AxisForecast {
   Axis axis = Axis::kTheta;
   std::size_t values = 0;  ///< number of values of the axis in the grid
-  /// Largest error of DOLP at the examined positions if lookups interpolate only along this axis. Infinite with fewer
-  /// than four values.
+  /// Largest error of DOLP in the examined cells if lookups interpolate along this axis only. Infinite with fewer than
+  /// four values.
   double error = 0.0;
-  double wanted = 0.0;  ///< largest acceptable `error`: the part of the tolerance that this axis may use
+  double wanted = 0.0;  ///< largest acceptable `error`: the share of the tolerance for this axis
   /// Number of values of the axis for which the error is at most `wanted`; 0 if it is above kMostForecastValues.
   std::size_t needed_values = 0;
 };
 inline constexpr std::size_t kMostForecastValues = 10'000;
 
-/// A forecast for each axis of the grid that has more than one value. The CPU computes the table around a few cells of
-/// the axis. A lookup in the middle of each cell states its error. This is repeated with 8, 16, 32, ... values of the
-/// axis until the error is at most `wanted`. The forecast misses features that are narrower than the distance between
-/// the cells. Accuracy: half of needed_values is too few for most points (test
+/// A forecast for each axis of the grid that has more than one value and no labels. The CPU computes the table around a
+/// few cells of the axis; a lookup in the middle of each cell states the error. This is repeated with 8, 16, 32, ...
+/// values of the axis until the error is at most `wanted`. Features narrower than the distance between the cells are
+/// missed. Accuracy: with half of needed_values on each axis, most points miss the tolerance (test
 /// LookupForecast_TablesOfTheAdvisedDensity_*).
 std::vector<AxisForecast> lookup_forecast(const SceneValues& scene, const EffectPlan& plan);
 

@@ -16,11 +16,11 @@ struct MuellerPoint {
 };
 
 /// The directions, slope distribution and index of each point. Values that a point lacks come from the scene. Errors:
-/// InputError for points that check_surface() refuses, for measured reflectances, and in a band for a coating or for a
-/// material that depends on the wavelength (unless points give n and k).
+/// InputError for points that check_surface() refuses, and for measured reflectances. In a band also for a coating, and
+/// for a material that depends on the wavelength if points do not give n and k.
 std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points& points);
 
-/// Replaces kAuto: by float if float meets the tolerance or the device has no double precision, else by double.
+/// The precision for a run. kAuto becomes float if float meets the tolerance or double is missing, otherwise double.
 Precision mueller_precision(const Accuracy& accuracy, bool has_double);
 
 /// The Mueller matrix of the pBRDF at each point: the specular part times k_s, plus the diffuse part. Accuracy: the

@@ -39,10 +39,10 @@ std::vector<std::uint32_t> compact_used_values(const std::vector<double>& values
   return positions;
 }
 
-// Chosen. Fewest entries per index for which responses are used, because the sums for an index cost time too.
+// Chosen. Fewest entries per index for which responses are used. With fewer, combining them saves too little time.
 constexpr std::size_t kLeastEntries = 24;
-// Responses cover all combinations of direction, slope distribution and index. Points need only some of these. The run
-// uses responses if there are at most so many times more combinations than moments to compute.
+// Responses cover all combinations of direction, slope distribution and index, but points need only some. The run uses
+// responses if the number of combinations is at most this times the number of moments that the points need.
 constexpr std::size_t kMostOfPoints = 2;
 
 std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const SceneEntries& entries) {
@@ -208,7 +208,7 @@ void PartRequests::request_grid(const Selection& selection) {
   if (!is_whole) mark_wanted(selection);
 }
 
-/// Adds the indices of the used index sets to the request for moments. Equal consecutive sets share their indices.
+/// Adds the n and k of the used index sets to the request for moments. A set that equals the one before adds nothing.
 void PartRequests::request_indices(const SceneEntries& grid, const std::vector<char>& is_used) {
   index_set_offset_.assign(is_used.size(), 0);
   std::vector<FacetOptics> last;

@@ -21,7 +21,7 @@ namespace dolp {
 /// Some or all entries of a part of a run. A member is the number of an entry in the selection.
 struct Selection {
   const SceneEntries& part;
-  std::span<const std::size_t> chosen = {};  ///< positions of the members in the part; empty: all entries
+  std::span<const std::size_t> chosen = {};  ///< position of each member in the part; empty: all entries are selected
 
   std::size_t size() const { return chosen.empty() ? part.size() : chosen.size(); }
   std::size_t position(std::size_t member) const { return chosen.empty() ? member : chosen[member]; }
@@ -33,25 +33,25 @@ double moment_zenith_deg(const SceneValues& scene, double theta_deg);
 
 bool wants_moments(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan);
 
-/// True if an evaluator must compute the beam of an entry; false if beam_without_evaluator() gives its pBRDF.
+/// True if the specular pBRDF of an entry needs an evaluator; otherwise beam_without_evaluator() gives it.
 bool wants_beam(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan);
 
-/// The pBRDF of an entry that needs no evaluator: NaN in the specular direction of a mirror, and if source and view are
-/// both at 90 degrees; otherwise 0.
+/// The specular pBRDF of an entry for which wants_beam() is false. It is NaN in the specular direction of a mirror, and
+/// if source and view are both at 90 degrees. Otherwise it is 0.
 Scattered beam_without_evaluator(const SceneValues& scene, double theta_deg);
 
 /// For each variant (material, band, wavelength or temperature) of the entries: n and k at each spectral sample.
 using SpectralIndices = std::vector<std::vector<FacetOptics>>;
 SpectralIndices spectral_indices(const SceneValues& scene, const SceneEntries& entries);
 
-/// Replaces n and k of the surface by `index`, below the films. Without films the result has one sample, because all
-/// would be equal. If `index` is empty, the result is `samples`.
+/// Returns `samples` with n and k of the surface replaced by `index`; films stay. Without films this is one sample,
+/// because all samples would be equal. If `index` is empty, returns `samples`.
 std::vector<FacetOptics> with_index(const std::vector<FacetOptics>& samples,
                                     const std::optional<OpticalConstants>& index);
 
-/// What an evaluator must compute for a selection at one level of refinement. In a grid, the request for moments has
-/// all slope distributions of the part. So the result of an entry does not depend on which other entries are selected.
-/// In a list of points, points with the same direction, slope distribution and index share their moments.
+/// What an evaluator must compute for a selection at one level of refinement. For a grid, the request for moments has
+/// all slope distributions of the part, so that the result of an entry does not depend on the rest of the selection. In
+/// a list of points, points with the same direction, slope distribution and index share their moments.
 class PartRequests {
  public:
   PartRequests(const SceneValues& scene, const SpectralIndices& samples, const EffectPlan& plan,
@@ -60,13 +60,13 @@ class PartRequests {
   const MomentsRequest& moments() const { return moments_; }
   const ScatteringRequest& beams() const { return beams_; }
 
-  /// Where the evaluator returns the moments of a member: at `first + j * stride` for the wavelength with the number j.
+  /// Where the evaluator returns the moments of a member of the selection: at `first + j * stride` for wavelength j.
   struct MomentsSpan {
     std::size_t first = 0;
     std::size_t stride = 0;
   };
   MomentsSpan moments_of(std::size_t member) const;
-  /// For a grid: the position in moments() of the direction whose moments a member uses.
+  /// For a grid: the direction whose moments a member uses, as a position in moments().theta_deg.
   std::size_t direction_of(std::size_t member) const;
   /// The position in beams() of the first beam of a member. A member has one beam per wavelength.
   std::size_t beams_of(std::size_t member) const { return first_beam_[member]; }
@@ -87,16 +87,16 @@ class PartRequests {
   const Selection selection_;
   MomentsRequest moments_;
   ScatteringRequest beams_;
-  // For a grid: the position in moments_ of each theta, sigma and q of the part, and of the first index of each index
-  // set. An index set has the indices of one variant (such as a band), or one index from the axes n and k.
+  // For a grid: positions in moments_ of the values of theta, sigma and q of the part, and of the first index (n, k) of
+  // each index set. An index set has the indices of one variant (such as a band), or one index from the axes n and k.
   std::vector<std::uint32_t> theta_at_, sigma_at_, q_at_, index_set_offset_;
   std::vector<MomentsSpan> spans_of_points_;  ///< for points: where the evaluator returns the moments of each point
   std::vector<std::size_t> first_beam_;
 };
 
 /// The responses (moments with polynomials instead of reflectances) from which a run combines the moments of many
-/// indices. They are chosen for the whole grid, even in a run of a part of it. Null if responses would save nothing,
-/// for example with few indices or if several bounces count.
+/// indices. A run of a part of a grid uses the responses of the whole grid. Null if responses would save nothing, for
+/// example with few indices or if several bounces count.
 std::shared_ptr<const ResponseBasis> run_basis(const SceneValues& scene, const SceneEntries& entries,
                                                const EffectPlan& plan);
 

@@ -14,8 +14,8 @@
 namespace dolp {
 namespace {
 
-/// The entries of a few directions, spread evenly over the grid. With `has_responses` they have all wavelengths and
-/// indices, because these share responses. Otherwise they have one wavelength and one index.
+/// The entries of a few directions, spread evenly over the grid. With `has_responses`, keeps all wavelengths and
+/// indices, which share responses. Otherwise keeps one wavelength and one index.
 SceneEntries entries_of_drawn_directions(const SceneEntries& grid, bool has_responses) {
   Axes axes = grid.axes();
   std::vector<double>& theta_deg = axes[Axis::kTheta];
@@ -32,7 +32,7 @@ SceneEntries entries_of_drawn_directions(const SceneEntries& grid, bool has_resp
   return SceneEntries::of_grid(axes, grid.index());
 }
 
-/// The work of all requests for moments, or of all requests for beams. Those of the first refinement level come first.
+/// The work of all requests for moments or for beams. A run makes the requests of the first refinement level first.
 struct Count {
   std::size_t first_requests = 0;  ///< number of requests of the first level that are still to come
   std::size_t first = 0;           ///< number of moments or beams in the first refinement level

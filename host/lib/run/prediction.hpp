@@ -10,26 +10,26 @@
 
 namespace dolp {
 
-/// Largest number of entries that the prediction computes. If the run has more entries, these represent all of them.
+/// Largest number of entries that the prediction computes. If the run has more, a sample of this size represents them.
 inline constexpr std::size_t kCountedEntries = 256;
 
-/// Largest number of directions that it computes instead, if the entries of a direction share work.
+/// If the entries of a direction share work, the prediction computes whole directions instead, at most so many.
 inline constexpr std::size_t kCountedDirections = 6;
 
 struct RunPrediction {
   std::size_t entries = 0;
   std::size_t spectral_samples = 0;
-  std::size_t moments = 0;         ///< moments that kernels compute in the first refinement level, without repetition
-  std::size_t interpolated = 0;    ///< moments that the first refinement level interpolates instead
+  std::size_t moments = 0;         ///< moments that kernels compute in the first refinement level
+  std::size_t interpolated = 0;    ///< moments that the first refinement level gets without a kernel
   std::size_t beams = 0;           ///< beams of the first refinement level
   RefinementLevel first;           ///< precision and tolerance of the first level
   double first_evaluations = 0.0;  ///< integrand evaluations of the first level
-  double again_share = 0.0;        ///< ratio of moments and beams in later refinement levels to those in the first
+  double again_share = 0.0;        ///< moments and beams of later levels, divided by those of the first level
   double again_evaluations = 0.0;
   double again_beams = 0.0;
   bool counts_directions = false;
   bool is_exact = true;     ///< the prediction counted all moments and beams, without estimates
-  double cpu_s = 0.0;       ///< time of all levels on the processor of this machine, from the counted work
+  double cpu_s = 0.0;       ///< time of all levels on this CPU, extrapolated from the computed entries
   double host_bytes = 0.0;  ///< memory for the largest part of the run and for the columns that are being written
 };
 
@@ -39,10 +39,10 @@ struct RequestVisitor {
   std::function<void(const ScatteringRequest&)> beams;
 };
 
-/// Predicts the work of a run. For this, the CPU computes some entries with the code of a run: up to kCountedEntries
-/// entries, or all entries of up to kCountedDirections directions. `has_double`: the device of the run supports double.
-/// Accuracy: exact for up to kCountedEntries entries, if the device rounds like the CPU. For more entries, a few
-/// percent, or a fifth if directions are counted (tests Plan.FewEntries_*, Plan.ManyEntries_*, Plan.Device_*).
+/// Predicts the work of a run. For this, the CPU computes up to kCountedEntries entries, or all entries of up to
+/// kCountedDirections directions. `has_double`: the device of the run supports double. Accuracy: exact for up to
+/// kCountedEntries entries, if the device rounds like the CPU. Otherwise a few percent, or a fifth if whole directions
+/// are computed (tests Plan.FewEntries_*, Plan.ManyEntries_*, Plan.Device_*).
 RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
                           bool has_double, const RequestVisitor& visit);
 

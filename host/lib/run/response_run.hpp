@@ -14,21 +14,22 @@ namespace dolp {
 /// The layout of the response table over the scene's grid. Errors: InputError if the scene has no response table.
 TableLayout response_layout(const SceneValues& scene);
 
-/// The weights of a response table for the entries of a request. The entries have the order of a table.
+/// Weights of a response table for the entries of a request, in the order of a table.
 struct EntryResponses {
   ResponseArray<std::vector<double>> responses;
   std::vector<double> albedo;
 };
 
-/// Computes the weights of a response table and their error bounds. Weights are NaN where rho has no value. Entries
-/// whose response_error exceeds the tolerance times the albedo are computed again with more nodes.
+/// Computes the weights and their error bounds. Weights are NaN where rho has no value. Entries whose response_error
+/// exceeds the tolerance times the albedo are computed again with more nodes.
 EntryResponses responses_of(MomentsRequest request, const Accuracy& accuracy, ModelEvaluator& evaluator,
                             const Progress& progress);
 
 MomentsRequest response_request(const Surface& surface);
 
-/// Sum over m of 2^-m |sum over j of T_m(x_j) (a_j - b_j)|: a distance of weights a and b of an entry, which are
-/// response_i or (is_of_q) response_q times sin^2(beta_j). response_error bounds the distance to the exact weights.
+/// Distance between weights a and b of an entry, which response_error bounds if b is exact. Equation: the sum over m of
+/// 2^-m |sum over j of T_m(x_j) f_j (a_j - b_j)|, with Chebyshev polynomials T_m at the positions x_j of the angles
+/// beta_j. With `is_of_q` (weights of Q), f_j is sin^2(beta_j); otherwise it is 1.
 double response_distance(std::span<const double> a, std::span<const double> b, bool is_of_q);
 
 struct ResponseOutcome {

@@ -14,9 +14,9 @@ namespace dolp {
 namespace {
 
 constexpr std::size_t kMostChecked = 64;
-// For each kManyMoments moments of a table, the check computes kMostChecked more of them again.
+// The check computes kMostChecked moments again, and kMostChecked more for each kManyMoments moments of the table.
 constexpr std::size_t kManyMoments = std::size_t{1} << 22U;
-// The check costs at most 1 / kShare of the run. Computing an entry again takes about kCostOfOne times as long.
+// The check costs at most 1 / kShare of the run, if its moments take kCostOfOne times as long as those of the run.
 constexpr std::size_t kShare = 50;
 constexpr std::size_t kCostOfOne = 4;
 

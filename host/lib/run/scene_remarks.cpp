@@ -16,13 +16,13 @@ namespace dolp {
 namespace {
 
 constexpr double kLikelyNanometresOfFilm = 100.0;
-constexpr double kHotSky = 2.0;  // a sky hotter than this times the surface temperature gets a remark
-// A file has a gap if the wavelengths of two neighbouring rows have a ratio above a limit. The limit is kUsualSpacings
-// times the median spacing of the file in ln(wavelength), but at least kNoGapRatio and at most kGapRatio.
+constexpr double kHotSky = 2.0;  // a sky hotter than this times the surface gets a remark
+// A file has a gap between neighbouring rows if the ratio of their wavelengths reaches a limit. The limit is
+// exp(kUsualSpacings * median of ln(ratio)), but at least kNoGapRatio and at most kGapRatio.
 constexpr double kGapRatio = 2.0;
 constexpr double kNoGapRatio = 1.5;
 constexpr double kUsualSpacings = 10.0;
-// Rows are coarse if CoarseRows::change is at least kCoarseChange. The divisor in it is at least kLeastPart.
+// Rows are coarse if CoarseRows::change is at least kCoarseChange. kLeastPart replaces a smaller divisor in `change`.
 constexpr double kCoarseChange = 0.05;
 constexpr double kLeastPart = 0.01;
 
@@ -47,7 +47,7 @@ double least_gap_ratio(const std::vector<double>& wavelength_um) {
   return std::clamp(std::exp(kUsualSpacings * *median), kNoGapRatio, kGapRatio);
 }
 
-/// The widest gap between rows of a file in which the scene uses wavelengths. A straight line bridges it.
+/// The widest gap between rows of a file that contains wavelengths of the scene. The program interpolates across it.
 std::optional<Interval> bridged_gap(const SpectralTable& table, const std::vector<Interval>& used) {
   const std::vector<double>& um = table.wavelength_um;
   if (um.size() < 2 || table.formula.number != 0) return std::nullopt;
@@ -63,7 +63,7 @@ std::optional<Interval> bridged_gap(const SpectralTable& table, const std::vecto
   return widest;
 }
 
-/// Where lines between rows are worst. `change`: error of the reflectance R at normal incidence over min(R, 1 - R).
+/// Where interpolation between rows is worst. `change`: error of the normal reflectance R, divided by min(R, 1 - R).
 struct CoarseRows {
   double at_um = 0.0;
   double change = 0.0;
@@ -73,8 +73,8 @@ double normal_reflectance(const OpticalConstants& index) {
   return (std::pow(index.n - 1.0, 2) + std::pow(index.k, 2)) / (std::pow(index.n + 1.0, 2) + std::pow(index.k, 2));
 }
 
-/// Finds the rows with the largest `change`. It takes the error of the interpolation as a quarter of a distance: from a
-/// row to the line that joins the rows before and after it.
+/// Finds the row with the largest `change`. Compares R of a row with R on the line between the neighbouring rows. A
+/// quarter of the difference estimates the error, because neighbours are twice as far apart as successive rows.
 CoarseRows coarsest_rows(const Material& material, const std::vector<Interval>& used) {
   CoarseRows worst;
   const std::vector<double>& um = material.n.wavelength_um;
@@ -187,7 +187,7 @@ class Remarks {
 
   void add_hot_sky(const SkyProfile* profile) {
     const double surface_K = scene_.emission ? scene_.emission->temperature_K : 0.0;
-    if (surface_K < kLikelyCelsius_K) return;  // no emission, or a temperature about which another remark is
+    if (surface_K < kLikelyCelsius_K) return;  // no emission, or a temperature with another remark
     bool is_hot = !profile && scene_.surroundings->temperature_K > kHotSky * surface_K;
     const std::vector<Interval> used = used_um(scene_);
     for (const double um : {used.front().first, used.back().second}) {

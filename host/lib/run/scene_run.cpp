@@ -24,10 +24,10 @@ namespace {
 // Largest number of moments in a part of a grid, and in a part of a list of points. Both limits keep the memory small.
 constexpr std::size_t kMomentsAtOnce = 1U << 20U;
 constexpr std::size_t kPointsAtOnce = 1U << 17U;
-// If more than one in so many entries of a direction misses the tolerance, all of them are computed again. Tuned.
-// Evaluations per entry with smith masking, at half this value, at this value and at double: 1.71, 1.81, 1.99.
+// If more than 1 in kWholeDirectionMissRatio entries of a direction misses the tolerance, all are computed again.
+// Tuned. Evaluations per entry with smith masking, at half this value, at this value and at double: 1.71, 1.81, 1.99.
 constexpr std::size_t kWholeDirectionMissRatio = 8;
-constexpr std::size_t kEntriesAtOnce = 4096;  // number of entries per thread that outweighs the start of a thread
+constexpr std::size_t kEntriesAtOnce = 4096;  // with fewer entries per thread, starting the thread does not pay
 
 struct Spectra {
   Spectra(const SceneValues& scene, const EffectPlan& plan, const std::vector<SceneVariant>& variants) {
@@ -87,7 +87,7 @@ class MemberResults {
   }
 
  private:
-  /// The direction for which an entry needs moments. Neighbouring entries mostly share it, so it is cached.
+  /// The direction for which an entry needs moments. It is cached, because neighbouring entries mostly share it.
   const Direction& view_direction(const SceneEntry& entry) {
     const Surface& surface = context_.scene.surface;
     const double theta_deg = moment_zenith_deg(context_.scene, entry.theta_deg);
@@ -102,7 +102,7 @@ class MemberResults {
   /// The moments of an entry: from the evaluator, from closed forms, or zeros if the plan needs no moments.
   std::span<const Moments> moments_of(std::size_t member, const SceneEntry& entry, const Direction& direction,
                                       std::span<const FacetOptics> indices) {
-    if (!context_.plan.kept.moments) return moments_;  // all zero: nothing else writes to moments_ in this case
+    if (!context_.plan.kept.moments) return moments_;  // all zero: without moments, nothing writes to moments_
     if (direction.treatment != Treatment::kIntegrated) {
       for (std::size_t j = 0; j < moments_.size(); ++j) {
         moments_[j] = closed_form(context_.scene.surface, direction, entry.shape, indices[j], context_.plan.sky.get());
@@ -133,7 +133,7 @@ class MemberResults {
   const EvaluatorResults& evaluated_;
   std::vector<Moments> moments_;
   std::vector<Scattered> beams_;
-  std::optional<OpticalConstants> index_;  ///< index for which own_optics_ was computed, together with variant_
+  std::optional<OpticalConstants> index_;  ///< own_optics_ was computed for index_ and variant_
   std::uint32_t variant_ = 0;
   Radiometry::Optics own_optics_;
   Direction direction_;
@@ -192,11 +192,11 @@ bool would_improve(const RunContext& context, const RefinementLevel& level, cons
          (wants_beam(context.scene, entry, context.plan) && level.precision != last.precision);
 }
 
-/// For each refinement level: the entries to compute again at this level.
 using EntriesByLevel = std::map<RefinementLevel, std::vector<std::size_t>>;
 
-/// Adapts the refinement level `next` to a whole direction. With responses, it uses double, because float rounding
-/// disturbs them, and lowers the tolerance by whole decades, so that more indices share them.
+/// The level for a whole direction, made from `next`, the level of one entry. With responses, the level has double
+/// precision, because float rounding disturbs responses. Its tolerance is lowered by whole decades, so that more
+/// indices get the same level and share responses.
 RefinementLevel level_of_direction(RefinementLevel next, const RunContext& context) {
   next.may_interpolate = true;
   if (!context.basis) return next;
@@ -207,8 +207,8 @@ RefinementLevel level_of_direction(RefinementLevel next, const RunContext& conte
   return next;
 }
 
-/// Queues entries of a direction (`members`) for the next refinement levels. If many miss the tolerance, queues all
-/// entries, with interpolation. Otherwise queues only those that miss it, without interpolation.
+/// Queues entries of a direction (`members`) for later refinement levels. If many entries miss the tolerance, queues
+/// all, with interpolation. Otherwise queues only the entries that miss it, without interpolation.
 void queue_refinement(const RunContext& context, const SceneEntries& part, const RefinementLevel& last,
                       std::span<const std::size_t> members, std::span<const PointResult> results,
                       EntriesByLevel& by_level) {
@@ -247,7 +247,7 @@ FirstResults first_results(const RunContext& context, const SceneEntries& part, 
   return first;
 }
 
-/// Computes again the entries that miss the tolerance. `progress` counts them as done, but can still cancel.
+/// Computes again the entries that miss the tolerance. `progress` has counted them already, but can still cancel.
 void refine(const RunContext& context, const SceneEntries& part, FirstResults& first, const Progress& progress) {
   const Progress is_wanted = [&](std::size_t, std::size_t) { return progress(1, 1); };
   const std::size_t entries_per_direction = part.is_grid() ? part.entries_per_direction() : 1;
@@ -288,7 +288,7 @@ std::vector<PointResult> recompute_for_check(const RunContext& context, const Sc
   return computed_at(context, {part, positions}, check_level(first), none);
 }
 
-/// Converts positions of entries in the table (`checked`) to positions in `part`. Skips entries without moments.
+/// The positions in `part` of those entries among `checked` (positions in the whole table) that have moments.
 std::vector<std::size_t> positions_in(const RunContext& context, const SceneEntries& part,
                                       std::span<const std::size_t> checked) {
   std::vector<std::size_t> positions;

@@ -76,13 +76,13 @@ struct RunOutcome {
   EffectPlan plan;
   std::vector<Effect> effects;
   RunSummary summary;           ///< summary of all parts, also of those that an earlier run finished
-  EvaluationReport evaluation;  ///< device, precision, and number of integrand evaluations of all parts
+  EvaluationReport evaluation;  ///< device and precision of this run, and the work for all parts
   double wall_s = 0.0;
   double file_s = 0.0;  ///< time in s in which the run waited for the table to be written; a part of wall_s
 };
 
-/// A run of a scene over a grid, a part of a grid, or points. The constructor decides which effects are computed. For a
-/// part of a grid, it decides as for the whole grid.
+/// A run of a scene over a grid, a part of a grid, or points. The constructor decides which effects are computed. It
+/// decides for the whole grid, so that all parts of a grid have the same effects.
 class Run {
  public:
   /// `scene` must outlive the object. Calls `options.progress` when all inputs are read, then makes the evaluator if
@@ -96,9 +96,9 @@ class Run {
   std::vector<SceneEntries> parts() const;
 
   /// Computes all parts and passes their results to `sink`. Results that miss the tolerance are computed again.
-  /// Progress counts entries. Some entries of a grid are computed a second time to check the error bounds. If a bound
-  /// is wrong, all entries of that direction get the status bit of a missed tolerance. Errors: errors of the evaluator,
-  /// Radiometry and the sink; Cancelled.
+  /// Progress counts entries. As a check, some entries of a grid are computed a second time. If an error bound proves
+  /// wrong, all entries in the direction of this entry get the status bits of missed tolerances. Errors: errors of the
+  /// evaluator, Radiometry and the sink; Cancelled.
   RunOutcome compute(Sink& sink);
 
   double wall_s() const;  ///< time in s since the object was made
@@ -117,7 +117,6 @@ std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spe
 /// Largest number of wavelengths at which an entry is computed, over all bands, materials and films.
 std::size_t spectral_samples(const SceneValues& scene, const SceneEntries& entries);
 
-/// Calls progress(0, total), unless `progress` is empty. Errors: Cancelled.
 void report_start(const Progress& progress, std::size_t total);
 
 /// Does what Run::compute does, with a given plan and evaluator. The evaluator may be null if the plan needs none.

@@ -17,7 +17,7 @@
 namespace dolp {
 namespace {
 
-/// The material that a table stores. If the table has an axis of wavelengths: with all rows of its file.
+/// The material that a table stores. With an axis of wavelengths, it has all rows of the material file.
 const Material& recorded_material(const Axes& axes, const SceneValues& scene) {
   const Material& material = scene.surface.material;
   return material.tabulated && !axes[Axis::kWavelength].empty() ? *material.tabulated : material;

@@ -13,7 +13,7 @@
 
 namespace dolp {
 
-inline constexpr const char* kModelChange = "model_change";  ///< attribute: largest PointResult::model_change
+inline constexpr const char* kModelChange = "model_change";  ///< attribute with the largest PointResult::model_change
 
 /// The quantities in the results of a scene. With a plan: only the quantities that the run computes.
 Quantities quantities_of(const SceneValues& scene, const EffectPlan* plan = nullptr);
@@ -21,10 +21,10 @@ Quantities quantities_of(const SceneValues& scene, const EffectPlan* plan = null
 /// The layout of the table over `axes` (a grid or a part of it), with all attributes that are known before the run.
 TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const Axes& axes);
 
-/// Sets Curve::used of each curve of `head` (n, k and E0) to the values of this curve at the wavelengths of the table.
+/// Sets Curve::used of the curves of `head` (n, k and E0): the values of the curve at the wavelengths of the table.
 void fill_used(TableHead& head, const SceneValues& scene);
 
-/// Attribute that lists all on which a table's values depend, except the device. difference() compares two such lists.
+/// Attribute with everything on which a table's values depend, except the device. difference() compares two of them.
 inline constexpr const char* kIdentity = "identity";
 std::string identity_of(const SceneValues& scene, const std::string& evaluator, bool keep_all);
 

@@ -22,14 +22,14 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMergedAtOnce = std::size_t{1} << 19U;  // entries
-constexpr const char* kShard = "shard";                       // attribute that marks a table as a shard
+constexpr const char* kShard = "shard";                       // attribute of a file with one shard (part) of a table
 
-// The axes whose values shards divide among them. Entries share work along sigma and q, so these stay whole.
+// Shards divide the values of these axes among them, but not sigma and q, along which entries share work.
 constexpr std::array kCutAxes = {Axis::kTheta,       Axis::kMaterial, Axis::kBand, Axis::kWavelength,
                                  Axis::kTemperature, Axis::kN,        Axis::kK};
 using Cuts = std::array<std::size_t, kCutAxes.size()>;
 
-/// Finds how many parts to make of each axis, `count` in all. The first axes get the most. False if none fit.
+/// Finds into how many parts to cut each axis, to get `count` shards. Cuts the first axes most. False if none fit.
 bool find_cuts(const PerAxis& counts, std::size_t count, std::size_t number, Cuts& cuts) {
   if (number == kCutAxes.size()) return count == 1;
   for (std::size_t parts = std::min(count, counts[kCutAxes[number]]); parts > 0; --parts) {
@@ -40,7 +40,7 @@ bool find_cuts(const PerAxis& counts, std::size_t count, std::size_t number, Cut
   return false;
 }
 
-/// The axes of a table or of a part of one, with positions in the scene's lists of labels instead of the table's.
+/// The axes of `table`. Labels (of materials and bands) get their positions in the lists of the scene.
 Axes scene_axes(TableHead table, const SceneValues& scene, const std::string& name) {
   use_scene_labels(table, scene, name);
   return table.axes;
@@ -52,7 +52,7 @@ std::string identity_of(const SceneValues& scene, const TableJob& job) {
   return identity_of(scene, job.evaluator, job.options.keep_all);
 }
 
-/// What all parts of a file must share: the identity, the shard and the device. Shards may come from other devices.
+/// Text that must be equal in all parts of a file: identity, shard and device. Shards may have different devices.
 std::string identity_of_file(const std::string& identity, const Shard& shard, const EvaluationReport& evaluation) {
   return fmt::format("{}; shard {}; device {}, {}", identity, shard_text(shard), one_line(evaluation.device),
                      one_line(evaluation.driver));
@@ -253,7 +253,7 @@ bool is_there(const SceneValues& scene, const TableJob& job) {
     const TableHead& head = reader.head();
     if (difference(text_of(head, kIdentity), identity_of(scene, job)) || text_of(head, kShard) != shard_text(job.shard))
       return false;
-    // Reading all values throws if a value differs from the written one.
+    // Reading all values checks their hash. It throws if a value has changed since it was written.
     static_cast<void>(reader.read_entries({}, job.options.progress));
     return scene_axes(head, scene, job.path.string()) == shard_entries(scene, job.shard).axes();
   } catch (const InputError&) {

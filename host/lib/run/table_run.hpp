@@ -17,8 +17,8 @@ namespace dolp {
 /// The path of the file of a shard: "table.2-of-8.nc" for "table.nc". Without a shard, `path` itself.
 std::filesystem::path shard_path(const std::filesystem::path& path, const Shard& shard);
 
-/// The entries of a shard. Shards divide the values of theta and, if these are too few, of the axes before theta. They
-/// keep all sigma and q, whose entries share work. Errors: InputError for a wrong shard number or too many shards.
+/// The entries of a shard. Shards divide the values of theta and, if these are too few, of all axes but sigma and q,
+/// along which entries share work. Errors: InputError for a wrong shard number or too many shards.
 SceneEntries shard_entries(const SceneValues& scene, const Shard& shard);
 
 struct TableJob {

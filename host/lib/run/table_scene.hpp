@@ -15,13 +15,13 @@ namespace dolp {
 std::string settings_text(const std::vector<Setting>& settings);
 std::vector<Setting> settings_of(const std::string& text);
 
-/// The text of the attribute "scene_hash", by which tables are compared: 64-bit FNV-1a hash of scene text and settings.
+/// The text of the attribute "scene_hash": 64-bit FNV-1a hash of the scene's text and settings, to compare tables.
 std::string scene_hash(const SceneValues& scene);
 std::uint64_t scene_seed(const SceneValues& scene);  ///< the same hash as a number
 
 void check_may_hold_scene(const std::string& path);
 
-/// Reads a table. Errors: InputError if the file does not exist or its format does not store the scene; as read_table.
+/// Reads a table. Errors: errors of read_table; InputError if there is no file or its format does not store a scene.
 TableValues load_table(const std::string& path);
 
 /// Where table_scene() gets data that a scene refers to by name, such as n, k and E0.
@@ -39,7 +39,7 @@ SceneValues table_scene(const TableHead& table, const std::string& name, NamedDa
 double scene_position(const TableHead& table, Axis axis, double value, const SceneValues& scene,
                       const std::string& name);
 
-/// Converts the values on all axes with labels to positions in the scene's lists. Errors: as scene_position().
+/// Converts the values on all axes with labels to positions in the scene's lists. Errors: errors of scene_position().
 void use_scene_labels(TableHead& table, const SceneValues& scene, const std::string& name);
 
 /// The n and k of materials as CSV, with the columns number (from 1), quantity (name, n, k or formula), wavelength_um

@@ -17,14 +17,14 @@ using Kronrod = boost::math::quadrature::gauss_kronrod<double, 15>;
 using Gauss = boost::math::quadrature::gauss<double, 7>;
 
 constexpr std::size_t kFirstIntervals = 4;
-constexpr std::size_t kMostIntervals = 32;  // largest number of intervals per point, which gives 480 wavelengths
-constexpr double kQuadratureShare = 0.01;   // the quadrature stops at an error of this times the tolerance
+constexpr std::size_t kMostIntervals = 32;  // largest number of intervals per point; each has 15 wavelengths
+constexpr double kQuadratureShare = 0.01;   // the quadrature stops if its error is below this times the tolerance
 
 // Quantities that are integrated over the wavelength, and quantities that are averaged over it with a weight.
 constexpr std::array kIntegrated = {kStokesI, kStokesQ, kStokesU, kStokesV};
 constexpr std::array kMeans = {kRhoI, kRhoQ, kEmissivityS, kEmissivityP};
 
-/// Positions in an array of integrals. The order is: radiation, weight, weighted means, error of DOLP, error of rho.
+/// Positions in `Integrals`. The order is: radiation, weight, weighted means, error of DOLP, error of rho.
 constexpr std::size_t kWeight = kIntegrated.size();
 constexpr std::size_t kDolpError = kWeight + 1 + kMeans.size();
 constexpr std::size_t kRhoError = kDolpError + 1;
@@ -39,11 +39,11 @@ struct BandPiece {
 
 struct PointIntegral {
   SceneEntry entry;
-  SceneVariant variant;        ///< variant of the entry; it has no wavelength
+  SceneVariant variant;        ///< variant of the entry, without a wavelength
   std::vector<double> breaks;  ///< wavelengths in um at which the integrand is not smooth
   std::vector<BandPiece> intervals;
   std::size_t first_new = 0;  ///< position of the first interval that is not integrated yet
-  PointResult last;           ///< result at the wavelength that was computed last, for values that are not integrated
+  PointResult last;           ///< result at the last wavelength, for quantities that are not integrated
 };
 
 std::vector<double> band_breaks_um(const SceneModel& scene) {
@@ -73,7 +73,7 @@ Integrals integrand(const PointResult& at, double weight) {
   for (const Quantity quantity : kIntegrated) value[i++] = at[quantity];
   value[i++] = weight;
   for (const Quantity quantity : kMeans) value[i++] = std::isnan(at[quantity]) ? 0.0 : weight * at[quantity];
-  // Where nothing is emitted, the error estimate is infinite. Then the error is at most the radiation itself.
+  // The error estimate of DOLP may be infinite, for example where nothing is emitted. Even then DOLP errs by at most 1.
   const double error = std::abs(at[kStokesI]) * at[kErrorEstimate];
   value[i++] = std::isfinite(error) ? error : std::abs(at[kStokesI]);
   value[i] = std::abs(weight * at[kRhoI]) * at[kRhoErrorEstimate];
@@ -102,7 +102,7 @@ Integrals total_of(const std::vector<BandPiece>& intervals, Integrals BandPiece:
   return sum;
 }
 
-/// The largest error that the quadrature causes: the error in DOLP, or the error in the means over the band.
+/// The larger of two errors of the quadrature: that of DOLP, and that of the mean rho over the band.
 double quadrature_error(const Integrals& value, const Integrals& error) {
   const double of_means = error.segment(kWeight + 1, 2).sum() / std::abs(value[kWeight + 1]);
   return std::max(error.head(kWeight).sum() / std::abs(value[0]), of_means + error[kWeight] / value[kWeight]);

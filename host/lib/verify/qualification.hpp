@@ -21,13 +21,13 @@ struct StoredCase {
   SlopeShape shape;
   OpticalConstants index;
   Moments moments;     ///< reference moments, times cos(theta), with bounds of their errors
-  std::string name;    ///< name of the case, which all distributions and maskings share
+  std::string name;    ///< name, which the case shares with other distributions and maskings
   std::string origin;  ///< source of the reference moments
 };
 
 /// Cases that are hard to compute, for all maskings and distributions: for example at the ends of ranges, and with
 /// indices that reflect nothing or everything. Accuracy: the errors of the reference r_i and r_q are at most 1.5e-13
-/// r_i, or 3e-11 r_i for the index 1.0001 (test HardCases_References_AreAsGoodAsStated).
+/// r_i; for the index 1.0001, at most 3e-11 r_i (test HardCases_References_AreAsGoodAsStated).
 std::vector<StoredCase> hard_cases();
 
 /// Reads the text of a file that dolp-reference-values wrote. Lines that begin with # are comments. Errors: InputError.
@@ -40,7 +40,7 @@ struct ErrorCheck {
   double error = 0.0;      ///< distance to the reference
   double estimate = 0.0;   ///< bound that the result states; infinite if it states none
   double reference = 0.0;  ///< bound of the error of the reference, in the unit of `error`
-  /// The part of `error` that the reference does not explain, over `estimate`. Above 1, the stated bound is wrong.
+  /// (error - reference) / estimate; above 1, the stated bound is wrong. At most 1 if reference > error.
   double ratio() const;
   bool is_within_estimate() const { return ratio() <= 1.0; }
   bool is_above(double tolerance) const { return error > tolerance + reference; }
@@ -61,9 +61,9 @@ struct CaseOutcome {
 /// A scene for stored cases: the surface only emits, at 300 K and 10.6 um. So DOLP = |rho_Q| / (1 - rho_I).
 SceneValues emission_scene(Distribution distribution, Masking masking, double tolerance);
 
-/// Evaluates all cases and compares each with its reference, in the order of `cases`. At 90 degrees rho is infinite
-/// with masking none and integral; there DOLP is compared with |r_Q / r_I|. Domain: cases at 90 degrees have one of
-/// these two maskings and finite reference moments. Errors: errors of evaluate_scene.
+/// Evaluates all cases and compares each with its reference, in the order of `cases`. At 90 degrees, where rho is
+/// infinite, only DOLP is compared, with |r_q / r_i|. Domain: cases at 90 degrees have masking `none` or `integral` and
+/// finite reference moments. Errors: errors of evaluate_scene.
 std::vector<CaseOutcome> qualify(const std::vector<StoredCase>& cases, ModelEvaluator& evaluator,
                                  const Accuracy& accuracy, const Progress& progress);
 

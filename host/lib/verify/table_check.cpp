@@ -21,7 +21,7 @@
 namespace dolp {
 namespace {
 
-// The tolerance of the reference is a hundredth of the tolerance of the table, but at least this.
+// The tolerance of the reference is a hundredth of the table's tolerance, but not below this value.
 constexpr double kReferenceTolerance = 1e-11;
 
 /// How the error bound of a quantity follows from the columns error_estimate and rho_error_estimate of a table.
@@ -47,13 +47,13 @@ constexpr std::array<Compared, 13> kCompared{{
     {Quantity::kEmissivityP, Bound::kEmissivity},
 }};
 
-/// For some quantities tables state no error. It may be this times the largest of both stated errors and the tolerance.
+/// Bound of an error that tables do not state, divided by the largest of both stated errors and the tolerance.
 constexpr double kUnstatedOverStated = 10.0;
 
-/// Properties of a scene with one material, wavelength and so on. The error bounds of its entries depend on them.
+/// Terms of the error bounds that all entries of one variant (material, band, wavelength, temperature) share.
 struct BoundTerms {
   double tolerance = 0.0;
-  double radiation = 0.0;  ///< emitted radiation, plus reflected radiation if rho were 1, in the unit of Stokes I
+  double radiation = 0.0;  ///< largest Stokes I: emission and path radiance, with all incident light reflected
 };
 
 BoundTerms bound_terms(const SceneModel& scene) {
@@ -71,7 +71,7 @@ std::vector<BoundTerms> bound_terms(const SceneValues& scene, const std::vector<
   return terms;
 }
 
-/// The error bound of a quantity. Both estimates are from the table, or both are from the reference.
+/// The error bound of a quantity. The two estimates are the stated errors of the table or of the reference.
 double bound_of(Bound bound, double dolp_estimate, double rho_estimate, const PointResult& reference,
                 const BoundTerms& terms) {
   const double radiation = dolp_estimate * std::abs(reference[Quantity::kStokesI]);
@@ -85,7 +85,7 @@ double bound_of(Bound bound, double dolp_estimate, double rho_estimate, const Po
     case Bound::kPolarisedRadiation:
       return radiation;
     case Bound::kRadiation:
-      // If DOLP is nearly 0, dolp_estimate does not bound the error of I.
+      // An error of I changes DOLP in proportion to DOLP. So if DOLP is 0, its error does not bound the error of I.
       return std::min(dolp > 0.0 ? radiation / dolp : kInfinity, unstated * terms.radiation);
     case Bound::kEmissivity:
       return unstated;
@@ -135,7 +135,7 @@ CheckedValue compare(const TableSample& sample, const Compared& compared, std::s
   value.stated = bound_of(compared.bound, dolp_estimate, rho_estimate, reference, terms);
   value.reference_error = bound_of(compared.bound, reference[Quantity::kErrorEstimate],
                                    reference[Quantity::kRhoErrorEstimate], reference, {0.0, terms.radiation});
-  // If neither the table nor the reference has an error estimate (the intensity I may overflow), no bound is stated.
+  // Without an error estimate in table and reference, for example because I overflows, any error is allowed.
   if (std::isnan(value.stated) && !std::isfinite(value.reference_error))
     value.stated = value.reference_error = kInfinity;
   const std::uint32_t status = table.status.empty() ? kAnyToleranceNotMet : table.status[i];
@@ -268,7 +268,7 @@ TableCheck check_responses(const TableSample& sample, const SceneValues& scene, 
     QuantityCheck& of_variable = check.quantities.emplace_back();
     of_variable.name = described.name;
     for (std::size_t i = 0; i < request.size(); ++i) {
-      if (std::isnan(stated[i]) && std::isnan(reference_error[i])) continue;  // rho has no value for this entry
+      if (std::isnan(stated[i]) && std::isnan(reference_error[i])) continue;  // no weights, because rho has no value
       const auto of_entry = [&](const std::vector<double>& weights) {
         return std::span(weights).subspan(i * table.beta_deg.size(), table.beta_deg.size());
       };

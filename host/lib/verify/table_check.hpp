@@ -70,14 +70,14 @@ TableCheck check_table(const TableSample& sample, const SceneValues& scene, cons
                        const Progress& progress);
 
 /// Compares the weights in a sample of a response table with weights from ReferenceEvaluator. They are wrong if their
-/// response_distance() exceeds the sum of both response_error. Errors: InputError that begins with `name` if the table
-/// has no response_error; Cancelled.
+/// response_distance() exceeds the response_error of the table plus that of the reference. Errors: InputError that
+/// begins with `name` if the table has no response_error; Cancelled.
 TableCheck check_responses(const TableSample& sample, const SceneValues& scene, const std::string& name,
                            const Progress& progress);
 
-/// Results at points of a scene with a band. An adaptive Gauss-Kronrod quadrature integrates over the wavelength. The
-/// remaining error is part of the error estimates. Results that are no integral over the wavelength (such as the
-/// bracket) come from the spectral rule that a run uses.
+/// Results at points of a scene with a band. An adaptive Gauss-Kronrod quadrature integrates over the wavelength. Its
+/// remaining error is part of the error estimates. Quantities that are no integrals over the wavelength, such as the
+/// bounds of the bracket, come from the spectral rule that a run uses.
 std::vector<PointResult> integrate_band(const SceneValues& scene, const SceneEntries& points, ModelEvaluator& evaluator,
                                         const Progress& progress);
 

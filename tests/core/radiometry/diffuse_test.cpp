@@ -42,7 +42,7 @@ TEST(DiffuseReflection, RhoIsTheHemisphericalSumOfTheBeams) {
       const auto [out_s, out_p] = transmittances(n, cosine);
       double i = 0.0, q = 0.0;
       constexpr int kSteps = 200000;
-      for (int step = 0; step < kSteps; ++step) {  // substitution mu = x^5: the integrand has no root at either end
+      for (int step = 0; step < kSteps; ++step) {  // with mu = x^5 the integrand is smooth at mu = 0
         const double x = (step + 0.5) / kSteps, mu = std::pow(x, 5.0);
         const auto [in_s, in_p] = transmittances(n, mu);
         const double f = 0.3 / kPi * std::pow(mu * cosine, own.c) * 0.5 * (in_s + in_p) / (normal * normal);

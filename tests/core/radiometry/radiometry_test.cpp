@@ -40,7 +40,7 @@ TEST(Radiometry, RandomScenes_AgreeWithPrintedFormulas) {
         << "scene " << i;
     ASSERT_EQ(actual[Quantity::kStokesU], 0.0);
     ASSERT_EQ(actual[Quantity::kStokesV], 0.0);
-    // I is 0 with total reflection: a smooth surface emits nothing, and there is no light to reflect.
+    // With total reflection I is 0: the surface emits nothing, and this scene has no light to reflect.
     if (actual[Quantity::kStokesI] == 0.0) {
       ASSERT_TRUE(std::isnan(actual[Quantity::kDolp]));
       continue;
@@ -174,7 +174,7 @@ TEST(Radiometry, MetalWithoutSurroundings_KeepsTheDigitsOfItsEmission) {
   scene.surroundings.reset();
   const Direction direction = direction_of(0.0);
   Moments moments;
-  moments.deficit = 3e-12;  // the difference 1 - r_i would have only four correct digits
+  moments.deficit = 3e-12;  // so small that 1 - r_i has only four correct digits
   moments.r_i = 1.0 - moments.deficit;
   moments.r_q = 1e-12;
   const PointResult result = evaluate(scene, direction, moments);

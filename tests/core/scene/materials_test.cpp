@@ -69,7 +69,7 @@ TEST(Material_BuiltIn, IsLinearBetweenTheRowsOfTheFile) {
 }
 
 TEST(Material_BuiltIn, IsWithinTheThinningOfTheWholeRecord) {
-  constexpr double kThinning = 1e-3;  // largest error of the thinned tables over |N|; see host/data/materials.csv
+  constexpr double kThinning = 1e-3;  // largest error of thinned tables, over |n + ik|; see host/data/materials.csv
   struct Case {
     const char* name;
     double n, k;
@@ -198,7 +198,7 @@ std::string formula(const std::string& range, const std::string& coefficients, i
          "\n    coefficients: " + coefficients + "\n";
 }
 
-// Published coefficients. The last column is the index by the formula; comments state known values of this index.
+// Published coefficients. The last column is the index that the formula gives; the comments have published indices.
 TEST(Dispersion_Formulas, HaveThePublishedValues) {
   struct Case {
     int number;

@@ -267,7 +267,7 @@ TEST(SceneOverride_OfAnAlternative, ReplacesTheFilesChoice) {
   const std::string gaussian = "surface.distribution=gaussian";
   const SceneValues sea = parse(kMinimal + "[grid]\nsigma = [0.1, 0.2]\n", {gaussian, "surface.wind_m_s=5"});
   EXPECT_EQ(sea.grid[Axis::kSigma].size(), 1U);
-  // The later grid.sigma replaces the earlier wind. The scene keeps the list of both settings.
+  // The later setting grid.sigma replaces the earlier wind speed. The scene keeps both settings in its list.
   const SceneValues changed = with_settings(sea, {{"grid.sigma", 0.4}});
   EXPECT_EQ(changed.grid[Axis::kSigma], std::vector<double>{0.4});
   EXPECT_TRUE(changed.wind_m_s.empty());

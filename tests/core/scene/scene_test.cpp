@@ -220,7 +220,7 @@ TEST(Scene_EveryKey, CanBeWrittenInTheFile) {
   const TemporaryFile reflectance("reflectance.csv", "beta_deg,r_s,r_p\n0,0.1,0.1\n90,1,1\n");
   for (const KeyCase& row : key_cases()) {
     const std::string key = row.key;
-    // Each line of this scene can be left out, because the keys are dotted and no line begins a table.
+    // Each line of this scene can be left out, because its keys have full names and no line is a [table] heading.
     std::string text = "accuracy.tolerance = 1e-5\n";
     if (key == "accuracy.tolerance") text.clear();
     const bool gives_optics =
@@ -298,7 +298,7 @@ TEST(Scene_EveryWord, NamesTheAllowedWords) {
     if (key.type != Key::Type::kWord) continue;
     const std::string error = error_of(kMinimal, {key.key + "=nonsense"});
     for (const std::string& word : key.words) EXPECT_TRUE(contains(error, word)) << error;
-    // With v-cavity masking every word of every key is allowed.
+    // With v-cavity masking a key accepts each of its words.
     for (const std::string& word : key.words) {
       EXPECT_EQ(error_of(kMinimal, {"surface.masking=v-cavity", key.key + "=" + word}), "no error");
     }

@@ -111,7 +111,7 @@ TEST(SkyProfile, BuiltInSkies_FollowTheirFormulas) {
   for (const BuiltInSky& sky : built_in_skies()) EXPECT_TRUE(built_in_sky(sky.name)) << sky.name;
 }
 
-// Means over mu = cos(zenith) have the weight mu^(c + 1). So the mean of mu^p is (c + 2) / (c + 2 + p).
+// The means over mu = cos(zenith) have the weight mu^(c + 1), so that the mean of mu^p is (c + 2) / (c + 2 + p).
 TEST(SkyNodes, Means_OfPowersOfTheCosine_AreTheirClosedForms) {
   const SkyNodes nodes({0.0, 25.0, 60.0, 85.0, 90.0});
   for (const double c : {-0.9, -0.5, 0.0}) {
@@ -182,7 +182,7 @@ TEST(SceneReader, Profile_TakesThePlaceOfATemperature) {
   EXPECT_TRUE(contains(error_of(sky + "profile = \"cloudy\"\n"), "s.toml:9: surroundings.profile = \"cloudy\""));
 }
 
-// Even a profile with one temperature (horizon_K = 250) must be refused, because it lacks the scene's 10.6 um.
+// The profile lacks the scene's 10.6 um. It must be refused even if it has one temperature (250 K) everywhere.
 TEST(SceneReader, ProfileKnownAtOtherWavelengths_IsRefused) {
   for (const std::string horizon_K : {"250", "260"}) {
     std::string rows = "wavelength_um,zenith_deg,temperature_K\n";

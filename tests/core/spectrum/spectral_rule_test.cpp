@@ -66,7 +66,7 @@ TEST(SpectralRule, SingleWavelength_IsOneSampleOfPlanckFactors) {
 }
 
 TEST(SpectralRule, ConstantIndexBands_IntegratePlanckToRounding) {
-  // 1 K over the widest band is the hardest case: the exponent varies most, and only the longest wavelengths count.
+  // 1 K over the widest band is hardest: the exponent of Planck's law varies most, and only the longest waves count.
   for (const double temperature_K : {1.0, 20.0, 77.0, 300.0, 6000.0}) {
     for (const auto& [from_um, to_um] : {std::pair{0.3, 1000.0}, {8.0, 14.0}, {3.0, 5.0}}) {
       SceneValues scene = night_scene();
@@ -111,7 +111,7 @@ void expect_promised_reflectances(const Material& material) {
   scene.source->table = {{5.0, 8.1, 9.3, 10.0, 20.0}, {9.0, 4.0, 6.0, 0.5, 0.1}, SpectralTable::Interpolation::kLogLog};
   const SpectralRule rule = spectral_rule(scene);
   EXPECT_LE(rule.relative_error, kBandAgreement);
-  for (const Real cosine : {0.97L, 0.7L, 0.3L, 0.15L}) {  // not the cosines for which the rule is chosen
+  for (const Real cosine : {0.97L, 0.7L, 0.3L, 0.15L}) {  // other cosines than those by which the rule is chosen
     Real actual_emitted = 0.0L;
     Real actual_direct = 0.0L;
     for (const SpectralSample& sample : rule.samples) {

@@ -236,9 +236,9 @@ TEST(MaskingKinks, BistaticBeams_LieWhereTheLowerDirectionChanges_AndWhereNothin
       {Mode::kBistatic, Masking::kSmith, 33.0, 120.0, {}},
       {Mode::kBistatic, Masking::kNone, 33.0, 120.0, {}},
       {Mode::kHemispherical, Masking::kIntegral, 33.0, 120.0, {}},
-      // The masking G of v-cavity is min(1, 2 cos(alpha) cos(theta') / cos(beta)), where theta' is the larger of theta
-      // and the view zenith. It has a kink where both arguments are equal. Opposite to the source, this is at theta =
-      // 60 + view / 3 and at 3 view - 180 degrees.
+      // The v-cavity masking is min(1, 2 cos(alpha) cos(theta') / cos(beta)), where theta' is the larger of theta and
+      // the view zenith. It has a kink where the second argument is 1. With the azimuth 180 degrees this is at theta =
+      // 60 + view / 3 and at theta = 3 view - 180 degrees.
       {Mode::kBistatic, Masking::kVCavity, 70.0, 180.0, {30.0, 60.0 + 70.0 / 3.0}},
       {Mode::kBistatic, Masking::kVCavity, 30.0, 180.0, {70.0}},
       {Mode::kBistatic, Masking::kVCavity, 65.0, 0.0, {65.0}},

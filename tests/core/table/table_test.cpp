@@ -118,7 +118,7 @@ TEST_F(TableFiles, ReadTable_WhatIsNoTable_IsRefusedByName) {
   EXPECT_EQ(message.find('\n'), std::string::npos) << message;
 }
 
-/// A file with axes of these lengths, without values. Its variable dolp has the first `axes` of them.
+/// A file without values. Its axes have the given lengths. Its variable dolp has only the first `axes` axes.
 struct BareFile {
   BareFile(const fs::path& path, const std::array<std::size_t, 3>& lengths, int axes = 3) {
     const std::array<const char*, 3> names = {"theta", "sigma", "q"};

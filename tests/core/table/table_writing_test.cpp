@@ -234,7 +234,7 @@ TEST_F(TableFiles, PartialFile_NoMemoryForItsWriter_IsNotLeft) {
       const TableOutput output(std::move(own));
       has_failed = failing.has_failed();
     } catch (const std::bad_alloc&) {
-      // Not every allocation that fails leads here, because some calls of the libraries succeed without the memory.
+      // Some allocations fail without an exception, because library calls succeed without the memory.
     }
     ASSERT_EQ(names(), std::vector<std::string>{}) << before;
   }

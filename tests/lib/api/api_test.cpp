@@ -322,7 +322,7 @@ TEST_F(Library, Cancelled_WhileAKeptShardIsRead_IsHonoured) {
   EXPECT_EQ(std::filesystem::last_write_time(shard), written);
 }
 
-// After a move an object has its old value, or its members throw an exception.
+// After a move, the old object keeps its value, or all its members throw an exception.
 TEST_F(Library, MovedFromObjects_KeepTheirValueOrSayWhatTheyAre) {
   dolp::Scene scene = scene_;
   const dolp::Scene taken_scene = std::move(scene);  // NOLINT(performance-move-const-arg): that is the test
@@ -397,8 +397,9 @@ TEST_F(Library, EvaluatorInItsOwnCallback_IsAnInputError_AndServesAgain) {
       [&] { evaluator_.mueller(scene_, pairs, options); },
       [&] { evaluator_.write_table(scene_, at("t.nc"), options); },
       [&] {
+        // this shard exists already
         evaluator_.write_table(scene_, at("t.nc"), options, {1, 2});
-      },  // this shard exists already
+      },
       [&] { evaluator_.write_points(scene_, at("points.csv"), at("results.csv"), options); },
       [&] { evaluator_.write_mueller(scene_, at("pairs.csv"), at("matrices.csv"), options); },
       [&] { evaluator_.fit(scene_, {data}, fit); }};
@@ -461,7 +462,7 @@ TEST_F(Library, TableOfContentsThatDoNotFit_IsAnInputError) {
   refuses([](dolp::TableValues& table) { table.attributes.push_back(table.attributes.front()); });
 }
 
-// A table for k = 0.2 that lost its axis of k must not pass for a table at the k of its scene.
+// The table for k = 0.2 has lost its axis of k. A lookup must not take it for a table at the k of the scene.
 TEST_F(Library, LookupInATableThatLostAnAxis_IsAnInputError) {
   dolp::TableValues values = evaluator_.table(scene_.with_grid({{"k", {0.2}}})).values();
   const std::vector<double> theta = {30}, sigma = {0.1}, q = {2};

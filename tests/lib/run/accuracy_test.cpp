@@ -22,15 +22,14 @@
 namespace dolp {
 namespace {
 
-// Largest share of points that miss the tolerance even at the finest level: kTightMissedShare for tolerances below
-// kTight, otherwise kMissedShare. They miss it because of rounding and, at 1e-9, because quadrature rules have a
-// largest order.
+// Largest share of points that may miss the tolerance at the finest level: kTightMissedShare for tolerances below
+// kTight, otherwise kMissedShare. The causes are rounding and, at 1e-9, the largest order of the quadrature rules.
 constexpr double kMissedShare = 0.01;
 constexpr double kTightMissedShare = 0.04;
 constexpr double kTight = 1e-8;
-// Largest median of the ratio of stated to true error. The stated error is a multiple of the difference between two
-// rules, of which the coarser has a fifth fewer digits. At six digits the difference is 10^1.5 times the true error,
-// and the multiple is 10^0.5.
+// Largest median of the ratio of stated to true error. The stated error is 10^0.5 times the difference between two
+// rules, one of which is coarser and has a fifth fewer digits. At six digits this difference is 10^1.5 times the true
+// error.
 constexpr double kMedianPessimism = 100.0;
 // Errors below these limits do not count in the median, because they are rounding. In float the limit is 16 units in
 // the last place of 24 bits. In double it is ten times 1e-12, the error of the reference.

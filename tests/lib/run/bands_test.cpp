@@ -60,7 +60,7 @@ TEST(Bands, GlassWhoseIndexPassesOneNearGrazing_IsWithinItsEstimate) {
   EXPECT_NEAR(result[Quantity::kDolp], kDolp, result[Quantity::kErrorEstimate] + 1e-12);
 }
 
-/// Checks a table of the mirror against the reference. `dolp` replaces the DOLP of the first entry.
+/// Checks a table of a smooth surface against the reference. `dolp` replaces the DOLP of the first entry.
 TableCheck check_with(std::optional<double> dolp) {
   SceneValues scene = scene_with("0", "1e-4");
   scene.grid[Axis::kTheta] = {66.0, 70.0, 75.0};

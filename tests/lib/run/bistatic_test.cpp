@@ -87,7 +87,7 @@ Radiance model_radiance(const SceneValues& scene, double theta_i_deg) {
   return l;
 }
 
-/// The parameter is a kernel, or nothing for the reference.
+/// The parameter is the kernel that computes the results; nullopt means the reference.
 class BistaticByEvaluator : public testing::TestWithParam<std::optional<Kernel>> {};
 
 INSTANTIATE_TEST_SUITE_P(Bistatic, BistaticByEvaluator,
@@ -106,7 +106,7 @@ TEST_P(BistaticByEvaluator, RandomScenes_AgreeWithTheModelWrittenOut) {
     const SlopeShape shape{scene.surface.sigma, scene.surface.q};
     const PointResult r = evaluate_scene(scene, {{theta_i_deg, shape, {}}}, *evaluator, {}).front();
     const Radiance l = model_radiance(scene, theta_i_deg);
-    // The stated error of DOLP covers the errors of Q/I and U/I. The factor 2 covers the error of I, too.
+    // The stated error of DOLP bounds the errors of Q/I and U/I. Here the exact I divides Q and U, hence the factor 2.
     const double bound = 2.0 * r[Quantity::kErrorEstimate] + 1e-9;
     EXPECT_NEAR(r[Quantity::kStokesQ] / l.i, l.q / l.i, bound) << n;
     EXPECT_NEAR(r[Quantity::kStokesU] / l.i, l.u / l.i, bound) << n;
@@ -121,7 +121,7 @@ TEST_P(BistaticByEvaluator, RandomScenes_AgreeWithTheModelWrittenOut) {
   std::printf("worst DOLP difference %.1e\n", worst);
 }
 
-/// An evaluator whose stated error of each beam is 1 % of m00 in float, and as small as usual in double.
+/// An evaluator that states an error of 1 % of m[0] for each beam in float, and the usual error in double.
 class BiasedBeams final : public ModelEvaluator {
  public:
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
@@ -142,7 +142,7 @@ class BiasedBeams final : public ModelEvaluator {
   CpuEvaluator own_;
 };
 
-// A beam's error is part of the stated error of its entry. If it is large, the run computes both again in double.
+// A beam's error is part of the stated error of its entry. If it is large, the run computes the entry again in double.
 TEST(Bistatic, BeamWithALargeError_IsTriedAgainInDouble) {
   RandomScenes random;
   SceneValues scene = random.scene();
@@ -217,7 +217,7 @@ TEST(Bistatic, SourceAngles_ShareTheMomentsOfTheView) {
   // All entries share the moments of the view direction. So one entry takes as many evaluations as three.
   EXPECT_EQ(2.0 * three, evaluator.report().evaluations);
   EXPECT_EQ(results[0][Quantity::kRhoI], results[2][Quantity::kRhoI]);
-  EXPECT_EQ(results[2].status, 0U);  // at 90 degrees the source adds nothing
+  EXPECT_EQ(results[2].status, 0U);  // no status bit, because a source at 90 degrees adds nothing
 }
 
 TEST(Bistatic, StokesOfATable_AreRadiances) {
@@ -238,7 +238,7 @@ PointResult seen_at(SceneValues scene, double view_zenith_deg) {
 }
 
 TEST(Bistatic, ViewAtNinetyDegrees_IsTheLimitWhereThereIsOne) {
-  constexpr double kStep = 1e-5;  // relative change of I over 1e-4 degrees
+  constexpr double kStep = 1e-5;  // relative change of I in the last 1e-4 degrees
   RandomScenes random;
   for (const Masking masking : {Masking::kVCavity, Masking::kSmith}) {
     SceneValues scene = random.scene();

@@ -15,7 +15,7 @@ namespace {
 using namespace effects_support;
 
 constexpr std::uint64_t kSeed = 20250901;
-/// Parts of a scene for which the plan states a bound of their effect on DOLP that may be finite and above 0.
+/// Parts of a scene for which the plan can state a finite bound above 0 of their effect on DOLP.
 constexpr std::array kBounded = {Part::kSource, Part::kSurroundings, Part::kEmission, Part::kPathRadiance};
 // Rounding error of a quotient of two sums of Stokes parameters.
 constexpr double kRounding = 1e-11;
@@ -97,7 +97,7 @@ theta_deg = [20, 60]
   EXPECT_TRUE(plan.needs_beams);
 }
 
-// extents_of puts all points with one wavelength into one extent. So a sum over extents counts no point twice.
+// extents_of groups points by wavelength. Each point is in one group, so a sum over the groups counts no point twice.
 TEST(ExtentsOf, PointsAtTheirWavelengths_AreEachInOne) {
   const SceneEntries points({{10.0, {0.1, 2.0}, {}, 1}, {20.0, {0.3, 3.0}, {}, 0}, {30.0, {0.2, 4.0}, {}, 1}},
                             variants_of(axes_of({}, {}, {}, {8.0, 9.0})));

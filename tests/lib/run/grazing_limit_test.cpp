@@ -1,4 +1,4 @@
-// The quotient r_q / r_i at 90 degrees, where both diverge, compared with an integral and the kernel just below 90.
+// The quotient r_q / r_i at 90 degrees, where r_q and r_i diverge, compared with an integral and the kernel just below.
 #include "run/closed_forms.hpp"
 
 #include <gtest/gtest.h>
@@ -24,11 +24,12 @@ constexpr std::array kAllIndices = {
     OpticalConstants{1e6, 1e6},   OpticalConstants{0.2, 3.0},   OpticalConstants{0.6, 0.0},
     OpticalConstants{0.6, 1e-4},  OpticalConstants{0.01, 0.0},  OpticalConstants{0.51444802339652151, 4.4e-12}};
 
-// Accuracy that run/closed_forms.hpp states.
+// Accuracy of grazing_limit_moments(), as run/closed_forms.hpp states it.
 constexpr double kRelativeAccuracy = 1e-12;
 constexpr double kAlbedoAccuracy = 2e-15;
-// Just below 90 degrees, r_q / r_i minus its limit is a power series in cos(theta)^(3 - 2q). Extrapolation removes the
-// first term, which is at most 2 % of r_q / r_i at q = 1.3. The second term is about the square of the first.
+// Just below 90 degrees, the difference between r_q / r_i and its limit is a power series in cos(theta)^(3 - 2q). The
+// test removes the first term by extrapolation. This term is at most 2 % of r_q / r_i at q = 1.3; the second is about
+// its square.
 constexpr double kExtrapolationAccuracy = 4e-4;
 
 /// Ends of integration panels, whose widths halve toward both ends of [from, to].
@@ -43,7 +44,8 @@ std::vector<Real> graded_panels(Real from, Real to) {
   return ends;
 }
 
-/// Integral of `part` times cos(phi)^(4 - 2q) over a quarter turn. Panels shrink toward grazing and critical angles.
+/// Integral of `part` times cos(phi)^(4 - 2q) over 90 degrees of phi. Panels shrink toward the ends and critical
+/// angles.
 Real integral(double q, const OpticalConstants& index, const std::function<Real(const SmoothReflectance&)>& part) {
   const Real quarter = 0.5L * std::numbers::pi_v<Real>;
   const Real squared = 1.0L - (Real(index.n) * index.n - Real(index.k) * index.k);
@@ -82,7 +84,7 @@ TEST(GrazingLimit_EveryIndex, AgreesWithAnotherQuadrature) {
       const Moments limit = grazing_limit_moments(index, q);
       const Real albedo = integral(q, index, [](const auto&) { return 1.0L; });
       const Real r_i = integral(q, index, [](const SmoothReflectance& r) { return 0.5L * (r.s + r.p); });
-      // The facets are vertical, so cos(2 eta) = -1.
+      // Facets are vertical. So the rotation by eta, from the plane of incidence to the meridian, has cos(2 eta) = -1.
       const Real r_q = integral(q, index, [](const SmoothReflectance& r) { return -0.5L * (r.s - r.p); });
       const double bound = kRelativeAccuracy * limit.r_i + kAlbedoAccuracy * limit.albedo;
       EXPECT_NEAR(limit.albedo, static_cast<double>(albedo), kRelativeAccuracy * limit.albedo);

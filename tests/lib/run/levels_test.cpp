@@ -1,4 +1,4 @@
-// A run keeps an entry's best result of several levels of accuracy. A check by another rule finds wrong bounds.
+// A run keeps the best result that an entry gets in several levels. Its check with another rule finds wrong bounds.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -45,7 +45,7 @@ TEST(EvaluateScene_Levels, ThatWorsen_LeaveTheFirst) {
   EXPECT_EQ(result[Quantity::kRhoQ], 0.1);
 }
 
-/// The check of the run contradicts these moments: its r_q differs by `bounds` times the sum of both stated errors.
+/// Moments with wrong bounds: in the check of the run, r_q differs by `bounds` times the sum of both stated errors.
 class Contradicts final : public MomentsOnly {
  public:
   explicit Contradicts(double bounds) : bounds_(bounds) {}

@@ -1,5 +1,5 @@
-// Stated errors of lookups in random tables, some of them coarse, compared with the model at random points between the
-// entries. DOLP_PROPERTY_DRAWS sets the number of tables, DOLP_PROPERTY_SEED their seed.
+// Errors that lookups in random tables state, compared with true errors at random points between the entries. Some
+// tables are coarse. DOLP_PROPERTY_DRAWS sets the number of tables, DOLP_PROPERTY_SEED their seed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -113,7 +113,7 @@ std::vector<PointResult> exact_at(const SceneValues& scene, const std::vector<Ta
                         *make_evaluator(Evaluator::kDouble), {});
 }
 
-/// Sums over all points.
+/// Totals over the points of all tables.
 struct Tally {
   std::size_t points = 0;
   std::size_t flagged = 0;  ///< points with status 2: the lookup reports that DOLP misses the tolerance
@@ -169,7 +169,7 @@ void expect_honest(NextScene next_scene) {
             << " %; median of the stated errors " << tally.stated[tally.stated.size() / 2] << "\n";
 }
 
-/// A scene with a beam through the specular direction or beside it, and a table with few values of sigma.
+/// A scene in bistatic mode. Its table crosses the specular direction or passes beside it, and has few values of sigma.
 SceneValues bistatic_scene(Draws& draw) {
   SceneValues scene = random_scene(draw);
   scene.surroundings = Surroundings{.temperature_K = 280.0};
@@ -202,8 +202,8 @@ TEST(LookupEstimates, RandomPointsAcrossTotalReflection_ErrorsAreWithinThem) {
   expect_honest(scene_across_total_reflection);
 }
 
-// For these tables the true error would be 1.8 to 5.7 times the stated error if lookups did not consider kinks, or if
-// they relied on differences between cells that are small only by chance.
+// In these tables the true error would be 1.8 to 5.7 times the stated error if lookups ignored kinks, or if they
+// trusted a change of the result that is small only by chance.
 TEST(LookupEstimates, TablesWithKinksOrShortAxes_ErrorsAreWithinThem) {
   const struct {
     NextScene next_scene;

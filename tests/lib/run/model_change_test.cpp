@@ -1,4 +1,4 @@
-// The status bit 32: single scattering is not enough.
+// The status bit 32, for entries where single scattering is not accurate enough.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -14,7 +14,7 @@ namespace {
 using namespace dolp;
 using namespace scene_run_support;
 
-/// Counts the requests of the first level. This level ends when the run begins to check some entries.
+/// Counts the requests of the first level. The level ends with the first request of the run's check.
 class FirstRequests final : public ModelEvaluator {
  public:
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {

@@ -1,4 +1,4 @@
-// Weights of response tables, compared with another rule, with the reference, and with closed forms.
+// Weights of response tables, compared with another quadrature rule, with the reference, and with closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -40,8 +40,8 @@ double error_at(const EntryResponses& all, std::size_t entry) {
   return all.responses[ResponseVariable::kResponseError][entry];
 }
 
-/// Expects that weights of `a` and `b` differ by no more than the sum of their errors. Returns the largest ratio of
-/// difference to this sum. Point i is entry i of `b` and entry i * `step` of `a`.
+/// Expects that weights of `a` and `b` differ by no more than the sum of their errors. Returns the largest ratio of the
+/// difference to this sum. Point i has the weights of entry i in `b`, and of entry i * `step` in `a`.
 double expect_within_bounds(const EntryResponses& a, const EntryResponses& b, const std::vector<Point>& points,
                             std::size_t step = 1) {
   double worst = 0.0;
@@ -134,7 +134,7 @@ TEST(Responses, OfADenseGrid_AreThoseOfEntriesByThemselves) {
 }
 
 TEST(Responses, OfAMirror_GiveFresnelsReflectances) {
-  constexpr double kInterpolation = 1e-8;  // distance of the reflectances from their polynomials of degree 23
+  constexpr double kInterpolation = 1e-8;  // error of the polynomials of degree 23 that replace the reflectances
   CpuEvaluator evaluator;
   const std::vector<Point> points = {{0.0, {0.0, 2.0}, {}}, {40.0, {0.0, 2.0}, {}}, {89.0, {0.0, 2.0}, {}}};
   const EntryResponses mirror = responses({Distribution::kCauchy, Masking::kSmith}, points, 1e-4, evaluator);

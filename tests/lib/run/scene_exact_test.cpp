@@ -14,7 +14,7 @@ namespace {
 
 using namespace scene_run_support;
 
-// Tolerance for a dozen roundings and, near grazing incidence, for the rounding of the cosine.
+// Tolerance for a dozen roundings and, near grazing incidence, for the rounding of cos(theta).
 constexpr double kFresnelRounding = 4e-15;
 // This tolerance exceeds the error of the independent integral (180 x 180 Gauss points) if sigma is 0.3 or more.
 constexpr double kGgxAccuracy = 1e-9;
@@ -38,8 +38,8 @@ struct GgxMoments {
   double albedo = 0.0;
 };
 
-/// Integrand of the moments over the direction of reflection, for a GGX surface. For `albedo` the reflectance is 1.
-/// Source: Walter et al. 2007, eq. (33); Heitz 2014, eqs. (72), (99).
+/// Integrand of the moments of a GGX surface, over the direction (theta_r, phi) of the reflected ray. For `albedo` the
+/// reflectance is 1. Source: Walter et al. 2007, eq. (33); Heitz 2014, eqs. (72), (99).
 GgxMoments ggx_terms(double alpha_g, Masking masking, const OpticalConstants& index, double theta, double theta_r,
                      double phi) {
   const double a2 = alpha_g * alpha_g;

@@ -1,4 +1,4 @@
-// Runs at limits of the model or the arithmetic: 90 degrees, normal incidence, extreme slopes, metals. Their status.
+// Results and status of runs at limits: 90 degrees, normal incidence, extreme slopes, metals, and rounding.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ using namespace scene_run_support;
 
 constexpr unsigned kSeed = 20250811;
 constexpr SlopeShape kPaperShape{0.3, 2.0};
-// The manual has four digits of these limits.
+// The manual states the limits at 90 degrees with four digits.
 constexpr double kFourDigits = 5e-5;
 
 bool has_limit(Masking masking) { return masking == Masking::kVCavity || masking == Masking::kSmith; }
@@ -58,7 +58,7 @@ TEST(Limits_RightAngle, DivergingReflectanceLeavesOnlyTheDolp) {
 }
 
 TEST(Limits_RightAngle, DivergingSpecularDolpIsTheQuotientJustBefore) {
-  // In the last 1e-6 degrees the quotient changes by about cos(theta), which is 2e-8, divided by the moments.
+  // From 90 - 1e-6 to 90 degrees, r_q / r_i changes by about cos(theta), at most 2e-8, divided by the moments.
   constexpr double kChange = 1e-4;
   for (const Masking masking : {Masking::kNone, Masking::kIntegral}) {
     for (const Distribution distribution : kDistributions) {
@@ -152,7 +152,7 @@ std::vector<SceneEntry> hard_entries(Distribution distribution, Masking masking)
   return entries;
 }
 
-/// Expects that a result has only numbers, or the status of a result without a value.
+/// Expects that a result has only numbers, or is marked as outside the model's domain.
 void expect_sound(const PointResult& r, double tolerance, const std::string& name) {
   const bool outside = (r.status & kOutsideModelDomain) != 0;
   EXPECT_EQ(outside, std::isnan(r[Quantity::kStokesI])) << name;
@@ -226,7 +226,7 @@ TEST(Limits_Metals, DolpIsThatOfTheReferenceOrSaysThatItIsNot) {
   });
 }
 
-/// The zenith from which rho_s or rho_p is outside [0, 1] at all larger zeniths.
+/// The zenith from which on rho_s or rho_p is outside [0, 1] up to 90 degrees.
 double unphysical_from_deg(Masking masking, const OpticalConstants& index, double sigma, Evaluator evaluator) {
   SceneValues scene = make_scene(Distribution::kCauchy, masking, index);
   scene.grid = axes_of({}, {sigma}, {2.0});

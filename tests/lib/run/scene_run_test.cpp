@@ -115,7 +115,7 @@ TEST_P(RunsOfModel, PermutedEntries_KeepTheirBits) {
   }
 }
 
-// With slope samples, which all entries of a grid share, results agree with separate points only within their errors.
+// With slope samples, which entries of a grid share, a grid equals separate points within the errors, else exactly.
 TEST_P(RunsOfModel, Grid_EqualsThePointsOneByOne) {
   const auto [evaluator, distribution, masking] = GetParam();
   const bool has_slope_samples = masking == Masking::kNone || masking == Masking::kVCavity;

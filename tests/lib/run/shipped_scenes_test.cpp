@@ -21,7 +21,7 @@ using namespace scene_run_support;
 
 std::string scene_path(const std::string& name) { return DOLP_HOST_DIR "/scenes/" + name + ".toml"; }
 
-/// What a comment states: DOLP in percent, its sign, and by how many percentage points it changes without an effect.
+/// What a comment states: DOLP in percent, its sign, and its changes in percentage points if effects are dropped.
 struct Statement {
   std::vector<std::string> overrides;  ///< settings that the comment assumes
   double theta_deg = 0.0;
@@ -116,9 +116,9 @@ std::optional<Part> part_of(const std::string& effect) {
   return found == kParts.end() ? std::nullopt : std::optional(found->second);
 }
 
-// Comments state changes of DOLP. The plan states changes of the vector (Q/I, U/I), which are at least as large.
+// Comments state changes of DOLP. The plan states changes of the vector (Q/I, U/I). These are at least as large.
 TEST_P(ShippedScene, Plan_EstimatesTheChangesThatTheCommentStates) {
-  constexpr double kAccuracy = 0.2;  // percentage points; both values of DOLP have a tolerance of 1e-3
+  constexpr double kAccuracy = 0.2;  // percentage points; with and without the effect, DOLP has the tolerance 1e-3
   const auto [name, statement_count] = GetParam();
   for (const Statement& statement : statements_of(name)) {
     const SceneValues scene = read_scene(scene_path(name), settings_from_text(statement.overrides));

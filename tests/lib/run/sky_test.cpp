@@ -1,5 +1,5 @@
-// Skies that change with the zenith, from scene to DOLP: values of the manual, and random scenes compared with the
-// reference, which integrates the sky directly.
+// Skies that change with the zenith, from scene to DOLP. They are compared with values of the manual and, in random
+// scenes, with the reference, which integrates the sky directly.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,8 +36,8 @@ SkyProfile profile_of(std::vector<double> zenith_deg, std::vector<double> values
   return profile;
 }
 
-/// The sky of shaders/physics/README.md, section 11: T = 290 - 80 mu + 10 mu^2, mu = cos(zenith), in equal steps of
-/// zenith.
+/// The sky of shaders/physics/README.md, section 11, at `steps` + 1 equidistant zeniths: T = 290 - 80 mu + 10 mu^2,
+/// where mu = cos(zenith).
 SkyProfile quadratic_sky(int steps) {
   SkyProfile sky;
   for (int i = 0; i <= steps; ++i) {
@@ -60,7 +60,7 @@ PointResult result_of(const SceneValues& scene, double theta_deg, ModelEvaluator
   return evaluate_scene(scene, entries, evaluator, {}).front();
 }
 
-/// Reflected radiation of the sky, S_I and S_Q of shaders/physics/README.md, section 11, from the Stokes parameters.
+/// Radiation of the sky that the surface reflects: S_I and S_Q of shaders/physics/README.md, section 11.
 struct Reflected {
   double i;
   double q;
@@ -70,7 +70,7 @@ Reflected reflected_of(const SceneValues& scene, const PointResult& result) {
   return {result[kStokesI] / pi - emitted * (1.0 - result[kRhoI]), result[kStokesQ] / pi + emitted * result[kRhoQ]};
 }
 
-// Tolerance: the manual has five digits, and the temperature of this sky is linear between 361 zeniths.
+// Tolerance: the manual states five digits, and the sky of the test has linear pieces between 361 zeniths.
 constexpr double kDigits = 6e-6;
 
 TEST(Sky, QuadraticProfile_GivesTheValuesOfTheModel) {
@@ -144,7 +144,7 @@ SceneValues random_scene(Draws& random) {
 TEST(Sky, RandomScenes_AgreeWithTheReferenceWithinTheirBounds) {
   const int scenes = static_cast<int>(draws_wanted(250));
   // Largest share of scenes that miss their tolerance. In 1,000 scenes the share was 0.129. The causes were grooves,
-  // directions near the horizon, and skies with jumps at which not all integrals are split.
+  // directions near the horizon, and jumps of the sky at which some integrals are not split.
   constexpr double kMostMissed = 0.2;
   Draws random(20261124);
   CpuEvaluator evaluator;
@@ -170,7 +170,7 @@ TEST(Sky, RandomScenes_AgreeWithTheReferenceWithinTheirBounds) {
   EXPECT_LT(missed, kMostMissed * scenes);
 }
 
-// Each case needs another kind of request: interpolation, many indices combined from few, a band, bistatic beams.
+// Each case makes the run use another kind of request, such as interpolation, slope samples, many indices, or a band.
 TEST(Sky, DenseGridsAndBands_OnTheDevice_AgreeWithTheReferenceWithinTheirBounds) {
   struct Case {
     const char* name;
@@ -292,8 +292,8 @@ TEST(Sky, DiffuseSurface_ReflectsTheMeanThatItsExponentWeights) {
     CpuEvaluator cpu;
     const PointResult result = result_of(scene, 40.0, cpu);
     // The diffuse pBRDF is (k_d / pi) (mu cos(theta))^c, with mu = cos(zenith). So a sky of radiance L gives the
-    // exitance 2 pi k_d cos^c(theta) int L mu^(c + 1) dmu. The substitution mu = v^(1 / (c + 2)) makes the weight
-    // constant.
+    // exitance 2 pi k_d cos^c(theta) int L mu^(c + 1) dmu. With mu = v^(1 / (c + 2)) the integral over v has a constant
+    // weight.
     constexpr int kSteps = 20000;
     double sum = 0.0;
     for (int i = 0; i < kSteps; ++i) {

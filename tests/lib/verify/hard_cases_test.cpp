@@ -34,7 +34,7 @@ std::string label(const StoredCase& c) {
 
 TEST(HardCases, References_AreAsGoodAsStated) {
   constexpr double kRelative = 1.5e-13;
-  // In the case almost-vacuum, r_i is 3e-9. It comes from amplitudes of 5e-5 that have rounding errors of 1e-16.
+  // In the case almost-vacuum, r_i is 3e-9, the square of amplitudes of 5e-5, which have rounding errors of 1e-16.
   constexpr double kAlmostVacuum = 3e-11;
   for (const StoredCase& c : hard_cases()) {
     const Moments& m = c.moments;
@@ -82,7 +82,7 @@ using Setting = std::tuple<Kernel, double>;
 
 class HardCasesOn : public testing::TestWithParam<Setting> {};
 
-// `dolp verify --hard-cases --precision double` and `dolp devices` name the precision in which they test a device.
+// `dolp verify --hard-cases --precision double` and `dolp devices` report a precision. Tests must really use it.
 TEST(Qualify, EvaluatorInDouble_IsExaminedInDouble) {
   CpuEvaluator evaluator;
   qualify(cases_of(hard_cases(), Distribution::kCauchy, Masking::kNone), evaluator, {1e-2, Precision::kDouble}, {});
@@ -140,7 +140,7 @@ class BiasedEvaluator final : public MomentsOnly {
 
 TEST(Qualify, BiasedEvaluator_IsFoundOutCaseByCase) {
   std::vector<StoredCase> cases = cases_of(hard_cases(), Distribution::kCauchy, Masking::kIntegral);
-  // Leaves out mirrors, which do not use the evaluator, and directions where rounding of the cosine is not negligible.
+  // Leaves out mirrors, which need no evaluator, and directions near 90 degrees, where rounding of cos(theta) counts.
   std::erase_if(cases, [](const StoredCase& c) { return c.shape.sigma == 0.0 || c.theta_deg > 89.9; });
   BiasedEvaluator evaluator(cases);
   for (const double bias : {0.0, 5e-7, 2e-6}) {
@@ -164,7 +164,7 @@ TEST(Qualify, OrdinaryCases_MeetTheToleranceInDouble) {
 }
 
 // With v-cavity and smith masking the program gives the limit of rho at 90 degrees. The stored values are for 1e-9
-// degrees less, where rho differs from the limit by about the cosine, 2e-11, times a logarithm.
+// degrees less. There rho differs from the limit by about cos(theta), which is 2e-11, times a logarithm.
 TEST(HardCases, RightAngle_IsTheLimitOfTheStoredValue) {
   constexpr double kApproach = 1e-8;
   for (const StoredCase& c : hard_cases()) {

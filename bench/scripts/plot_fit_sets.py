@@ -8,7 +8,7 @@ def sets_of(result):
 
 
 def markdown(result):
-    """The results as a Markdown table, with sentences on the other parts of the study."""
+    """The results as a Markdown table, followed by sentences on the bracket and on the time of a fit."""
     coverage = result["coverage"]
     rows = sets_of(result)
     lines = ["| varied parameters | data sets | median time of a fit, s | 68 % intervals that contain the true value | 95 % intervals that contain it | fits that found the global minimum |",
@@ -45,8 +45,8 @@ def line_of(name, rows):
 
 
 def intervals_of(result):
-    """For each 95 % interval with two ends, yields the distances of its ends from the true value, divided by half of
-    the interval's width."""
+    """Yields both ends of each 95 % interval, relative to the true value and in units of half the interval's width.
+    Leaves out intervals with an open end."""
     for row in sets_of(result):
         for truth, (low, high) in zip(row["truth"], row["interval_95"]):
             if low is not None and high is not None:

@@ -36,9 +36,8 @@ def time_table(result):
 
 
 def ratio_text(row):
-    """Two ratios of times. Both divide the row's time: the first by the time of dolp's kernels that interpolate, the
-    second by the time of its kernels that integrate every entry. A star marks times with the cheapest setting of each
-    entry (hindsight)."""
+    """The time of the row divided by the time of dolp, as two numbers: dolp interpolates, or it integrates every entry.
+    A star marks ratios for which the method has the cheapest setting of each entry (hindsight)."""
     cells = []
     for prefix in ("table_", ""):
         ratio = row.get(f"{prefix}ratio", row.get(f"hindsight_{prefix}ratio"))

@@ -6,7 +6,7 @@ TOLERANCE = 1e-4
 
 
 def interpolated(rows):
-    """Returns the rows of those runs that may interpolate between entries, as `dolp table` does."""
+    """Returns the rows of runs in which dolp may interpolate between entries, as in `dolp table`."""
     return [row for row in rows if row["interpolation"] == "auto"]
 
 

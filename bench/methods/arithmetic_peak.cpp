@@ -17,7 +17,7 @@ constexpr double kSteps = 8.0 * DOLP_PEAK_TURNS;
 constexpr double kFlops = 2.0 * kChains * kSteps;  // floating-point operations per invocation
 
 constexpr std::uint32_t kInvocations = 1U << 15U;
-constexpr double kEnoughTime = 0.02;  // shortest time that counts as a measurement, in seconds
+constexpr double kEnoughTime = 0.02;  // seconds; a measurement takes at least this long
 constexpr double kTimeout = 60.0;
 
 }  // namespace

@@ -68,8 +68,8 @@ class DeviceRule final : public Solver {
   std::string where() const override { return bench_.where(); }
 
  private:
-  /// Fills `words_` with one element per invocation: an entry and a range of zenith nodes. All entries follow each
-  /// other with the first range, then all entries with the second range, and so on.
+  /// Fills `words_` with one element per invocation: an entry and a range of zenith nodes. The list has all entries
+  /// with the first range, then all entries with the second range, and so on.
   void make_words(const KernelData& data, std::size_t nodes) {
     const std::size_t most_zeniths = std::max<std::size_t>(1, kMostIterations / nodes);
     words_.clear();

@@ -111,7 +111,7 @@ struct GridRun {
   }
 };
 
-constexpr std::array<GridSize, 2> kMaterialGrids = {{{64, 16, 16}, {8, 8, 8}}};  // grids of a full and of a quick study
+constexpr std::array<GridSize, 2> kMaterialGrids = {{{64, 16, 16}, {8, 8, 8}}};  // of a full study, of a quick study
 constexpr std::size_t kManyIndices = 12;                                         // number of values of n, and of k
 constexpr std::size_t kManyWavelengths = 300;
 

@@ -31,7 +31,7 @@ struct Reflected {
 /// Tables of integrals over slopes, from which `smith` and `integral` masking are computed.
 class MaskingTails;
 
-/// A direction of the running beam, and a value that serves the masking G of all facets.
+/// A direction of the running beam, with a value from which the masking G of each facet is computed.
 struct RunningBeam {
   double cos = 1.0;
   double sin = 0.0;
@@ -86,8 +86,8 @@ class DirectSurface {
 };
 
 /// Integrand D G M sin(theta_r)/2 of the moments at the direction (theta_r, delta_phi) of the running beam.
-/// Equation: r = int_0^{pi/2} dtheta_r int_0^pi d(delta_phi) D G M sin(theta_r)/2. The other half of the azimuths
-/// contributes as much, which the integrand counts already.
+/// Equation: r = int_0^{pi/2} dtheta_r int_0^pi d(delta_phi) D G M sin(theta_r)/2. The azimuths cover half a circle. A
+/// factor 2 in the integrand counts the other half.
 Reflected beam_integrand(const DirectSurface& surface, const RunningBeam& beam, double cos_azimuth);
 
 /// Integrand (cos(beta)/cos(alpha)) G M of the moments, for the facet with slope t = tan_alpha and azimuth phi_h. The

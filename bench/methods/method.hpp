@@ -65,7 +65,7 @@ struct Method {
   std::string setting_name;            ///< quantity in `settings`: nodes, samples, tolerance
   std::vector<double> settings;        ///< settings to measure, from coarse to fine
   std::vector<double> quick_settings;  ///< the subset that --quick runs
-  /// True if one call computes many entries. The time per entry is then the time of the call over the entries' number.
+  /// True if one call computes many entries. The time per entry is then the mean over the entries of the call.
   bool is_batched = false;
   bool needs_grid = false;  ///< saves time only for entries that form a grid
   bool is_random = false;   ///< answers differ from call to call; the error is the rms over the calls

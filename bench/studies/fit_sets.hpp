@@ -51,8 +51,8 @@ struct SetOutcome {
   std::size_t held_68 = 0, held_95 = 0;  ///< numbers of 68 % and 95 % intervals that contain the true value
   double time_s = 0.0;
 
-  /// True if no interval wrongly excludes its true value. Some interval may exclude it if chi^2 at the true values
-  /// exceeds the minimum by more than 1 (68 % intervals) or 3.84 (95 %). Meaningful only without a model error.
+  /// True if no interval wrongly excludes its true value. An interval may exclude this value if chi^2 at the true
+  /// values exceeds the minimum by more than 1 (68 % interval) or 3.84 (95 %). Meaningful only without a model error.
   bool is_consistent() const;
   /// True if no descent from the true values reaches a lower objective than the fit.
   bool is_global() const;

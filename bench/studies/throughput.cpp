@@ -136,7 +136,7 @@ struct MaterialAxes {
   std::vector<Spectrum> bands = {};
   std::vector<double> temperature_K = {};
   bool has_all_materials = false;
-  double polarised_diffuse = 0.0;  ///< share k_d of the diffuse reflection, whose light is polarised
+  double polarised_diffuse = 0.0;  ///< k_d, the share of diffuse reflection; its light is polarised
 };
 
 Layer layer(const OpticalConstants& index, double thickness_um) { return {{.constant = index}, thickness_um}; }

@@ -60,8 +60,8 @@ struct Expected {
 };
 
 // The tolerances of midpoint and Gauss rules are two to three times an error that was measured at this setting. The
-// tolerances of monte-carlo are four standard errors of 1e5 samples. Those of hcubature and pcubature are ten times the
-// setting, because these methods only estimate their errors. The tolerances of other methods are the setting itself.
+// tolerances of monte-carlo are four standard errors of 1e5 samples. hcubature and pcubature only estimate their
+// errors, so their tolerances are ten times the setting. The tolerances of other methods are the setting itself.
 const std::map<std::string, Expected> kExpected = {
     {"midpoint", {256, {{"easy", 8e-6}, {"median", 6e-6}, {"rough", 6e-5}, {"hard", 2e-3}, {"worst", 2e-2}}}},
     {"gauss", {64, {{"easy", 2e-9}, {"median", 4e-5}, {"rough", 2e-9}, {"hard", 1.5e-4}, {"worst", 2e-5}}}},

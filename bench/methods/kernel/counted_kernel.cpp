@@ -1,4 +1,4 @@
-// A build of the kernel source that counts arithmetic operations: its number type `real` is a class that counts.
+// A build of the kernel source that counts arithmetic operations. Its number type `real` is the class Counted.
 #define DOLP_KERNEL_NAMESPACE counted_kernel
 
 #include "methods/kernel/grouped_kernel.hpp"

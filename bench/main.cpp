@@ -132,8 +132,8 @@ int parse_and_run(int argc, char** argv) {
   return kExitDone;
 }
 
-// Keeps freed memory in the process. By default glibc returns large blocks to the system. Then every repeat of a large
-// grid would spend time on new memory pages, and a repeat of a small grid would not.
+// Keeps freed memory in the process, so that the repeats of a study reuse it. By default glibc returns large blocks to
+// the system, and each repeat of a large grid would spend time on new memory pages.
 void keep_freed_memory() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_MAX, 0);

@@ -1,4 +1,4 @@
-// Adaptive cubature by libcubature over the directions of one beam; the other beam is fixed.
+// Adaptive cubature by libcubature over the directions of the running beam (direct_brdf.hpp).
 #include <cubature.h>
 
 #include <algorithm>
@@ -47,8 +47,8 @@ class Cubature final : public Solver {
       Integral integral{surface};
       double values[2];
       double errors[2];
-      // ERROR_LINF controls the larger error of r_i and r_q, divided by the larger of both values, which is r_i. The
-      // studies report this ratio, too.
+      // With ERROR_LINF libcubature stops when both errors are at most setting * max(|r_i|, |r_q|). The maximum is r_i,
+      // by which the studies divide errors, too.
       const int status =
           routine_(2, integrand, &integral, 2, kLow, kHigh, kMostEvaluations, 0.0, setting, ERROR_LINF, values, errors);
       if (status != 0) throw Unavailable("libcubature gave up");

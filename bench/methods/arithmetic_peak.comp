@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Multiplies and adds as fast as the device can. The code has twelve independent chains of operations, so that others
-// continue while one waits.
+// Multiplies and adds as fast as the device can. Each invocation has twelve independent chains of operations. While one
+// chain waits for a result, other chains continue.
 
 #include "physics/prelude.glsl"
 #include "interface.glsl"

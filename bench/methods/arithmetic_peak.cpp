@@ -11,13 +11,13 @@
 namespace dolp::bench {
 namespace {
 
-// Numbers of chains and of their steps in arithmetic_peak.comp.
+// arithmetic_peak.comp has this many chains of operations, each with this many steps. A step is one * and one +.
 constexpr double kChains = 12.0;
 constexpr double kSteps = 8.0 * DOLP_PEAK_TURNS;
 constexpr double kFlops = 2.0 * kChains * kSteps;  // floating-point operations per invocation
 
 constexpr std::uint32_t kInvocations = 1U << 15U;
-constexpr double kEnoughTime = 0.02;  // shortest duration of a run, in seconds
+constexpr double kEnoughTime = 0.02;  // seconds; a measurement takes at least this long
 constexpr double kTimeout = 60.0;
 
 }  // namespace

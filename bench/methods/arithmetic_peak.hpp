@@ -7,8 +7,8 @@
 
 namespace dolp::bench {
 
-/// Measures the float multiplications and additions per second of a kernel that does nothing else. Returns one value
-/// per repeat, in ascending order. Errors: DeviceError.
+/// Runs a kernel that only multiplies and adds floats. Returns the operations per second of each repeat, in ascending
+/// order. Errors: DeviceError.
 std::vector<double> arithmetic_peak(const std::string& device, std::size_t repeats);
 
 }  // namespace dolp::bench

@@ -1,4 +1,4 @@
-// SciPy's dblquad in a separate process. That process measures the times, so they exclude the start of Python.
+// Runs SciPy's dblquad in a separate process, which also measures the times. So the times exclude the start of Python.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -58,7 +58,7 @@ class Dblquad final : public Solver {
     add_times(reply["times_s"].get<std::vector<double>>(), solution);
   }
 
-  // Adds the repeated times of an entry: the k-th time of a call is the sum of the k-th times of its entries.
+  // Adds the times of one entry to the times of the whole call: first to first, second to second, and so on.
   static void add_times(const std::vector<double>& times_s, Solution& solution) {
     if (solution.answers.size() == 1) solution.own_times_s.assign(times_s.size(), 0.0);
     solution.own_times_s.resize(std::min(solution.own_times_s.size(), times_s.size()));

@@ -26,15 +26,14 @@ using Node = std::array<double, 4>;
 using Pair = std::array<double, 2>;
 using EntryWords = std::array<std::uint32_t, 4>;
 
-constexpr double kTimeout = 600.0;  // longest time of one dispatch, in seconds
-constexpr std::size_t kMostIterations = 1U
-                                        << 14U;  // limit per invocation; lavapipe stops loops after 65,535 iterations
-constexpr std::size_t kMostSamples = 1U << 26U;  // limit per dispatch; the time limit is checked only after one
-constexpr std::size_t kMostShapes = 1U << 12U;   // limit per call; each shape needs a masking table of 4 kB
-constexpr std::size_t kMostInvocations = 1U << 22U;  // limit per call
+constexpr double kTimeout = 600.0;                   // longest time of one dispatch, in seconds
+constexpr std::size_t kMostIterations = 1U << 14U;   // per invocation; lavapipe stops loops after 65,535 iterations
+constexpr std::size_t kMostSamples = 1U << 26U;      // per dispatch; the time limit is checked between dispatches
+constexpr std::size_t kMostShapes = 1U << 12U;       // per call of solve(); each shape has a masking table of 4 kB
+constexpr std::size_t kMostInvocations = 1U << 22U;  // per call of solve(); limits the memory
 constexpr std::uint32_t kZenithUnit = 1U << 16U;
 
-/// The nodes as product_rule.comp reads them: the number of zeniths, then the zeniths, then the azimuths.
+/// The nodes of a rule as product_rule.comp reads them: their number per axis, then the zeniths, then the azimuths.
 std::vector<Node> product_nodes(const Rule& rule) {
   std::vector<Node> nodes{{static_cast<double>(rule.nodes.size()), 0.0, 0.0, 0.0}};
   for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
@@ -69,8 +68,8 @@ class DeviceRule final : public Solver {
   std::string where() const override { return bench_.where(); }
 
  private:
-  /// Fills `words_` with one element per invocation. Neighbouring invocations compute the same zeniths of different
-  /// entries.
+  /// Fills `words_` with one element per invocation: an entry and a range of zenith nodes. The list has all entries
+  /// with the first range, then all entries with the second range, and so on.
   void make_words(const KernelData& data, std::size_t nodes) {
     const std::size_t most_zeniths = std::max<std::size_t>(1, kMostIterations / nodes);
     words_.clear();
@@ -78,8 +77,8 @@ class DeviceRule final : public Solver {
       const std::size_t zeniths = std::min(most_zeniths, nodes - first);
       for (std::size_t i = 0; i < data.size(); ++i) {
         const MomentsEntry entry = data[i];
-        // KernelData contains every direction several times, for different sets of lines that split the integral. The
-        // product rule splits nothing, so it takes the first copy.
+        // KernelData may contain a direction several times, each time with other lines at which dolp splits the
+        // integral. The product rule does not split the integral, so it takes the first copy.
         const auto direction = static_cast<std::uint32_t>(entry.theta % data.directions);
         words_.push_back(
             {direction, entry.shape, entry.index, static_cast<std::uint32_t>(first + kZenithUnit * zeniths)});

@@ -16,10 +16,10 @@ namespace dolp::bench {
 using std::numbers::inv_sqrtpi;
 using std::numbers::pi;
 
-/// Tables of three integrals over the in-plane slope density p, from x to infinity: probability(x) = int p dtau,
-/// first(x) = int g p dtau, height(x) = int g p (tau - x) dtau. The factor g is 1 for `smith` and 1/sqrt(1 + tau^2) for
-/// `integral`. The nodes lie at equal steps of X = asinh(tau/width_). Between them, quintic Hermite polynomials with
-/// exact derivatives interpolate.
+/// Tables of three integrals from a slope x to infinity:
+///   probability(x) = int p dtau,   first(x) = int g p dtau,   height(x) = int g p (tau - x) dtau
+/// p(tau) is the density of slopes along one azimuth. The weight g is 1 for `smith`, 1/sqrt(1 + tau^2) for `integral`.
+/// The nodes have equal steps of X = asinh(tau/width_). Quintic Hermite polynomials interpolate between the nodes.
 class MaskingTails {
  public:
   MaskingTails(const Entry& entry);
@@ -45,21 +45,21 @@ class MaskingTails {
   double m_;
   double q_;
   double norm_;           ///< p(0)
-  double width_;          ///< scale of tau in X = asinh(tau/width_)
-  double tail_exponent_;  ///< at large tau, `height` is proportional to this power of tau
+  double width_;          ///< the nodes have equal steps of X = asinh(tau/width_)
+  double tail_exponent_;  ///< height(tau) is proportional to tau^tail_exponent_ at large tau
   double end_tau_;
   std::optional<Interpolant> height_, first_, probability_;
 };
 
 namespace {
 
-constexpr double kStep = 1.0 / 24.0;      // step between nodes in X; the interpolation error is 1e-12
-constexpr double kEndOverWidth = 1e6;     // last tau/max(1, m); from there on, integrals are powers of tau within 1e-12
-constexpr double kVerticalSlope = 1e100;  // steepest sampled slope; its square does not overflow
+constexpr double kStep = 1.0 / 24.0;      // step of X between nodes; the error of the interpolation is 1e-12
+constexpr double kEndOverWidth = 1e6;     // last tau/max(1, m); beyond it each integral is a power of tau within 1e-12
+constexpr double kVerticalSlope = 1e100;  // limit of sampled_slope(), so that the square of the slope does not overflow
 using CellRule = boost::math::quadrature::gauss<double, 4>;
 
-/// Reflectances R_s and R_p, computed without complex numbers.
-/// Source: Born and Wolf, Principles of Optics, 14.2. N cos(beta') = u + iv, where beta' is the angle of refraction.
+/// Reflectances R_s and R_p, computed without complex numbers. The code uses u and v, where u + iv = N cos(beta'). N is
+/// the index n + ik, and beta' the angle of refraction. Source: Born and Wolf, Principles of Optics, 14.2.
 struct Reflectances {
   double s;
   double p;
@@ -74,8 +74,8 @@ Reflectances reflectances(const OpticalConstants& index, double cos_beta) {
   const double v2 = real > 0.0 ? 0.5 * imaginary * imaginary / (modulus + real) : 0.5 * (modulus - real);
   const double u = std::sqrt(u2);
   const double r_s = ((cos_beta - u) * (cos_beta - u) + v2) / ((cos_beta + u) * (cos_beta + u) + v2);
-  // R_p/R_s = ((u - g)^2 + v^2)/((u + g)^2 + v^2), g = sin(beta) tan(beta). The code multiplies both sums by
-  // cos^2(beta).
+  // With g = sin(beta) tan(beta), R_p/R_s = ((u - g)^2 + v^2)/((u + g)^2 + v^2). The code multiplies numerator and
+  // denominator by cos^2(beta).
   const double low = u * cos_beta - sin2;
   const double high = u * cos_beta + sin2;
   const double v2_cos2 = v2 * cos_beta * cos_beta;
@@ -111,8 +111,8 @@ double MaskingTails::density(double tau) const {
   return norm_ * (is_gaussian_ ? std::exp(-ratio2) : std::pow(1.0 + ratio2, 0.5 - q_));
 }
 
-// The last node of the tables, with the integrals from it to infinity. Beyond this node the Cauchy density is
-// proportional to tau^(1-2q), and the Gaussian density is negligible.
+// The last node of the tables. The integrals beyond this node have closed forms, because there the Cauchy density is
+// proportional to tau^(1-2q). The Gaussian density is negligible there.
 MaskingTails::Node MaskingTails::end() const {
   const double p = density(end_tau_);
   Node node{.tau = end_tau_, .density = p};
@@ -146,7 +146,7 @@ MaskingTails::Node MaskingTails::cell(double tau, const Node& beyond) const {
   return node;
 }
 
-// First and second derivative with respect to tau of one of the three integrals.
+// First and second derivative, with respect to tau, of the integral that `value` selects.
 std::pair<double, double> MaskingTails::derivatives(const Node& node, double Node::*value) const {
   const double tau = node.tau;
   const double p = node.density;
@@ -162,7 +162,7 @@ MaskingTails::Interpolant MaskingTails::interpolant(const std::vector<Node>& nod
   std::vector<double> y, slope, curvature;
   for (const Node& node : nodes) {
     const auto [in_tau, twice_in_tau] = derivatives(node, value);
-    const double stretch2 = width_ * width_ + node.tau * node.tau;  // (dtau/dX)^2; d2tau/dX2 is tau
+    const double stretch2 = width_ * width_ + node.tau * node.tau;  // (dtau/dX)^2; the second derivative is tau
     y.push_back(node.*value);
     slope.push_back(in_tau * std::sqrt(stretch2));
     curvature.push_back(twice_in_tau * stretch2 + in_tau * node.tau);
@@ -231,9 +231,9 @@ RunningBeam DirectSurface::beam(double cos_r, double sin_r) const {
   return beam;
 }
 
-// `integral` masking depends on the beam nearer to the horizon, with zenith theta. Let mu = cot(theta), tau_b =
-// tan(alpha - 2 theta) and kappa = 1/(cos(alpha) (mu + tan(alpha))).
-//   If the upper limit of the tilt is pi/2:  1 - G1 = kappa height(mu)
+// `integral` masking G1 of a facet with tilt alpha. Only the beam with the larger zenith angle theta matters. Let mu =
+// cot(theta), kappa = 1/(cos(alpha) (mu + tan(alpha))) and tau_b = tan(alpha - 2 theta).
+//   If 2 theta - alpha <= pi/2:  1 - G1 = kappa height(mu)
 //   Otherwise:  1 - G1 = kappa (height(mu) - height(tau_b) - (tau_b - mu) first(tau_b)) + probability(tau_b)
 double DirectSurface::attenuation(const RunningBeam& beam, double cos_alpha, double tan_alpha, double cos_beta) const {
   if (entry_.masking == Masking::kNone) return 1.0;

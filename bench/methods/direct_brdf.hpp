@@ -1,7 +1,7 @@
-// The plain textbook formulas of the model, for the methods that dolp is compared with. They share nothing with the
-// shaders or the reference. They are programmed as a user who cares about time would do it: reflectances in real
-// arithmetic, and `integral` masking from tables of three integrals. A moment belongs to one beam with a fixed
-// direction. It is an integral over the directions of the other beam, which these files call the running beam.
+// The model in plain textbook formulas, for the methods that the benchmark compares with dolp. This code shares nothing
+// with the shaders or the reference. It is written for speed: it computes reflectances without complex numbers, and
+// `integral` masking from tables. A moment is an integral over the directions of one beam, called the running beam. The
+// other beam, called the fixed beam, keeps its direction.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace dolp::bench {
 
-/// One entry of a request.
+/// One entry of a MomentsRequest.
 struct Entry {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
@@ -21,33 +21,33 @@ struct Entry {
 };
 Entry entry_of(const MomentsRequest& request, std::size_t position);
 
-/// Two elements of the Mueller matrix M of a facet, times the masking G: `i` is G M00, `q` is G M01.
+/// What one facet contributes to the moments: its masking G, times the elements M00 (`i`) and M01 (`q`) of its Mueller
+/// matrix M.
 struct Reflected {
   double i = 0.0;
   double q = 0.0;
 };
 
-/// Tables of integrals over the in-plane slope density, from a given slope to infinity. `smith` and `integral` masking
-/// are computed from these integrals.
+/// Tables of integrals over slopes, from which `smith` and `integral` masking are computed.
 class MaskingTails;
 
-/// A direction of the running beam, with the part of the masking G that does not depend on the facet.
+/// A direction of the running beam, with a value from which the masking G of each facet is computed.
 struct RunningBeam {
   double cos = 1.0;
   double sin = 0.0;
-  /// For smith masking, G. For integral masking, MaskingTails::height of the beam nearer to the horizon. Else unused.
+  /// `smith`: G itself. `integral`: MaskingTails::height of the beam with the larger zenith angle. Others: unused.
   double masking = 0.0;
 };
 
 /// The microfacet surface seen from one fixed direction.
 ///
-/// Equation: (1), (2), (3), (5), (7), (8), (9)-(12) of the paper that shaders/physics/README.md names.
+/// Equations: (1)-(3), (5) and (7)-(12) of the paper that shaders/physics/README.md names.
 /// Accuracy: moments agree with the reference to 1e-7 (test BenchFormulas).
-/// Domain: 0 < theta < 90 degrees, sigma > 0, cauchy q > 1 (smith: q > 3/2).
+/// Domain: 0 < theta < 90 degrees, sigma > 0. Cauchy slopes need q > 1, or q > 3/2 with `smith`.
 class DirectSurface {
  public:
-  /// How to compute Lambda of Smith's masking. The closed form is faster for a few directions of the running beam, the
-  /// table for many.
+  /// How to compute the function Lambda of Smith's masking: the closed form is faster for few directions of the running
+  /// beam, the table for many.
   enum class SmithBy { kClosedForm, kTable };
   DirectSurface(const Entry& entry, SmithBy smith_by);
   DirectSurface(const DirectSurface&) = delete;
@@ -62,14 +62,14 @@ class DirectSurface {
   /// Density P(t) = D cos^4(alpha) of the slopes t = tan(alpha), per unit area of the plane of slopes. Units: 1.
   double slope_density(double tan2_alpha) const;
 
-  /// The slope that a facet exceeds with this probability, in (0, 1], if it is drawn from the density D cos(alpha).
+  /// The slope that a random facet exceeds with this probability. The facet normals have the density D cos(alpha).
   double sampled_slope(double probability) const;
 
-  /// The running beam in the direction with cosine cos_r > 0 and sine sin_r, with its part of the masking G.
+  /// The running beam with the zenith angle whose cosine is cos_r > 0 and whose sine is sin_r.
   RunningBeam beam(double cos_r, double sin_r) const;
 
-  /// Masking G times M00 and M01 of the facet that reflects one beam into the other. M01 is 0 if the facet or the
-  /// surface has no plane of incidence.
+  /// Contribution of the facet that reflects the running beam into the fixed beam. M01 is 0 if the fixed beam is normal
+  /// to the facet or to the surface.
   Reflected reflected(const RunningBeam& beam, double cos_alpha, double tan_alpha, double cos_beta) const;
 
  private:
@@ -81,18 +81,18 @@ class DirectSurface {
   double sin_theta_;
   double m_;
   std::unique_ptr<MaskingTails> tails_;
-  /// Part of the masking G that belongs to the fixed beam: Lambda (smith) or MaskingTails::height (integral).
+  /// Value of the fixed beam that the masking needs: Lambda for `smith`, MaskingTails::height for `integral`.
   double fixed_masking_ = 0.0;
 };
 
-/// Integrand of the moments at one direction of the running beam.
-/// Equation: r = int_0^{pi/2} dtheta_r int_0^pi d(delta_phi) D G M sin(theta_r)/2. The azimuth covers half a circle;
-/// the integrand is doubled to count the other half.
+/// Integrand D G M sin(theta_r)/2 of the moments at the direction (theta_r, delta_phi) of the running beam.
+/// Equation: r = int_0^{pi/2} dtheta_r int_0^pi d(delta_phi) D G M sin(theta_r)/2. The azimuths cover half a circle. A
+/// factor 2 in the integrand counts the other half.
 Reflected beam_integrand(const DirectSurface& surface, const RunningBeam& beam, double cos_azimuth);
 
-/// Integrand of the moments as a function of the facet: its slope t = tan_alpha, and its azimuth phi_h from the fixed
-/// beam. The factor P(t) t dt dphi_h is left out. Zero if the reflected ray does not leave the surface.
-/// Equation: r = int P t dt dphi_h (cos(beta)/cos(alpha)) G M, over cos(theta_r) > 0.
+/// Integrand (cos(beta)/cos(alpha)) G M of the moments, for the facet with slope t = tan_alpha and azimuth phi_h. The
+/// azimuth is relative to the fixed beam; cos_phi is cos(phi_h). Zero if the facet reflects below the horizon.
+/// Equation: r = int P t dt dphi_h (cos(beta)/cos(alpha)) G M, where P is slope_density().
 Reflected half_vector_integrand(const DirectSurface& surface, double tan_alpha, double cos_phi);
 
 }  // namespace dolp::bench

@@ -1,4 +1,4 @@
-// A method of the benchmark: one way to compute the moments r_i and r_q of entries. Its setting controls the accuracy.
+// A method of the benchmark: one way to compute the moments r_i and r_q. A number, the setting, controls its accuracy.
 #pragma once
 
 #include <functional>
@@ -25,9 +25,8 @@ struct Answer {
 struct Solution {
   std::vector<Answer> answers = {};        ///< one per entry of the request, in its order
   std::optional<double> evaluations = {};  ///< integrand evaluations of the whole call
-  std::optional<double> kernel_s =
-      {};  ///< time of the kernels and of the sums over their results, for the whole call; empty without kernels
-  std::vector<double> own_times_s = {};  ///< times of repeated calls, if the method measures them itself
+  std::optional<double> kernel_s = {};     ///< time in kernels and in sums of their results; empty without kernels
+  std::vector<double> own_times_s = {};    ///< times of repeated calls, if the method measures them itself
 };
 
 /// A method that is ready to run. The constructor creates what is needed once (a device, an interpreter) and is not
@@ -57,7 +56,7 @@ struct SolverOptions {
   std::vector<std::string> pythons = {"/usr/bin/python3", "python3"};  ///< tried in turn until one has SciPy
 };
 
-/// One row of the list of methods.
+/// Description of a method.
 struct Method {
   std::string name;                    ///< name on the command line and in results
   std::string label;                   ///< name in figures and tables
@@ -66,7 +65,7 @@ struct Method {
   std::string setting_name;            ///< quantity in `settings`: nodes, samples, tolerance
   std::vector<double> settings;        ///< settings to measure, from coarse to fine
   std::vector<double> quick_settings;  ///< the subset that --quick runs
-  /// True if one call computes many entries. The time per entry is then the time of the call divided by their number.
+  /// True if one call computes many entries. The time per entry is then the mean over the entries of the call.
   bool is_batched = false;
   bool needs_grid = false;  ///< saves time only for entries that form a grid
   bool is_random = false;   ///< answers differ from call to call; the error is the rms over the calls
@@ -80,7 +79,7 @@ const std::vector<Method>& methods();
 // The solvers, one family per file.
 std::unique_ptr<Solver> make_midpoint_rule();
 std::unique_ptr<Solver> make_gauss_rule();
-/// Errors of both functions: Unavailable without a usable device.
+/// Both product rules on a Vulkan device. Errors: Unavailable if there is no usable device.
 std::unique_ptr<Solver> make_vulkan_midpoint(const SolverOptions& options);
 std::unique_ptr<Solver> make_vulkan_gauss(const SolverOptions& options);
 std::unique_ptr<Solver> make_monte_carlo();
@@ -88,9 +87,9 @@ std::unique_ptr<Solver> make_hcubature();
 std::unique_ptr<Solver> make_pcubature();
 /// Errors: Unavailable without an interpreter that has SciPy.
 std::unique_ptr<Solver> make_dblquad(const SolverOptions& options);
-/// Errors: Unavailable without a device that computes in this precision.
+/// Errors: Unavailable if no device supports `precision`.
 std::unique_ptr<Solver> make_vulkan(const SolverOptions& options, Precision precision);
-/// The Vulkan method in float that interpolates between slope distributions where the entries are dense.
+/// The Vulkan method in float. If a grid has many slope distributions, it interpolates between some of them.
 std::unique_ptr<Solver> make_vulkan_table(const SolverOptions& options);
 std::unique_ptr<Solver> make_cpu(Precision precision);
 std::unique_ptr<Solver> make_native();

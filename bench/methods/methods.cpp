@@ -20,7 +20,7 @@ void add_rules(std::vector<Method>& list) {
        .what = "Gauss-Legendre product rule in (theta_r, delta_phi), plain formulas, C++ double",
        .cores = "1",
        .setting_name = "nodes per axis",
-       .settings = {4, 8, 12, 16, 20, 32, 64, 96, 128, 256, 512, 1024},  // GSL stores these rules to full precision
+       .settings = {4, 8, 12, 16, 20, 32, 64, 96, 128, 256, 512, 1024},  // GSL stores the rules of these sizes
        .quick_settings = {16, 64, 256},
        .make = [](const SolverOptions&) { return make_gauss_rule(); }});
   list.push_back({.name = "monte-carlo",

@@ -1,5 +1,5 @@
-// Importance sampling of the facets. Facet normals are drawn from the density D cos(alpha), so the integrand does not
-// contain this factor.
+// Monte Carlo integration over random facets, whose normals have the density D cos(alpha). So a moment is the mean of
+// the integrand without this factor.
 #include <cmath>
 #include <cstdint>
 #include <limits>

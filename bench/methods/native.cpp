@@ -1,4 +1,4 @@
-// The kernel source compiled for this processor, with the algorithm and the pieces of kernel rows that a device has.
+// The kernel source compiled for this processor. Several threads run the invocations that a Vulkan device would run.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -13,7 +13,7 @@
 namespace dolp::bench {
 namespace {
 
-constexpr std::size_t kBlock = 64;  // invocations that a core takes at a time
+constexpr std::size_t kBlock = 64;  // number of invocations of the kernel that a thread takes at a time
 
 /// Calls body(i) once for each i < count, in several threads. It does not use OpenMP: threads of OpenMP spin while they
 /// wait, which is slow if other programs run.

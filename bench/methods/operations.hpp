@@ -11,8 +11,8 @@ namespace dolp::bench {
 struct KernelWork {
   OperationCounts counts;  ///< operations for all entries, extrapolated from the counted invocations
   double evaluations = 0.0;
-  /// Useful share of the operations if `lanes` neighbouring invocations run in lockstep and wait for the slowest. An
-  /// upper bound, because lanes also wait within loops.
+  /// Upper bound of the share of lanes that compute. It assumes that `lanes` neighbouring invocations wait only for the
+  /// slowest of them. On a device, lanes also wait within loops.
   double busy_lanes = 1.0;
 };
 

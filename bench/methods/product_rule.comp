@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Product rule over the directions of one beam; the other beam is fixed. Each invocation sums over some zeniths theta_r
-// of one entry, and for each of them over all azimuths. Density, geometry and rotations use the plain formulas. Fresnel
-// reflectances and masking use the code of dolp.
+// Product rule over the directions (theta_r, delta_phi) of the running beam, see direct_brdf.hpp. An invocation sums
+// over some zeniths theta_r and all azimuths delta_phi, for one entry. Density, geometry and rotations use plain
+// formulas. Fresnel reflectances and masking use the code of dolp.
 //   r = int_0^{pi/2} dtheta_r int_0^pi d(delta_phi) D G M sin(theta_r) / 2
 
 #include "physics/prelude.glsl"
@@ -10,19 +10,20 @@
 #include "physics/buffers.glsl"
 #include "physics/all.glsl"
 
-layout(std430, binding = DOLP_BINDING_THETAS) readonly buffer Thetas { real2 thetas[]; };  // cos, sin
+layout(std430, binding = DOLP_BINDING_THETAS) readonly buffer Thetas { real2 thetas[]; };  // cos, sin of the fixed beam
 layout(std430, binding = DOLP_BINDING_INDICES) readonly buffer Indices { IndexNode indices[]; };
-// For each invocation: the positions of its theta, shape and index; then first zenith + 65536 * number of zeniths.
+// One per invocation: positions in `thetas`, `shapes` and `indices`; then first zenith + 65536 * number of zeniths.
 layout(std430, binding = DOLP_BINDING_TASKS) readonly buffer Entries { uvec4 entries[]; };
-// product[0].x is n. Then come n zeniths (cos(theta_r), sin(theta_r), weight) and n azimuths (cos(delta_phi), weight).
+// product[0].x is n. n zeniths follow (cos(theta_r), sin(theta_r), weight), then n azimuths (cos(delta_phi), weight).
 layout(std430, binding = DOLP_BINDING_RULE) readonly buffer Product { real4 product[]; };
 layout(std430, binding = DOLP_BINDING_MOMENTS) writeonly buffer Sums { real2 sums[]; };  // r_i, r_q
 
-// The facet that reflects one beam into the other, with slope t at azimuth phi_h from the fixed beam.
+// The facet that reflects one beam into the other. It has the slope t = tan(alpha). phi_h is its azimuth, relative to
+// the fixed beam; theta is the zenith angle of the fixed beam.
 struct Bisector {
-  real slope2;  // tan^2(alpha)
-  real along;   // cos(theta) t cos(phi_h) - sin(theta)
-  real across2;
+  real slope2;   // t^2
+  real along;    // cos(theta) t cos(phi_h) - sin(theta)
+  real across2;  // (t sin(phi_h))^2
   real cos_beta;
 };
 

@@ -1,5 +1,5 @@
-// Product rules over the directions of one beam: r = int_0^{pi/2} dtheta_r int_0^pi d(delta_phi) D G M sin(theta_r)/2.
-// Half a circle of azimuths suffices, because the integrand is symmetric.
+// Product rules over the directions (theta_r, delta_phi) of the running beam (direct_brdf.hpp):
+//   r = int_0^{pi/2} dtheta_r int_0^pi d(delta_phi) D G M sin(theta_r)/2
 #include "methods/product_rules.hpp"
 
 #include <gsl/gsl_integration.h>
@@ -16,7 +16,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr auto kSmithBy = DirectSurface::SmithBy::kClosedForm;  // cheap enough: Lambda is computed once per zenith
+constexpr auto kSmithBy = DirectSurface::SmithBy::kClosedForm;  // takes little time: it is computed once per zenith
 
 Answer product_rule(const DirectSurface& surface, const Rule& rule) {
   std::vector<double> cos_azimuths;
@@ -34,7 +34,7 @@ Answer product_rule(const DirectSurface& surface, const Rule& rule) {
     answer.r_i += rule.weights[i] * row.i;
     answer.r_q += rule.weights[i] * row.q;
   }
-  const double factor = 0.5 * pi * pi;  // the interval of theta_r has length pi/2, that of delta_phi has length pi
+  const double factor = 0.5 * pi * pi;  // lengths of the intervals: pi/2 for theta_r, pi for delta_phi
   answer.r_i *= factor;
   answer.r_q *= factor;
   return answer;

@@ -3,8 +3,8 @@
 
 Usage: dblquad.py --version | dblquad.py REQUEST
 REQUEST is JSON with distribution (cauchy | gaussian), masking, theta_rad, sigma, q, n, k, tolerance, time_limit_s.
-Prints JSON: r_i, r_q, stated_error (of r_i), evaluations, times_s (one per repeat, with masking tables, no imports).
-If the first computation exceeds the limit, prints too_long: true instead. Exit status: 0 done, 2 usage.
+Prints JSON: r_i, r_q, stated_error (relative to r_i), evaluations, times_s (one per repeat; includes masking tables).
+If the first computation exceeds the time limit, prints too_long: true instead. Exit status: 0 done, 2 usage.
 """
 import json
 import math
@@ -19,14 +19,14 @@ from scipy.interpolate import CubicHermiteSpline
 from scipy.special import betainc, gammaln
 
 STEP = 1 / 64  # step of asinh(tau/width) between nodes of the masking tables
-FAR = 1e5  # last tau of the masking tables, divided by max(1, m); from there on, the integrals are powers of tau
+FAR = 1e5  # last tau of the masking tables, divided by max(1, m); beyond it, each integral is a power of tau
 MOST_REPEATS = 3
 ENOUGH_S = 1.5  # repeats end after this many seconds in total
 
 
 class MaskingTails:
-    """Three integrals over the in-plane slope density p from tau to infinity: int p dt, int g p dt, and
-    int g p (t - tau) dt, with g = 1/sqrt(1 + t^2)."""
+    """Tables of three integrals over slopes t from tau to infinity: int p dt, int g p dt and int g p (t - tau) dt.
+    p(t) is the density of slopes along one azimuth, and g = 1/sqrt(1 + t^2)."""
 
     def __init__(self, m, q, is_gaussian):
         self.q = q
@@ -70,8 +70,8 @@ class MaskingTails:
 
 
 class Surface:
-    """The integrand D G M sin(theta_r)/4 of both moments: slope density D, masking G, element M of the Mueller
-    matrix."""
+    """The integrand D G M sin(theta_r)/4 of r_i and r_q. D is the density of facet normals, G the masking, and M an
+    element of the Mueller matrix: M00 for r_i, M01 for r_q."""
 
     def __init__(self, request):
         self.is_gaussian = request["distribution"] == "gaussian"
@@ -120,7 +120,7 @@ class Surface:
         return 1 - kappa * (self.low_height - height - (tau - c / s) * first) - probability
 
     def values(self, delta_phi, theta_r):
-        """The integrands of r_i and r_q at one geometry."""
+        """The integrands of r_i and r_q in one direction."""
         self.evaluations += 1
         if theta_r != self.theta_r:
             self.start_row(theta_r)
@@ -151,7 +151,7 @@ def moments(request):
             lambda delta_phi, theta_r: surface.values(delta_phi, theta_r)[component],
             0, math.pi / 2, 0, math.pi, epsabs=absolute, epsrel=relative)
 
-    # r_q may vanish, so its error is relative to r_i. The factor 2 adds the other half of the azimuth.
+    # r_q may be 0, so its tolerance is a share of r_i. The integrals cover half of the azimuths, hence the factor 2.
     r_i, error_i = integral(0, 0.0, tolerance)
     r_q, error_q = integral(1, tolerance * r_i, 0.0)
     return {"r_i": 2 * r_i, "r_q": 2 * r_q, "stated_error": max(error_i, error_q) / r_i,
@@ -190,7 +190,7 @@ def main(arguments):
         print("usage: dblquad.py --version | dblquad.py REQUEST", file=sys.stderr)
         return 2
     import warnings
-    warnings.simplefilter("ignore")  # dblquad warns if it misses a tolerance; stated_error reports this
+    warnings.simplefilter("ignore")  # stated_error shows if dblquad misses a tolerance
     print(json.dumps(timed(json.loads(arguments[0]))))
     return 0
 

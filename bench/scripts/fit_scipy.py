@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""SciPy's least_squares around `dolp.evaluate`, as one would write it without `dolp fit`.
+"""Fits parameters by SciPy's least_squares around `dolp.evaluate`, as a user without `dolp fit` would do it.
 
-One argument, JSON. For the model: `package` (the folder of the Python package dolp), `scene` (text), `tolerance`. For
-each parameter: `columns` (its column of the points), `low`, `high`, `start`. For the data: `theta_deg`, `measured`
-(Q/I), `uncertainty`. Prints JSON: `values`, `chi_square`, `calls` of dolp.evaluate, `time_s`. One call computes a whole
-Jacobian.
+The argument is JSON. Model: `package` (folder of the Python package dolp), `scene` (text), `tolerance`. Parameters, one
+value for each: `columns` (keyword of dolp.evaluate), `low`, `high`, `start`. Data: `theta_deg`, `measured` (Q/I),
+`uncertainty`. Prints JSON: `values`, `chi_square`, `calls` (number of calls of dolp.evaluate), `time_s`. One call
+computes a whole Jacobian.
 """
 import json
 import sys
@@ -47,7 +47,7 @@ class Model:
 def main():
     question = json.loads(sys.argv[1])
     model = Model(question)
-    model.residuals(np.array(question["start"]))  # the time excludes this start of device and kernels
+    model.residuals(np.array(question["start"]))  # creates device and kernels before the timed part
     model.calls = 0
     start = time.perf_counter()
     found = scipy.optimize.least_squares(model.residuals, question["start"], model.jacobian,

@@ -29,7 +29,7 @@ from plot_style import style, time_text  # noqa: E402
 
 STUDIES = {"effects": plot_effects, "throughput": plot_throughput, "peers": plot_peers,
            "scale": plot_scale, "fit": plot_fit_sets}  # all studies except accuracy
-NEEDED = {"context", "methods", "cases", "results"}  # fields of a result of the study of accuracy
+NEEDED = {"context", "methods", "cases", "results"}  # keys that a result of the study of accuracy must have
 WANTED_ERRORS = (1e-3, 1e-6, 1e-9)
 PANEL_COLUMNS = 3
 LABEL_GAP_POINTS = 9.0
@@ -55,15 +55,15 @@ def read_result(path, study):
 
 
 def points(result, method, case):
-    """Points (error, time per entry), one for each setting that ran. The reference has an error bound, too; an error
-    below this bound is replaced by the bound."""
+    """Points (error, time per entry), one for each setting that ran. Errors below the error bound of the reference are
+    not known, so the bound replaces them."""
     bound = case["reference"]["bound"]
     return [(max(row["error"], bound), row["time_s"]) for row in result["results"]
             if row["method"] == method and row["case"] == case["name"] and "error" in row]
 
 
 def worth_it(all_points):
-    """The points with a smaller error than every cheaper setting of the method, from coarse to fine."""
+    """Keeps a point if its error is smaller than the errors of all cheaper settings. Sorts from coarse to fine."""
     kept = []
     for error, time_s in sorted(all_points, key=lambda point: (point[1], point[0])):
         if not kept or error < kept[-1][0]:
@@ -119,7 +119,7 @@ def spread_apart(heights, gap):
 
 
 def draw_curves(axes, result, case):
-    """Draws all curves of a case. Returns for each its most accurate point, its label and its colour."""
+    """Draws all curves of a case. Returns the most accurate point, the label and the colour of each curve."""
     ends = []
     for method in result["methods"]:
         label, colour, marker, line = style(method["name"])
@@ -139,8 +139,8 @@ def draw_curves(axes, result, case):
 
 
 def label_ends(axes, ends):
-    """Writes the name of each curve beside its most accurate point. The name is on the right for the curve whose error
-    is largest there, and on the left for all others. Moves names that would touch."""
+    """Writes the name of each curve beside the most accurate point of the curve: on the right for the least accurate
+    curve, on the left for all others. Moves names that would touch."""
     if not ends:
         return
     to_points = 72.0 / axes.figure.dpi
@@ -215,7 +215,7 @@ def limits_of(result):
         raise NotAResult("holds no measured setting")
     errors, times = zip(*everything)
     finest, coarsest = math.log10(min(errors)), math.log10(max(errors))
-    # The labels need space on the left and on the right.
+    # The names of the curves need space on the left and on the right.
     return 10 ** (finest - 4.7), 10 ** (coarsest + 1.4), min(times) / 2.0, max(times) * 2.5
 
 

@@ -21,7 +21,7 @@ def left_out(row):
 
 def markdown(result):
     """The results as a Markdown table."""
-    lines = ["| effect | mode | scene | time per entry, µs | in kernels, µs | time / time of the first row | time with `--keep-all`, µs | change of DOLP by what is left out | left out |",
+    lines = ["| effect | mode | scene | time per entry, µs | time in kernels per entry, µs | time / time of the first row | time per entry with `--keep-all`, µs | largest change of DOLP without `--keep-all` | effects left out |",
              "|---" * 9 + "|"]
     for row in result["results"]:
         everything = micro(row["keep_all_time_s"]) if "keep_all_time_s" in row else micro(row["time_s"])

@@ -8,10 +8,10 @@ def sets_of(result):
 
 
 def markdown(result):
-    """The results as a Markdown table, with sentences on the other parts of the study."""
+    """The results as a Markdown table, followed by sentences on the bracket and on the time of a fit."""
     coverage = result["coverage"]
     rows = sets_of(result)
-    lines = ["| varied parameters | data sets | median time of a fit, s | 68 % intervals that contain the true value | 95 % intervals that contain it | fits that found the global minimum |",
+    lines = ["| varied parameters | data sets | median time of a fit, s | 68 % intervals that contain the true value | 95 % intervals that contain the true value | fits that found the global minimum |",
              "|---" * 6 + "|"]
     for count in sorted({len(row["truth"]) for row in rows}):
         own = [row for row in rows if len(row["truth"]) == count]
@@ -20,19 +20,21 @@ def markdown(result):
     bracket = result["bracket"]
     share = {name: 100 * bracket[name] for name in ("share_68", "share_95", "share_of_n")}
     time, scipy = result["time"], result["time"]["scipy"]
-    lines += ["", f"{coverage['intervals']} intervals; those of one set are not independent.", "",
-              f"{bracket['sets']} sets of all bounces (`v-cavity`, n and σ vary, half of them without noise), fitted with single "
-              f"scattering and `--model-error bracket`: {share['share_68']:.0f} % of the 68 % intervals and "
-              f"{share['share_95']:.0f} % of the 95 % intervals contain the true value. They are wide: in the median "
-              f"{share['share_of_n']:.0f} % of the range of n is left.", "",
-              f"A fit of {time['parameters']} parameters to {time['points']} points takes {time['time_s']:.2f} s with its "
-              f"intervals, {time['evaluations']} parameter sets."]
+    lines += ["", f"The table counts {coverage['intervals']} intervals of each kind. Intervals of the same data set are not independent.", "",
+              f"In {bracket['sets']} other data sets (`v-cavity`, half of them without noise) the light bounces any number of times. "
+              "The study fits n and σ to these data sets with single scattering and `--model-error bracket`. Then "
+              f"{share['share_68']:.0f} % of the 68 % intervals and {share['share_95']:.0f} % of the 95 % intervals contain the true "
+              f"value. The intervals are wide: the 95 % interval of n covers {share['share_of_n']:.0f} % of the searched range of n "
+              "(median).", "",
+              f"A fit of {time['parameters']} parameters to {time['points']} points, with its intervals, takes {time['time_s']:.2f} s "
+              f"and evaluates the model for {time['evaluations']} parameter sets."]
     if scipy:
-        lines[-1] += (f" One descent of SciPy's `least_squares` around `dolp.evaluate` takes {scipy['time_s']:.2f} s "
-                      f"and {scipy['calls']} calls, and ends {scipy['apart_in_standard_errors']:.1g} standard errors away.")
+        lines[-1] += (f" One descent of SciPy's `least_squares` around `dolp.evaluate`, without intervals, takes {scipy['time_s']:.2f} s "
+                      f"and {scipy['calls']} calls. It finds the same parameters within {scipy['apart_in_standard_errors']:.1g} standard "
+                      "errors.")
     if spectrum := result.get("spectrum"):
         lines[-1] += (f" A fit of σ and q to {spectrum['points']} points of spectra (300 wavelengths of water at three zeniths) takes "
-                      f"{spectrum['time_s']:.1f} s, {spectrum['evaluations']} parameter sets.")
+                      f"{spectrum['time_s']:.1f} s and evaluates the model for {spectrum['evaluations']} parameter sets.")
     return "\n".join(lines)
 
 
@@ -45,8 +47,8 @@ def line_of(name, rows):
 
 
 def intervals_of(result):
-    """For each 95 % interval with two ends, yields the distances of its ends from the true value, divided by half of
-    the interval's width."""
+    """Yields both ends of each 95 % interval, relative to the true value and in units of half the interval's width.
+    Leaves out intervals with an open end."""
     for row in sets_of(result):
         for truth, (low, high) in zip(row["truth"], row["interval_95"]):
             if low is not None and high is not None:

@@ -22,8 +22,9 @@ def tolerances_of(result):
 def time_table(result):
     tolerances = tolerances_of(result)
     names = [case["name"] for case in result["cases"]]
-    lines = ["Time per entry (in kernels, where there are any) for an error of at most "
-             f"{' / '.join(f'{tolerance:g}' for tolerance in tolerances)} (—: at no setting tried):", ""]
+    lines = ["Time per entry for an error of at most "
+             f"{' / '.join(f'{tolerance:g}' for tolerance in tolerances)}. For methods with kernels it is the time in kernels. "
+             "A dash means that no tried setting reaches this error.", ""]
     lines += head(["method", "cores"] + names)
     for method in result["methods"]:
         cells = []
@@ -36,9 +37,8 @@ def time_table(result):
 
 
 def ratio_text(row):
-    """Two ratios of times. Both divide the row's time: the first by the time of dolp's kernels that interpolate, the
-    second by the time of its kernels that integrate every entry. A star marks times with the cheapest setting of each
-    entry (hindsight)."""
+    """The time of the row divided by the time of dolp, as two numbers: dolp interpolates, or it integrates every entry.
+    A star marks ratios for which the method has the cheapest setting of each entry (hindsight)."""
     cells = []
     for prefix in ("table_", ""):
         ratio = row.get(f"{prefix}ratio", row.get(f"hindsight_{prefix}ratio"))
@@ -49,10 +49,10 @@ def ratio_text(row):
 
 def ratio_table(result):
     names = [case["name"] for case in result["cases"]]
-    lines = [f"Ratio of the time of each method to the time of dolp's kernels in float, both for an error of at most "
-             f"{TARGET_TOLERANCE:g}. First number: dolp interpolates between slope distributions, as `dolp table` does. Second "
-             "number: dolp integrates every entry. A star marks ratios with the cheapest setting of each entry, chosen with "
-             "hindsight.", ""]
+    lines = ["Time of each method, divided by the time of dolp's kernels in float, both for an error of at most "
+             f"{TARGET_TOLERANCE:g}. In the first number of a cell, dolp interpolates between slope distributions, as `dolp table` "
+             "does. In the second number, dolp integrates every entry. A star marks methods that have a different setting for each "
+             "entry, chosen with hindsight.", ""]
     lines += head(["method"] + names)
     for method in result["methods"]:
         cells = [ratio_text(rows_of(result, method["name"], name).get(TARGET_TOLERANCE, {})) for name in names]
@@ -61,7 +61,7 @@ def ratio_table(result):
 
 
 def target_table(result):
-    lines = [f"Targets: by what factor each method takes longer than dolp, for an error of at most {TARGET_TOLERANCE:g}.", ""]
+    lines = [f"Factors by which other methods take longer than dolp, for an error of at most {TARGET_TOLERANCE:g}:", ""]
     lines += head(["method", "masking", "target factor", "measured factor", "factor with hindsight", "target reached"])
     for target in result["targets"]:
         hindsight = digits(target["hindsight_ratio"]) if "hindsight_ratio" in target else "—"

@@ -46,8 +46,8 @@ def reflectances(index, cosine):
 
 
 def transform(count):
-    """Zeros of the Chebyshev polynomial T_count, and the matrix that turns values of a function there into its
-    Chebyshev coefficients."""
+    """Returns the zeros of the Chebyshev polynomial T_count, and the matrix that computes the Chebyshev coefficients of
+    a function from its values at these zeros."""
     x = np.polynomial.chebyshev.chebpts1(count)[::-1]
     matrix = 2 / count * np.polynomial.chebyshev.chebvander(x, count - 1).T
     matrix[0] /= 2
@@ -55,12 +55,12 @@ def transform(count):
 
 
 def errors(counts):
-    """Errors of moments from responses, in which Chebyshev polynomials replace the reflectances. Returns the larger
-    error of rho_i and rho_q, divided by rho_i, for each index and number of angles."""
+    """Largest error of rho_i and rho_q from a response table, divided by rho_i, for each index and number K of angles.
+    For K angles, K Chebyshev polynomials approximate the reflectances."""
     scene = SCENE.with_({"accuracy.tolerance": TIGHT})
     response = dolp.response(scene, evaluator="cpu", **GRID)
     c0, most = response.attrs["c0"], response.sizes["beta"]
-    sums = np.polynomial.chebyshev.chebvander(transform(most)[0], most - 1)  # turns weights into responses
+    sums = np.polynomial.chebyshev.chebvander(transform(most)[0], most - 1)  # weights @ sums: one moment per polynomial
     of_i = response.response_i.values @ sums
     of_q = (response.response_q * np.sin(np.deg2rad(response.beta)) ** 2).values @ sums
     found = np.empty((len(INDICES), len(counts)))
@@ -86,7 +86,7 @@ def seconds(call):
 
 
 def times(numbers):
-    """Measures the seconds for a response table, for the table of one material, and for the moments of several
+    """Seconds that dolp takes for a response table, for the table of one material, and for the moments of several
     materials from the response table."""
     axes = {"theta_deg": np.linspace(0, 85, 32), "sigma": np.geomspace(0.05, 1, 8), "q": np.linspace(1.75, 6, 8)}
     response = dolp.response(SCENE, **axes)

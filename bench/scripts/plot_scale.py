@@ -13,7 +13,7 @@ def markdown(result):
     for row in rows_of(result, "entries"):
         lines.append(f"| {row['entries']:,} | {row['time_s']:.2f} | {row['entries'] / row['time_s']:.2g} "
                      f"| {row['copy_time_s']:.2f} | {row['peak_bytes'] / 1e6:.0f} | {row['file_bytes'] / 1e6:.0f} |")
-    lines += ["", "Shards of one table that run at the same time:", "", "| number of shards | entries of the table | time until the last shard ends, s | time of the merge, s | peak memory of one shard, MB |", "|---" * 5 + "|"]
+    lines += ["", "One table, computed in shards that run at the same time:", "", "| number of shards | entries of the table | time until the last shard ends, s | time of the merge, s | peak memory of one shard, MB |", "|---" * 5 + "|"]
     for row in rows_of(result, "shards"):
         merge = f"{row['merge_time_s']:.2f}" if row["merge_time_s"] else "—"
         lines.append(f"| {row['setting']} | {row['entries']:,} | {row['time_s']:.2f} | {merge} "

@@ -6,7 +6,7 @@ TOLERANCE = 1e-4
 
 
 def interpolated(rows):
-    """Returns the rows of those runs that may interpolate between entries, as `dolp table` does."""
+    """Returns the rows of runs in which dolp may interpolate between entries, as in `dolp table`."""
     return [row for row in rows if row["interpolation"] == "auto"]
 
 
@@ -19,7 +19,7 @@ def millions(rate):
 
 
 def grid_table(rows):
-    lines = head(["masking", "grid (θ × σ × q)", "tolerance", "interpolation", "time of the whole run", "time in kernels", "whole run, per entry", "kernels, per entry",
+    lines = head(["masking", "grid (θ × σ × q)", "tolerance", "interpolation", "time of the whole run", "time in kernels", "time of the whole run per entry", "time in kernels per entry",
                   "million entries/s", "million evaluations/s", "evaluations per entry", "time / time of half the entries"])
     order = lambda row: (list(MASKINGS).index(row["case"]), -row["tolerance"], row["entries"], row["interpolation"])
     for row in sorted(rows, key=order):
@@ -32,8 +32,8 @@ def grid_table(rows):
 
 
 def materials_table(rows):
-    lines = head(["masking", "surface", "entries", "time of the whole run", "time in kernels", "kernel time / kernel time of one bare index",
-                  "whole run, per entry"])
+    lines = head(["masking", "surface", "entries", "time of the whole run", "time in kernels", "time in kernels / time in kernels of the compared row",
+                  "time of the whole run per entry"])
     for row in rows:
         lines.append(row_of_cells([
             row["case"], row["setting"], digits(row["entries"]), time_text(row["run_s"]), time_text(row["kernel_run_s"]),
@@ -43,10 +43,10 @@ def materials_table(rows):
 
 def arithmetic_table(result, rows):
     peak = result["peak"]
-    lines = [f"Peak of the device, measured in the same run: {1e-9 * peak['flops_per_s']:.0f} GFLOP/s "
-             f"({peak['what']}).", ""]
-    lines += head(["masking", "tolerance", "kernels, per entry", "evaluations per entry", "flops per entry", "÷ and √ per entry",
-                   "GFLOP/s", "share of the peak", "lanes busy, at most"])
+    lines = ["Peak speed of the device for multiplications and additions in float, measured in the same run: "
+             f"{1e-9 * peak['flops_per_s']:.0f} GFLOP/s.", ""]
+    lines += head(["masking", "tolerance", "time in kernels per entry", "evaluations per entry", "flops per entry", "÷ and √ per entry",
+                   "GFLOP/s", "share of the peak", "share of busy lanes (upper bound)"])
     for row in rows:
         slow = row["operations"]["divide"] + row["operations"]["square_root"]
         lines.append(row_of_cells([

@@ -22,7 +22,7 @@ using nlohmann::ordered_json;
 const TimingPolicy kFullTiming{};
 const TimingPolicy kQuickTiming{
     .min_repeats = 3, .max_repeats = 5, .random_repeats = 16, .enough_s = 0.1, .most_s = 1.0};
-constexpr double kFullLimit = 20.0;  // longest time of one call, in seconds, for methods that may not end
+constexpr double kFullLimit = 20.0;  // seconds; methods that might not end are stopped after this time
 constexpr double kQuickLimit = 1.5;
 constexpr std::size_t kQuickEntries = 512;
 

@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kSpread = 1e-3;
 
-/// Element i of a sequence in (-1, 1) that fills the interval evenly and never repeats. It consists of the fractional
-/// parts of multiples of an irrational number, stretched to the interval.
+/// Element i of a sequence that fills the interval (-1, 1) evenly and never repeats. The element is 2 x - 1, where x is
+/// the fractional part of i * irrational.
 double spread(std::size_t i, double irrational) {
   const double x = irrational * static_cast<double>(i);
   return 2.0 * (x - std::floor(x)) - 1.0;

@@ -22,8 +22,8 @@ struct Case {
 /// All cases, in the order in which figures show them.
 const std::vector<Case>& cases();
 
-/// A request of `count` entries that take equal time but share no work. The first entry is the case itself; theta,
-/// sigma and q of the others differ from it by up to 1e-3 (relative).
+/// A request of `count` entries. The first entry is the case itself. In the other entries, theta, sigma and q differ
+/// from the case by up to 1e-3 (relative). So all entries take equal time, but no computation serves two of them.
 MomentsRequest neighbourhood(const Case& which, std::size_t count);
 
 }  // namespace dolp::bench

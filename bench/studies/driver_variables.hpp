@@ -1,4 +1,4 @@
-// Effect of an environment variable of the Vulkan driver on the kernels' time.
+// Measures how an environment variable of the Vulkan driver changes the time of the kernels.
 #pragma once
 
 #include <cstddef>
@@ -14,15 +14,15 @@ namespace dolp::bench {
 struct DriverVariable {
   std::string name;
   std::vector<unsigned> settings;
-  /// True if the variable changes the machine code of kernels. Mesa's cache on disk does not notice such a change, so
+  /// True if the variable changes the machine code of kernels. Mesa's cache of machine code ignores the variable, so
   /// each setting gets a separate cache folder.
   bool changes_code = false;
 };
 
-/// Runs `dolp-bench throughput --case kernels` with each setting, `rounds` times. The settings take turns, so that
-/// other load on the machine affects all of them equally. Returns one row per setting and masking: case, setting,
-/// entries, time_s, time_min_s, raw_times_s, and the speedup over the first setting (from the minimum times).
-/// Errors: Unavailable if a process fails; IoError.
+/// Runs `dolp-bench throughput --case kernels` in `rounds` rounds. Each round starts one process per setting, so that
+/// other load on the machine affects all settings equally. Returns one row per setting and masking: case, setting,
+/// entries, time_s, time_min_s, raw_times_s and speedup. The speedup is the minimum time of the first setting, divided
+/// by the minimum time of the row. Errors: Unavailable if a process fails; IoError.
 std::vector<nlohmann::ordered_json> kernels_with(const DriverVariable& variable, const StudyOptions& options,
                                                  std::size_t entries, std::size_t rounds);
 

@@ -16,7 +16,7 @@ constexpr double kTemperature = 298.15;  // temperature of the surface, K
 constexpr double kLastTheta = 85.0;
 constexpr double kFirstSigma = 0.05;
 constexpr double kLastSigma = 1.0;
-constexpr double kIrradiance = 20.0;  // of the source, W m-2 um-1; a black body at kTemperature emits 3/2 of it
+constexpr double kIrradiance = 20.0;  // of the source, W m-2 um-1; 2/3 of a black body's exitance at kTemperature
 constexpr double kSunAtTenUm = 0.18;  // sunlight above the atmosphere at 10.6 um, W m-2 um-1
 constexpr double kSunInVisible = 1800.0;
 constexpr double kVisible_um = 0.55;
@@ -56,7 +56,7 @@ SceneValues seen_from_one_side(const Axes& grid) {
   return scene;
 }
 
-/// The bistatic scene under a uniform cold sky. It has `smith` masking, because then the albedo is at most 1.
+/// The bistatic scene under a uniform cold sky. With `smith` masking the surface reflects at most the incident light.
 SceneValues under_the_sky(const Axes& grid) {
   SceneValues scene = seen_from_one_side(grid);
   scene.surface.masking = Masking::kSmith;
@@ -155,7 +155,7 @@ std::vector<EffectGroup> surface_groups(const SceneValues& base) {
                                                           }}})};
 }
 
-/// Groups for multiple bounces, direct emission and the bracket of DOLP, which only `v-cavity` masking supports.
+/// Groups for multiple bounces, direct emission and the bracket of DOLP. `v-cavity` masking supports all of them.
 std::vector<EffectGroup> scattering_groups(const Axes& grid) {
   SceneValues rough = emitting(grid);
   rough.surface.masking = Masking::kVCavity;
@@ -190,7 +190,7 @@ std::vector<EffectGroup> radiation_groups(const SceneValues& base, const SceneVa
                                                                          }}})};
 }
 
-/// Scenes in which one radiation is negligible beside the others: sunlight at 10.6 um, and emission in the visible.
+/// Two groups with radiation that hardly matters: sunlight at 10.6 um, and thermal emission in visible light.
 std::vector<EffectGroup> daylight_groups(const Axes& grid) {
   SceneValues thermal = under_the_sky(grid);
   thermal.accuracy.tolerance = kOnePercent;

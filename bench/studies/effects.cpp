@@ -52,13 +52,13 @@ std::vector<std::string> left_out(const TimedScene& timed) {
   return names;
 }
 
-/// One scene of a group in two runs: `planned` drops effects as the plan says, `all` keeps all effects.
+/// Two runs of one scene. `planned` drops the effects that the plan drops, `all` keeps all effects.
 struct Pair {
   std::string name;
   TimedScene planned;
   TimedScene all;
 
-  /// True if the plan saves work. Otherwise `planned` and `all` are equal runs.
+  /// True if `planned` computes less than `all`. Otherwise the two runs are equal.
   bool saves() const {
     const EffectPlan& own = planned.plan();
     const EffectPlan& whole = all.plan();
@@ -158,7 +158,7 @@ void Study::run_group(const EffectGroup& group) {
   for (const EffectSetting& setting : group.settings) {
     pairs.push_back({setting.name, {setting.scene, false, evaluator_}, {setting.scene, true, evaluator_}});
   }
-  // The runs take turns, so that other load on the machine affects all of them equally.
+  // Each turn of the loop runs all scenes once, so that other load on the machine affects all scenes equally.
   for (std::size_t i = 0; i < repeats_; ++i) {
     for (Pair& pair : pairs) {
       pair.planned.repeat();

@@ -59,8 +59,8 @@ ordered_json set_row(const char* part, const FitSet& set, std::size_t number, co
   return row;
 }
 
-/// Summary of the rows of one part: which share of the intervals contains the truth, how many global minima were found,
-/// and the cost of a fit.
+/// Summary of the rows of one part of the study: the shares of intervals that contain the true value, the number of
+/// global minima, the mean number of model evaluations per fit, and the median time of a fit.
 ordered_json coverage_json(const ordered_json& rows, const char* part) {
   std::size_t intervals = 0, held_68 = 0, held_95 = 0, global = 0, evaluations = 0;
   std::vector<double> times_s;
@@ -83,8 +83,9 @@ ordered_json coverage_json(const ordered_json& rows, const char* part) {
           {"median_time_s", median(times_s)}};
 }
 
-/// Runs SciPy's least_squares around the Python package, from the middle of the ranges. Returns the output of
-/// fit_scipy.py, and the largest difference from dolp's parameters in standard errors. Null without SciPy or xarray.
+/// Fits the data with SciPy's least_squares, which starts in the middle of the search ranges. Returns the output of
+/// fit_scipy.py, and the largest difference from a parameter of `result`, in standard errors. Returns null if SciPy or
+/// xarray is missing.
 ordered_json scipy_json(const FitSet& set, const MeasuredData& data, const fit::FitResult& result) {
   const std::string script = DOLP_BENCH_SCRIPTS "/fit_scipy.py";
   if (run_child({kPython, "-c", "import scipy, xarray"}, ChildErrors::kHidden).status != 0) return {};
@@ -175,8 +176,8 @@ ordered_json spectrum_json(ModelEvaluator& evaluator) {
           {"q", result.parameters[1].value},   {"chi_square", result.chi_square}};
 }
 
-/// For each data set of the part `bracket`, divides the length of n's 95 % interval by the length of n's search range.
-/// Returns the median of these ratios.
+/// Median length of the 95 % interval of n, as a share of the range in which the fit searches n. Only for the data sets
+/// whose fit uses the bracket.
 double median_share_of_n(const ordered_json& rows) {
   const FitRange range = bracket_set(0).parameters.front();
   std::vector<double> shares;
@@ -244,7 +245,7 @@ std::string table_text(const ordered_json& result) {
   return text;
 }
 
-/// Warns of inconsistent intervals and of missed global minima.
+/// Warns of each data set with a wrong interval (SetOutcome::is_consistent), and of each missed global minimum.
 void warn(ordered_json& result) {
   for (const ordered_json& row : result["results"]) {
     if (row["part"] != "set") continue;

@@ -16,9 +16,9 @@ namespace {
 
 constexpr std::size_t kPoints = 12;
 constexpr double kFirstDeg = 2.0;
-constexpr double kLastDeg = 80.0;         // at larger zeniths `integral` masking creates energy, and Q/I has poles
-constexpr double kExactTolerance = 1e-8;  // tolerance of the values to which noise is added
-constexpr double kSameObjective = 0.01;   // smaller differences of chi^2 do not count
+constexpr double kLastDeg = 80.0;         // at larger zeniths `integral` masking can make I zero and Q/I infinite
+constexpr double kExactTolerance = 1e-8;  // tolerance of the data before noise is added
+constexpr double kSameObjective = 0.01;   // minima with a smaller difference of chi^2 count as equal
 
 constexpr const char* kSceneText = R"([surface]
 n = 1.5
@@ -53,7 +53,7 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-/// A parameter with the range of its search, and the limits between which its true value is drawn.
+/// A parameter with the range that the fit searches, and the limits of its random true value.
 struct Choice {
   FitRange parameter;
   double least, most;

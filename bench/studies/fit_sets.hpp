@@ -12,7 +12,7 @@
 
 namespace dolp::bench {
 
-/// Synthetic measurements: the fitted scene, its varied parameters with their true values, and the kind of data.
+/// A synthetic data set: the scene to fit, its varied parameters with their true values, and the kind of measurement.
 struct FitSet {
   SceneValues scene;
   std::vector<FitRange> parameters;
@@ -21,7 +21,7 @@ struct FitSet {
   std::size_t points = 0;              ///< number of zeniths, evenly spaced from 2 to 80 degrees
   double uncertainty = 0.0;            ///< standard deviation of the noise in DOLP or Q/I
   bool has_noise = true;               ///< without noise the data are exact
-  std::vector<Setting> of_truth = {};  ///< settings that the scene of the data has and the fitted scene lacks
+  std::vector<Setting> of_truth = {};  ///< the data come from `scene` with these additional settings
   ModelError model_error = ModelError::kNone;
 
   /// Keys of the varied parameters, joined by blanks.
@@ -32,29 +32,29 @@ struct FitSet {
 /// points, true values inside the search ranges, and noise between 0.0005 and 0.01 (log-uniform).
 FitSet fit_set(std::size_t number);
 
-/// Makes a set whose data include all bounces. The fit of n and sigma uses single scattering. It counts the bracket of
-/// DOLP, a range that contains the DOLP with all bounces, as the error of single scattering. The data have noise if
-/// `number` is odd.
+/// Makes a set whose data include all bounces, while the fit of n and sigma uses single scattering. As the error of
+/// single scattering, the fit takes the bracket of DOLP: a range that contains the DOLP with all bounces. The data have
+/// noise if `number` is odd.
 FitSet bracket_set(std::size_t number);
 
 /// The set whose fit is timed: n, k and sigma from 40 points of Q/I.
 FitSet timed_set();
 
-/// Data of a set: values at the true parameters, with Gaussian noise if the set has noise. `number` seeds the noise.
+/// Computes the data of a set from its true parameters. If the set has noise, adds Gaussian noise with seed `number`.
 MeasuredData synthetic_data(const FitSet& set, std::size_t number, ModelEvaluator& evaluator);
 
 /// The result of a fit, compared with the truth.
 struct SetOutcome {
   fit::FitResult result;
   double chi_square_of_truth = 0.0;
-  double chi_square_from_truth = 0.0;    ///< objective at the minimum that a descent from the truth reaches
-  std::size_t held_68 = 0, held_95 = 0;  ///< numbers of 68 % and 95 % intervals that contain the truth
+  double chi_square_from_truth = 0.0;    ///< objective at the minimum that a descent from the true values reaches
+  std::size_t held_68 = 0, held_95 = 0;  ///< numbers of 68 % and 95 % intervals that contain the true value
   double time_s = 0.0;
 
-  /// True if each interval contains its true value, except where chi^2 of the truth exceeds the minimum by more than
-  /// the interval allows. Meaningful only without a model error.
+  /// True if no interval wrongly excludes its true value. An interval may exclude this value if chi^2 at the true
+  /// values exceeds the minimum by more than 1 (68 % interval) or 3.84 (95 %). Meaningful only without a model error.
   bool is_consistent() const;
-  /// True if a descent from the truth reaches no lower objective.
+  /// True if no descent from the true values reaches a lower objective than the fit.
   bool is_global() const;
 };
 

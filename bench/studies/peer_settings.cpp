@@ -14,9 +14,9 @@
 namespace dolp::bench {
 namespace {
 
-constexpr double kShortCall = 0.01;  // seconds: a shorter call is timed twice, and the faster time counts
+constexpr double kShortCall = 0.01;  // seconds; a shorter call runs twice, and the smaller time counts
 
-/// A request for entry `i` of the sample only.
+/// A request for only entry `i` of the sample.
 MomentsRequest one_of(const PeerSample& sample, std::size_t i) {
   MomentsRequest request;
   request.distribution = sample.alone.distribution;
@@ -49,8 +49,8 @@ Call undisturbed_call(Solver& solver, const MomentsRequest& request, double sett
   return second.time_s < first.time_s ? second : first;
 }
 
-/// The stride of the grid with which a batched method tries its settings. A method that interpolates is fast only on
-/// the full grid.
+/// Stride of the grid on which a batched method tries its settings. The full grid for a method that interpolates,
+/// because such a method is fast only there.
 std::size_t stride_of_tries(const Method& method) { return method.needs_grid ? 1 : NestedGrid::kLargestStride; }
 
 }  // namespace
@@ -116,14 +116,14 @@ std::optional<double> PeerSettings::with_hindsight(double tolerance) const {
   return sum_s / static_cast<double>(sample_.truths.size());
 }
 
-/// Runs the method once without timing. This run compiles kernels and makes tables of nodes.
+/// Runs the method once without timing, so that the times exclude the compilation of kernels and tables of nodes.
 void PeerSettings::warm_up() {
   const MomentsRequest request =
       method_.is_batched ? nested_grid(sample_, stride_of_tries(method_)).request : one_of(sample_, 0);
   try {
     solver_.solve(request, method_.settings.front());
   } catch (const Unavailable&) {
-    // The first timed call meets the same error again and reports it.
+    // The first timed call fails in the same way and reports the error.
   }
 }
 
@@ -148,7 +148,7 @@ bool PeerSettings::try_next() {
   return true;
 }
 
-/// Tries a setting on a grid. Returns the time of the call in seconds.
+/// Tries a setting on a whole grid. Returns the time of the call in seconds.
 double PeerSettings::try_grid(TriedSetting& tried) {
   const PeerBatch batch = nested_grid(sample_, stride_of_tries(method_));
   const Call made = call(solver_, batch.request, tried.setting);

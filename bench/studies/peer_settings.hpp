@@ -12,58 +12,58 @@
 
 namespace dolp::bench {
 
-/// Entries on which all methods are compared, for one masking.
+/// The entries at which the study compares the errors of all methods, for one masking.
 struct PeerSample {
   PeerSample(Masking which, const std::vector<NestedGrid::Place>& sample_places);
 
   Masking masking;
   std::vector<NestedGrid::Place> places;
-  MomentsRequest alone;  ///< a request with only the entries of the sample
+  MomentsRequest alone;  ///< requests these entries and no others
   std::vector<Truth> truths;
 };
 
-/// Entries to compute, and which of them belong to the sample.
+/// A request, and for each entry of the sample its position in this request.
 struct PeerBatch {
   MomentsRequest request;
   std::vector<std::size_t> positions;
 
-  /// The largest error over the entries of the sample; infinite if one is NaN. `answers` belong to `request`.
+  /// The largest error over the entries of the sample; infinite if an error is NaN. `answers` are those of `request`.
   double worst_error(const std::vector<Answer>& answers, const PeerSample& sample) const;
 };
 
-/// A batch of only the entries of the sample.
+/// A request for only the entries of the sample.
 PeerBatch whole_sample(const PeerSample& sample);
-/// A batch of the nested grid with this stride.
+/// A request for all entries of NestedGrid::with_stride(stride).
 PeerBatch nested_grid(const PeerSample& sample, std::size_t stride);
 
 /// Errors and times of one setting on each entry of the sample.
 struct TriedSetting {
   double setting = 0.0;
   std::vector<double> errors = {};
-  /// time per entry; for a batched method the time of the call divided by its number of entries
+  /// time per entry; for a batched method, the time of the call divided by the number of entries in the call
   std::vector<double> times_s = {};
 
   double worst_error() const;
 };
 
-/// Tries the settings of one method on one sample, from coarse to fine, until a call takes too long. A batched method
-/// computes a nested grid in one call; any other method computes the entries of the sample one by one.
+/// Tries the settings of a method on a sample, from coarse to fine, until one takes too long. Per call, a batched
+/// method computes a grid that contains the sample, and any other method computes one entry of the sample.
 class PeerSettings {
  public:
-  /// `most_s`: after a run that takes more seconds, no finer setting is tried.
+  /// `most_s`: limit in seconds. After a setting that takes longer, no finer setting is tried.
   PeerSettings(const Method& method, Solver& solver, const PeerSample& sample, double most_s);
 
   /// The first setting that meets the tolerance at all entries of the sample; null if there is none.
   const TriedSetting* reaching(double tolerance);
 
-  /// Records a larger error of a setting, which a run on a larger grid has shown.
+  /// Raises the error of a setting, because the setting has this error on a larger grid.
   void reject(const TriedSetting& setting, double error);
 
   /// The reason why `reaching` found no setting.
   const std::string& why_not() const { return why_not_; }
 
-  /// Mean time per entry if each entry had its cheapest setting that meets the tolerance. In practice this choice is
-  /// impossible, because it needs the truth. Empty if some entry has no such setting.
+  /// Mean time per entry if each entry had the cheapest setting that meets the tolerance for this entry. Users cannot
+  /// choose so, because they do not know the true errors. Empty if no setting meets the tolerance for some entry.
   std::optional<double> with_hindsight(double tolerance) const;
 
  private:

@@ -24,7 +24,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// A masking as --case names it.
+/// A masking, with its name for the option --case.
 struct PeerCase {
   std::string name;
   Masking masking;
@@ -43,9 +43,9 @@ constexpr const char* kOwnTable = "vulkan-table";
 /// How much the study computes.
 struct Effort {
   std::vector<double> tolerances;  ///< from coarse to fine
-  std::size_t sample;              ///< entries whose errors are checked
-  double call_s;                   ///< limit in seconds: after a longer call no finer setting of the method is tried
-  double grid_s;                   ///< limit in seconds: a grid that would take longer is not timed
+  std::size_t sample;              ///< number of entries whose errors are checked
+  double call_s;                   ///< limit in seconds; after a longer call no finer setting of the method is tried
+  double grid_s;                   ///< limit in seconds; a grid that would take longer is not timed
   TimingPolicy timing;
 };
 const Effort kFull{.tolerances = {1e-3, 1e-4, 1e-6},
@@ -59,13 +59,13 @@ const Effort kQuick{.tolerances = {1e-4},
                     .grid_s = 0.1,
                     .timing = {.min_repeats = 3, .max_repeats = 5, .enough_s = 0.05, .most_s = 0.3}};
 
-/// A target for a ratio at tolerance 1e-4: the time of the fastest other method, divided by the time of dolp.
+/// A target for a ratio of times at tolerance 1e-4: the time of another method, divided by the time of dolp.
 struct Target {
   const char* what;
-  std::vector<std::string> methods;  ///< the fastest of them counts
+  std::vector<std::string> methods;  ///< the ratio uses the time of the fastest of these methods
   std::vector<std::string> cases;
   double ratio;
-  const char* key = "table_ratio";  ///< key of this ratio in the rows of results
+  const char* key = "table_ratio";  ///< key of the ratio in the rows of results
 };
 const std::vector<Target> kTargets = {
     {"SciPy dblquad", {"dblquad"}, {"none", "v-cavity", "integral", "smith"}, 1e5},
@@ -75,7 +75,8 @@ const std::vector<Target> kTargets = {
     {"native float build, same cores and entries", {"native-float"}, {"integral", "smith"}, 0.9, "ratio"}};
 constexpr double kTargetTolerance = 1e-4;
 
-/// The entries whose time is measured: the sample, or for a batched method the largest grid within the time limit.
+/// The request whose time is measured. For a batched method: the largest grid that does not take longer than
+/// effort.grid_s. Otherwise: the sample.
 PeerBatch timed_batch(const Method& method, Solver& solver, const PeerSample& sample, double setting,
                       const Effort& effort) {
   if (!method.is_batched) return whole_sample(sample);
@@ -185,7 +186,7 @@ ordered_json Study::measured_row(const Method& method, Solver& solver, const Pee
     const std::size_t entries = batch.request.size();
     const Measurement measurement = measure(solver, batch.request, tried->setting, method.is_random, effort_.timing);
     const double error = method.is_batched ? batch.worst_error(measurement.last, sample) : tried->worst_error();
-    if (error > tolerance) {  // in a larger grid more entries are interpolated, which may increase the error
+    if (error > tolerance) {  // larger grids have more interpolated entries, with larger errors
       settings.reject(*tried, error);
       continue;
     }
@@ -208,7 +209,7 @@ ordered_json Study::measured_row(const Method& method, Solver& solver, const Pee
   return row;
 }
 
-/// The time per entry that ratios compare: time in kernels if the method has kernels.
+/// The time per entry for ratios: the time in kernels, or the whole time if the method has no kernels.
 std::optional<double> compared_time(const ordered_json& row, const char* otherwise = "time_s") {
   for (const char* key : {"kernel_time_s", otherwise}) {
     if (row.contains(key)) return row[key].get<double>();

@@ -13,7 +13,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr double kAcceptedSpread = 0.2;
-constexpr double kAcceptedLoad = 0.3;  // load per core above which a study warns; measured before the study begins
+constexpr double kAcceptedLoad = 0.3;  // largest load per core, before the study, without a warning
 
 /// The first four names, and how many more there are.
 std::string some_of(const std::vector<std::string>& names) {
@@ -23,7 +23,7 @@ std::string some_of(const std::vector<std::string>& names) {
   return names.size() > kMostNames ? text + fmt::format(" and {} more", names.size() - kMostNames) : text;
 }
 
-/// Name of a row in warnings, such as "gauss easy 64" or "masking hemispherical smith".
+/// The name that warnings use for a row, such as "gauss easy 64" or "masking hemispherical smith".
 std::string row_name(const ordered_json& row) {
   const auto text = [&](const char* key) {
     const ordered_json& value = row[key];

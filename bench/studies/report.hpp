@@ -8,8 +8,8 @@
 
 namespace dolp::bench {
 
-/// Fills `warnings` with problems of the measured times, and with remedies. Reads `context`, and from each row of
-/// `results` raw_times_s and the fields that name the row, such as method, case and setting.
+/// Fills `warnings` with problems of the measured times, and what to do about them. Reads `context`, and in each row of
+/// `results` the raw times and the fields that name the row, such as method, case and setting.
 void add_warnings(nlohmann::ordered_json& result);
 
 /// The description of a method, an element of `methods`.
@@ -18,7 +18,7 @@ nlohmann::ordered_json method_json(const Method& method);
 /// Adds the device or processor of a method to its description in `methods`.
 void note_where(nlohmann::ordered_json& result, const Method& method, const Solver& solver);
 
-/// The text of a study's JSON file. It is indented, except for `results`, which come last with one row per line.
+/// The text of a study's JSON file. The text is indented. `results` come last, with one row per line.
 std::string json_text(nlohmann::ordered_json result);
 
 }  // namespace dolp::bench

@@ -44,7 +44,7 @@ q = [1.8, 2, 3, 5]
 tolerance = 1e-3
 )";
 
-/// Numbers of wavelengths, n and k. The scene has 10,000 entries for each combination of them.
+/// Numbers of wavelengths, of n and of k on the grid. Each combination of these values has 10,000 entries.
 struct Size {
   std::size_t wavelengths, n, k;
   std::size_t entries() const { return 10'000 * wavelengths * n * k; }

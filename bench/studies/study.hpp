@@ -9,12 +9,12 @@ namespace dolp::bench {
 
 /// The parsed command line.
 struct StudyOptions {
-  std::string json_path;             ///< file for the JSON; empty means none, "-" means stdout instead of the table
+  std::string json_path;             ///< file for the JSON; empty: no file; "-": stdout, and no table of results
   std::string device;                ///< Vulkan device: position or part of the name, empty for the default
   std::vector<std::string> cases;    ///< empty means all
   std::vector<std::string> methods;  ///< empty means all
-  std::size_t entries = 1024;        ///< entries per call of a batched method; some studies use it differently
-  /// Number of the first set of fits. The constants of the fit algorithm were tuned on sets with lower numbers.
+  std::size_t entries = 1024;        ///< accuracy: entries per call of a batched method; others: see below
+  /// Number of the first data set of the study of fits. The fit algorithm was tuned on data sets with lower numbers.
   std::size_t first_set = 1000;
   bool quick = false;
   bool quiet = false;                  ///< no progress bar
@@ -23,30 +23,30 @@ struct StudyOptions {
 
 /// `dolp-bench accuracy`: error against time per entry, for every method and setting.
 ///
-/// The error is max(|d r_i|, |d r_q|)/r_i, where d is the difference from the reference at its tightest setting; for
-/// random methods it is the rms over the repeats. The time is the median time of a call divided by its entries.
+/// The error is max(|d r_i|, |d r_q|)/r_i, where d r_i and d r_q are the differences from the reference. For random
+/// methods it is the rms over the repeats. The time is the median time of a call, divided by its number of entries.
 /// Errors: InputError for an unknown case or method; DeviceError if `device` is given and not available; IoError;
 /// Cancelled.
 void run_accuracy(const StudyOptions& options);
 
-/// `dolp-bench effects`: time per entry with and without each effect, on one grid, and which effects the plan drops.
+/// `dolp-bench effects`: time per entry with and without each effect of a scene, and the effects that the plan drops.
 ///
-/// `cases` are names of effects; `entries` is the size of the grid. The error of a row is the largest |change of DOLP|
-/// that dropping effects causes. Errors: InputError for an unknown effect; DeviceError without a usable device;
-/// IoError; Cancelled.
+/// `cases` are names of effects; `entries` is the size of the grid. `error` in a row is the largest change of DOLP that
+/// the dropped effects cause. Errors: InputError for an unknown effect; DeviceError without a usable device; IoError;
+/// Cancelled.
 void run_effects(const StudyOptions& options);
 
-/// `dolp-bench throughput`: entries and integrand evaluations per second on the grid of the stainless-steel scene, how
-/// the time grows when the entries double, the share of the device's arithmetic peak, and the scaling with cores and
-/// vector width.
+/// `dolp-bench throughput`: entries and integrand evaluations per second on grids of the stainless-steel scene; growth
+/// of the time with the number of entries; share of the device's peak arithmetic speed; speed for different numbers of
+/// cores and vector widths.
 ///
 /// `cases` are parts of the study; `entries` is the size of the largest grid. lavapipe reads cores and vector width
 /// from its environment only once, so each setting runs in a separate process. Errors: InputError for an unknown part;
 /// DeviceError without a usable device; IoError; Cancelled.
 void run_throughput(const StudyOptions& options);
 
-/// `dolp-bench peers`: finds for every method the cheapest setting that meets a tolerance on a sample of a grid's
-/// entries. Reports the method's time per entry, and its ratio to the time of dolp's float kernels.
+/// `dolp-bench peers`: time per entry of each method at equal accuracy, and its ratio to the time of dolp's float
+/// kernels. Each method has the cheapest setting that meets the tolerance on a sample of a grid's entries.
 ///
 /// `cases` are maskings. Errors: InputError for an unknown case or method; DeviceError if `device` is given and not
 /// available; IoError; Cancelled.

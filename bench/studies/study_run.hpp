@@ -16,7 +16,7 @@
 
 namespace dolp::bench {
 
-/// The state of a study while it runs: the JSON so far, and how many of the expected rows are done.
+/// The state of a study while it runs: the JSON so far, and the numbers of finished and of expected rows.
 class StudyRun {
  public:
   StudyRun(const StudyOptions& options, Progress progress) : options_(options), progress_(std::move(progress)) {}
@@ -56,8 +56,8 @@ struct StudyParts {
   std::function<void(nlohmann::ordered_json&)> warn = [](nlohmann::ordered_json&) {};  ///< adds warnings
 };
 
-/// Runs a study with a progress bar, prints its table and warnings, and writes its JSON. Errors: IoError before the
-/// start if the file cannot be written; the errors of `measure`.
+/// Runs a study with a progress bar, prints its table and warnings, and writes its JSON. Errors: IoError if the file
+/// cannot be written, which is checked before the study starts; the errors of `measure`.
 void run_study(const StudyOptions& options, const StudyParts& parts);
 
 /// The members of `all` with these names; all members if no name is given. Errors: InputError that names `option`, the

@@ -44,20 +44,20 @@ constexpr std::array<GridSize, 8> kGrids = {{{32, 32, 32},
                                              {256, 128, 64},
                                              {256, 128, 128}}};
 constexpr std::size_t kMainGrid = 1;         // position in kGrids of the grid that all parts except `grids` use
-constexpr GridSize kSmallGrid = {2, 2, 16};  // for the first, untimed run; its entries fill whole kernel rows
+constexpr GridSize kSmallGrid = {2, 2, 16};  // for a first run without timing, which compiles the kernels
 constexpr std::size_t kQuickEntries = std::size_t{24} * 24 * 24;
 constexpr std::size_t kFullRepeats = 5;
 constexpr std::size_t kQuickRepeats = 2;
-constexpr double kLongTime = 1.0;  // seconds; runs that take longer are repeated kQuickRepeats times
+constexpr double kLongTime = 1.0;  // seconds; a grid that takes longer runs only kQuickRepeats times
 constexpr std::size_t kFullWorkgroups = 48;
 constexpr std::size_t kQuickWorkgroups = 6;
-constexpr std::size_t kFullRounds = 3;  // rounds; in each round every setting runs in a separate process
+constexpr std::size_t kFullRounds = 3;  // each round runs every setting of a driver variable once (kernels_with)
 constexpr std::size_t kQuickRounds = 1;
 constexpr std::size_t kPeakRepeats = 9;
 const TimingPolicy kFullTiming{.min_repeats = 5, .max_repeats = 15, .enough_s = 1.0, .most_s = 4.0};
 const TimingPolicy kQuickTiming{.min_repeats = 3, .max_repeats = 5, .enough_s = 0.1, .most_s = 0.5};
 
-/// A part of the study, as --case names it.
+/// A part of the study, with its name for the option --case.
 struct Part {
   std::string name;
 };
@@ -83,7 +83,7 @@ dolp::Device device_of(const StudyOptions& options) {
   return list.devices[choose_device(list.devices, options.device, false)];
 }
 
-/// The largest error estimate of a run, over the entries with status 0.
+/// The largest error estimate of a run, over the entries without a status bit.
 double stated_error(const std::vector<PointResult>& results) {
   double largest = 0.0;
   for (const PointResult& result : results) {
@@ -96,7 +96,7 @@ ordered_json row_start(const char* part, const std::string& which, const ordered
   return {{"part", part}, {"case", which}, {"setting", setting}};
 }
 
-/// A grid that is run as `dolp table` runs it.
+/// A grid that the study runs like `dolp table`.
 struct GridRun {
   GridSize size;
   double tolerance = kTolerance;
@@ -111,7 +111,7 @@ struct GridRun {
   }
 };
 
-constexpr std::array<GridSize, 2> kMaterialGrids = {{{64, 16, 16}, {8, 8, 8}}};  // grids of a full and of a quick study
+constexpr std::array<GridSize, 2> kMaterialGrids = {{{64, 16, 16}, {8, 8, 8}}};  // of a full study, of a quick study
 constexpr std::size_t kManyIndices = 12;                                         // number of values of n, and of k
 constexpr std::size_t kManyWavelengths = 300;
 
@@ -132,11 +132,11 @@ struct MaterialAxes {
   std::vector<double> n = {}, k = {}, wavelength_um = {};
   std::optional<OpticalConstants> index = {};  ///< replaces n and k of the scene
   std::vector<Layer> coating = {};
-  std::size_t over = 0;  ///< position of the case whose kernel time divides the kernel time of this case
+  std::size_t over = 0;  ///< position in material_axes() of the case with which the kernel time is compared
   std::vector<Spectrum> bands = {};
   std::vector<double> temperature_K = {};
   bool has_all_materials = false;
-  double polarised_diffuse = 0.0;  ///< k_d of a diffuse part with polarised light
+  double polarised_diffuse = 0.0;  ///< k_d, the share of diffuse reflection; its light is polarised
 };
 
 Layer layer(const OpticalConstants& index, double thickness_um) { return {{.constant = index}, thickness_um}; }
@@ -169,7 +169,7 @@ std::vector<MaterialAxes> material_axes() {
           {.name = "polarised diffuse part", .polarised_diffuse = 0.2}};
 }
 
-/// Adds an axis of all built-in materials with data at the scene's wavelength.
+/// Adds an axis with all built-in materials that have data at the scene's wavelength.
 void add_all_materials(SceneValues& scene) {
   std::vector<Material> materials;
   for (const Material& material : built_in_materials()) {
@@ -247,7 +247,7 @@ Study::Study(StudyRun& run)
       device_(device_of(run.options())),
       parts_(chosen(kParts, run.options().cases, "--case")),
       grids_(grids_up_to(quick() ? std::min(run.options().entries, kQuickEntries) : run.options().entries)) {
-  if (run.options().cases.empty()) parts_.pop_back();  // `kernels`; the parts `cores` and `vector-width` run it
+  if (run.options().cases.empty()) parts_.pop_back();  // no `kernels`: `cores` and `vector-width` run this part
   if (runs("grids")) run_.expect(kMaskings.size() * (grids_.size() + 2 * kTolerances.size() - 1));
   if (runs("materials")) run_.expect(kMaskingsByRows.size() * material_axes().size());
   if (runs("arithmetic")) run_.expect(kMaskingsByRows.size() * arithmetic_tolerances().size());
@@ -295,7 +295,7 @@ void Study::run_grids(Masking masking) {
     scene.accuracy.may_interpolate = run.may_interpolate;
     run.timed = std::make_unique<TimedScene>(std::move(scene), false, evaluator);
   }
-  // The runs take turns, so that other load on the machine affects all of them equally.
+  // Each turn of the loop runs all grids once, so that other load on the machine affects all grids equally.
   for (std::size_t i = 0; i < (quick() ? kQuickRepeats : kFullRepeats); ++i) {
     for (const GridRun& run : runs) {
       const std::vector<double> times_s = run.timed->times_s();
@@ -345,7 +345,7 @@ void Study::run_materials(Masking masking) {
   for (std::size_t i = 0; i < kQuickRepeats; ++i) {
     for (const std::unique_ptr<TimedScene>& one : all) one->repeat();
   }
-  // `kernel_s` excludes the time in which the host computes the moments of each entry from responses.
+  // Only the kernels. From their results the host computes the moments of each index, which `kernel_s` does not count.
   const auto kernels_s = [&](std::size_t i) { return all[i]->work().kernel_s; };
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto entries = static_cast<double>(all[i]->entries().size());
@@ -368,7 +368,7 @@ void Study::run_materials(Masking masking) {
 
 Measurement Study::kernel_times(Masking masking, double tolerance) {
   if (!float_solver_) float_solver_ = make_vulkan({.device = run_.options().device}, Precision::kFloat);
-  // The first run compiles the kernels, so it is not timed.
+  // A first run without timing compiles the kernels.
   float_solver_->solve(steel_request(masking, steel_grid(kSmallGrid)), tolerance);
   return measure(*float_solver_, main_request(masking), tolerance, false, quick() ? kQuickTiming : kFullTiming);
 }

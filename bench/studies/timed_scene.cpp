@@ -11,8 +11,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kRawTime = 5e-3;  // seconds; shorter calls are repeated until a raw time is this long
-constexpr double kLongTime = 0.5;  // seconds; if the first call takes longer, each raw time is one call
+constexpr double kRawTime = 5e-3;  // seconds; each raw time covers as many calls as take this long
+constexpr double kLongTime = 0.5;  // seconds; if the first call takes longer, each raw time covers one call
 
 }  // namespace
 

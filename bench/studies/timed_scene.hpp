@@ -11,18 +11,18 @@ namespace dolp::bench {
 /// Plans and evaluates the grid of a scene repeatedly, and records the times.
 class TimedScene {
  public:
-  /// Runs the scene once, which creates the pipelines. The evaluator must outlive the object.
+  /// Runs the scene once without recording the time; this compiles the kernels. The evaluator must outlive the object.
   TimedScene(SceneValues scene, bool keep_all, ModelEvaluator& evaluator);
 
-  /// Records one raw time, which is the mean time of one or several calls.
+  /// Records one raw time. It is the time of a call, or the mean time of several calls if they are short.
   void repeat();
 
   const SceneValues& scene() const { return scene_; }
   const SceneEntries& entries() const { return entries_; }
   const EffectPlan& plan() const { return plan_; }
   const std::vector<PointResult>& results() const { return results_; }
-  const Work& work() const { return work_; }  ///< work of the last call
-  /// Raw times per entry in seconds: for whole calls, and for the kernels and the sums of moments within the calls.
+  const Work& work() const { return work_; }  ///< evaluations and times of the last call
+  /// Raw times per entry in seconds. kernel_times_s: only for the kernels and the sums of their results.
   std::vector<double> times_s() const;
   std::vector<double> kernel_times_s() const;
 

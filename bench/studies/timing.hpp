@@ -14,16 +14,16 @@ struct TimingPolicy {
   std::size_t min_repeats = 5;
   std::size_t max_repeats = 15;
   std::size_t random_repeats = 32;  ///< for methods whose answers differ from call to call
-  double enough_s = 0.5;            ///< after this total time min_repeats suffice
-  double most_s = 3.0;              ///< after this total time no repeat follows; random methods ignore it
-  double raw_time_s = 1e-3;         ///< shorter calls are repeated until a raw time is this long
+  double enough_s = 0.5;            ///< once min_repeats have run, no repeat follows after this total time
+  double most_s = 3.0;              ///< no repeat follows after this total time; random methods ignore it
+  double raw_time_s = 1e-3;         ///< each raw time covers as many calls as take this long
 };
 
 /// Raw times of repeated calls in seconds, and their results.
 struct Measurement {
   std::vector<double> raw_s;          ///< time per call
   std::vector<double> raw_kernel_s;   ///< time of the kernels per call; empty without kernels
-  std::vector<Answer> answers;        ///< answers for the first entry: one, or one per repeat of a random method
+  std::vector<Answer> answers;        ///< answers for the first entry: one per repeat of a random method, otherwise one
   std::vector<Answer> last;           ///< answers of the last call, for all entries
   std::optional<double> evaluations;  ///< integrand evaluations per call
 };
@@ -40,8 +40,8 @@ std::vector<double> per_entry(std::vector<double> times_s, std::size_t entries);
 /// (median - minimum)/minimum: by how much a typical time exceeds a time without other load.
 double spread(const std::vector<double>& values);
 
-/// Warms up, then times calls of `solver` until the policy is satisfied. If the first call takes `most_s` or longer, it
-/// is the only one.
+/// Calls `solver` once without timing, and then times as many calls as `policy` requires. There is only one call, and
+/// its time counts, if it takes policy.most_s or longer, or if the method measures its times itself.
 Measurement measure(Solver& solver, const MomentsRequest& request, double setting, bool is_random,
                     const TimingPolicy& policy);
 

@@ -30,10 +30,10 @@ constexpr int kWidth = 1920;
 constexpr int kHeight = 1080;
 constexpr double kDrag_s = 3.0;
 constexpr int kMovesPerSecond = 30;
-constexpr double kGoalOfOne = 20.0;  // goal for one wavelength: up-to-date curves per second
-constexpr double kGoalOfBand = 8.0;  // goal for a band with n(lambda): up-to-date curves per second
+constexpr double kGoalOfOne = 20.0;  // at one wavelength, the study warns of fewer fresh curves per second
+constexpr double kGoalOfBand = 8.0;  // for a band with n(lambda), the study warns of fewer fresh curves per second
 
-/// A drag of the slider of `key`, in the scene with `changes`.
+/// A drag of the slider for the scene key `key`. The scene is kScene with `changes`.
 struct DragCase {
   std::string name;
   std::string key;
@@ -147,7 +147,7 @@ class Watch {
     gap_s_ = std::max(gap_s_, std::chrono::duration<double>(now - last_fresh_).count());
     last_fresh_ = now;
   }
-  /// True after the drag has begun, once the curve belongs to the current scene and meets its tolerance.
+  /// True if the drag has begun and the curve is final: it belongs to the current scene and meets the tolerance.
   bool is_done() const { return begin_ && curve().is_finished(); }
 
   ordered_json json(Clock::time_point released) const {
@@ -188,7 +188,7 @@ ordered_json drag_row(const DragCase& one, const std::string& device) {
   explore::App app(explore::SceneEdits(Scene::from_text(kScene, one.changes, one.name)), {.device = device});
   xdotool(fmt::format("windowsize --sync %1 {} {} windowfocus %1", kWidth, kHeight));
   app.settle();
-  // The first drag also compiles the kernels for coarse results. So only the second drag counts.
+  // The first drag also compiles the kernels for coarse results. So the study reports only the second drag.
   ordered_json measured;
   for (int i = 0; i < 2; ++i) {
     Watch watch(app);

@@ -10,7 +10,7 @@ namespace {
 using namespace dolp;
 using namespace dolp::bench;
 
-// chi^2 of both sets has several valleys. Intervals that follow only the lowest valley would miss the truth.
+// chi^2 of these two data sets has several valleys. Intervals from only the lowest valley would exclude true values.
 TEST(FitSets, BentValley_IntervalsHoldATruthThatTheDataDoNotExclude) {
   CpuEvaluator evaluator;
   for (const std::size_t number : {1005U, 1029U}) {
@@ -20,8 +20,8 @@ TEST(FitSets, BentValley_IntervalsHoldATruthThatTheDataDoNotExclude) {
   }
 }
 
-// The data include multiple bounces. A fit by single scattering that allows for the bracket of DOLP has wide intervals,
-// which contain the truth. A fit by the model with all bounces has narrow intervals.
+// The data include multiple bounces. A fit with single scattering, which takes the bracket of DOLP as its model error,
+// has wide intervals that contain the true values. A fit with all bounces has narrow intervals.
 TEST(FitSets, AllBounces_IntervalsOfTheBracketHoldTheTruth) {
   constexpr std::size_t kFewPoints = 6;  // points per data set; the study uses 15
   CpuEvaluator evaluator;

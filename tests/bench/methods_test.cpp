@@ -59,9 +59,9 @@ struct Expected {
   std::map<std::string, double> tolerance;
 };
 
-// Tolerances of the midpoint and Gauss rules: two to three times the error that was measured once at this setting.
-// monte-carlo: four standard errors of 1e5 samples. hcubature and pcubature: ten times the setting, because they only
-// estimate their errors. Other methods: the setting itself.
+// The tolerances of midpoint and Gauss rules are two to three times an error that was measured at this setting. The
+// tolerances of monte-carlo are four standard errors of 1e5 samples. hcubature and pcubature only estimate their
+// errors, so their tolerances are ten times the setting. The tolerances of other methods are the setting itself.
 const std::map<std::string, Expected> kExpected = {
     {"midpoint", {256, {{"easy", 8e-6}, {"median", 6e-6}, {"rough", 6e-5}, {"hard", 2e-3}, {"worst", 2e-2}}}},
     {"gauss", {64, {{"easy", 2e-9}, {"median", 4e-5}, {"rough", 2e-9}, {"hard", 1.5e-4}, {"worst", 2e-5}}}},
@@ -84,7 +84,7 @@ class BenchMethod : public testing::TestWithParam<std::string> {};
 TEST_P(BenchMethod, EveryCase_CheapSetting_AgreesWithReference) {
   const std::unique_ptr<Solver> solver = solver_of(GetParam());
   const Expected& expected = kExpected.at(GetParam());
-  const std::size_t entries = GetParam() == "dblquad" ? 1 : 2;  // dblquad.py repeats each entry for 1.5 s
+  const std::size_t entries = GetParam() == "dblquad" ? 1 : 2;  // dblquad is slow
   for (const Case& one : cases()) {
     if (!expected.tolerance.contains(one.name)) {
       EXPECT_THROW(worst_error(*solver, neighbourhood(one, entries), expected.setting), Unavailable) << one.name;
@@ -109,8 +109,8 @@ std::string test_name(const testing::TestParamInfo<std::string>& tested) {
 }
 INSTANTIATE_TEST_SUITE_P(Registry, BenchMethod, testing::ValuesIn(method_names()), test_name);
 
-// With this tight tolerance, errors would show in the masking tables (`integral` and `smith` masking), and at the
-// horizon, where the integral ends.
+// At this tight tolerance the test would find errors of the masking tables (`integral` and `smith` masking), and errors
+// of the integrand near the horizon, where the integral ends.
 TEST(BenchFormulas, AdaptiveCubature_TightTolerance_AgreesWithReferenceForBothDistributions) {
   const std::unique_ptr<Solver> hcubature = solver_of("hcubature");
   for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
@@ -127,7 +127,8 @@ TEST(BenchFormulas, AdaptiveCubature_TightTolerance_AgreesWithReferenceForBothDi
   }
 }
 
-// With n = 0.8 the integrand has a square root at the critical angle, where adaptive rules converge slowly.
+// With n = 0.8 there is total reflection. At the critical angle the integrand behaves like a square root, so adaptive
+// rules converge slowly.
 TEST(BenchFormulas, AdaptiveCubature_TotalReflection_AgreesWithReference) {
   MomentsRequest request = neighbourhood(case_of("easy"), 1);
   request.optics = {{0.8, 0.0}};
@@ -157,8 +158,8 @@ TEST(BenchRules, MonteCarlo_Repeats_ScatterAsStatedAboutTheTruth) {
     sum_2 += deviation * deviation;
     stated_2 += *answer.stated_error * *answer.stated_error;
   }
-  // With 64 repeats the measured standard deviation has an error of 9 %, and the mean an error of 1/8 of the standard
-  // deviation. Both tolerances are four times these errors.
+  // The standard deviation of 64 repeats has an error of 9 %. The mean has an error of 1/8 standard deviation. Each
+  // tolerance is four times the error.
   EXPECT_NEAR(std::sqrt(sum_2 / stated_2), 1.0, 0.36);
   EXPECT_LE(std::abs(sum / kRepeats), 4.0 * std::sqrt(stated_2 / kRepeats) / std::sqrt(kRepeats));
 }
@@ -182,7 +183,7 @@ TEST(BenchTiming, MedianAndSpread_OddAndEven_AreThoseOfTheList) {
   EXPECT_DOUBLE_EQ(spread({1.0, 1.5, 9.0}), 0.5);
 }
 
-/// A study with one result, on an idle machine with a release build. Nothing in it is a reason for a warning.
+/// A study that causes no warning: one result, from an idle machine and a release build.
 nlohmann::ordered_json quiet_study() {
   return {
       {"study", "test"},

@@ -168,7 +168,7 @@ TEST_F(BenchProgram, StudiesOfTheDevice_WithoutOne_AreExit3) {
 
 struct Plotted {
   std::string study;
-  std::string row;  ///< a part of the Markdown table of the study
+  std::string row;  ///< text that the Markdown table of the study must contain
 };
 
 TEST_F(BenchProgram, Plot_OfEveryStudy_GivesFigureAndTable) {

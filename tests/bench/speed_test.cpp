@@ -37,8 +37,7 @@ double largest_difference(const std::vector<Answer>& a, const std::vector<Answer
   return largest;
 }
 
-// The native build computes neighbouring directions together, with the largest quadrature order that any of them needs.
-// On this grid the orders differ much, so the native build needs up to four times the device's evaluations.
+// The native build is compiled from the same kernel source as the kernels of the device.
 TEST(BenchNative, Grid_HasTheDevicesNodesOrMoreAndItsMoments) {
   constexpr double kTolerance = 1e-4;
   const std::unique_ptr<Solver> native = solver_of("native-float");
@@ -55,10 +54,10 @@ TEST(BenchNative, Grid_HasTheDevicesNodesOrMoreAndItsMoments) {
   }
 }
 
-// With 256 nodes per axis, several invocations compute the parts of one entry.
+// With 256 nodes per axis, the device needs several invocations for each entry.
 TEST(BenchDeviceRule, ManyNodes_EveryMasking_GivesTheSumOfTheHost) {
   constexpr double kNodes = 256;
-  constexpr double kRounding = 2e-5;  // due to the rounding of angles in float; largest for the smoothest surface
+  constexpr double kRounding = 2e-5;  // the device rounds angles to float; the effect is largest for smooth surfaces
   const std::vector<NestedGrid::Place> places = NestedGrid::sample(3);
   const std::unique_ptr<Solver> device = solver_of("vulkan-gauss");
   const std::unique_ptr<Solver> host = solver_of("gauss");
@@ -75,7 +74,7 @@ TEST(BenchOperations, WholeRequest_CountsWhatTheKernelDoes) {
   const KernelWork work = count_operations(request, 1'000'000, 8);
   const Solution solution = solver_of("vulkan-float")->solve(request, request.tolerance);
   EXPECT_NEAR(work.evaluations / *solution.evaluations, 1.0, 1e-3);
-  // Fresnel's formulas take three square roots and about 40 products. Integration limits take further operations.
+  // Each evaluation takes at least three square roots and 40 products, for Fresnel's formulas.
   EXPECT_GT(static_cast<double>(work.counts.square_root), 3.0 * work.evaluations);
   EXPECT_GT(static_cast<double>(work.counts.multiply), 40.0 * work.evaluations);
   EXPECT_LT(static_cast<double>(work.counts.flops()), 5000.0 * work.evaluations);

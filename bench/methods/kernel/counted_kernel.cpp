@@ -1,4 +1,4 @@
-// The kernel source with a number type that counts exactly the operations of the kernel.
+// A build of the kernel source that counts arithmetic operations. Its number type `real` is the class Counted.
 #define DOLP_KERNEL_NAMESPACE counted_kernel
 
 #include "methods/kernel/grouped_kernel.hpp"
@@ -72,7 +72,7 @@ class Counted {
   std::uint32_t is_constant_ = 0;
 };
 
-/// Marks a number as input of the kernel: operations with it count, even if all operands are inputs.
+/// The number as an input of the kernel. Operations on inputs count, while operations between constants do not.
 inline Counted as_data(Counted number) { return Counted(number.value()); }
 
 using real = Counted;

@@ -1,6 +1,6 @@
-// Common body of native_kernel.cpp and counted_kernel.cpp. Before they include it, both define DOLP_KERNEL_NAMESPACE,
-// and in this namespace real, real2, real4 and as_data. The masking and the width of a kernel row are template
-// arguments, because the compiler of a device knows them as constants, too.
+// The code that native_kernel.cpp and counted_kernel.cpp share. Before these files include it, each defines the macro
+// DOLP_KERNEL_NAMESPACE, and in this namespace the types real, real2 and real4 and the function as_data. Masking and
+// row width are template arguments: they are constants for the compiler, as on a Vulkan device.
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,5 @@
-// The kernel source compiled as C++ in float. It computes the same kernel rows as a Vulkan device, in the same pieces.
+// The kernel source of shaders/, compiled as C++ in float. As on a Vulkan device, each invocation computes one piece of
+// the integral over slopes, for one kernel row. A kernel row is a group of entries that differ only in q.
 #pragma once
 
 #include <cstddef>
@@ -12,34 +13,35 @@
 
 namespace dolp::bench {
 
-/// A request in the form that the kernel reads.
+/// The inputs of the kernel for a request.
 struct GroupedWork {
   explicit GroupedWork(const MomentsRequest& request);
 
   KernelData data;
   Rows rows;
-  std::vector<RowPiece> pieces;  ///< one piece of a kernel row per invocation, in the order of a Vulkan device
+  std::vector<RowPiece> pieces;  ///< for each invocation, its kernel row and piece; in the order of a Vulkan device
 };
 
-/// The kernels of shaders/ for one GroupedWork, which must outlive the object. Several threads may call the functions
-/// at the same time, for different shapes and pieces.
+/// The kernels of shaders/ for one GroupedWork, which must outlive this object. Threads may call the functions at the
+/// same time if each thread has other shapes and pieces.
 class GroupedKernel {
  public:
   virtual ~GroupedKernel() = default;
 
-  /// Fills the masking table of a shape. If the data needs tables, call this before run_pieces.
+  /// Fills the masking table of one shape. Call this for every shape before run_pieces.
   virtual void build_masking_table(std::size_t shape) = 0;
 
-  /// Runs invocations until `members` is full, beginning with invocation number `first`. Each invocation writes one
-  /// node for each entry of its kernel row.
+  /// Runs the invocations from number `first`, until they have filled `members`. Each invocation writes one result for
+  /// each entry of its kernel row.
   virtual void run_pieces(std::size_t first, std::span<kernel::MomentsNode> members) = 0;
 };
 
-/// Adds the results of all pieces of each kernel row. Returns moments in the order of the request.
+/// Sums the results of all pieces for each entry. `nodes` are the results of all invocations. Returns the moments in
+/// the order of the request.
 std::vector<Moments> moments_of(const GroupedWork& work, const std::vector<kernel::MomentsNode>& nodes);
 
-/// True if the two kernels below support these data: the Cauchy distribution, no total reflection, and `integral` or
-/// `smith` masking.
+/// True if make_native_kernel and make_counted_kernel support these data: the Cauchy distribution, no total reflection,
+/// and `integral` or `smith` masking.
 inline bool has_kernel_for(const KernelData& data) {
   return data.distribution == Distribution::kCauchy && !data.has_total_reflection && data.needs_masking_table();
 }

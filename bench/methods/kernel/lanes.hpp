@@ -1,5 +1,5 @@
-// Types and functions of GLSL that the kernel source needs. The file that includes this one defines the type `real`. It
-// is either a plain float, so that the C++ compiler may optimise freely, or a number that counts its operations.
+// C++ versions of the GLSL types and functions that the kernel source needs. They work with floats, or with a number
+// type that counts its operations. They are simple, so that the compiler may optimise freely.
 #pragma once
 
 #include <bit>

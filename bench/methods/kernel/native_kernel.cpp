@@ -1,4 +1,4 @@
-// This file is compiled with special flags; see bench/CMakeLists.txt.
+// A build of the kernel source for this processor. bench/CMakeLists.txt compiles this file with flags for high speed.
 #define DOLP_KERNEL_NAMESPACE native_kernel
 
 #include "methods/kernel/lanes.hpp"

@@ -98,7 +98,7 @@ bool put_normal_albedo(const Row& row, Moments& moments) {
   return is_ln2;
 }
 
-/// Replaces moments by closed forms where these exist. Row::origin records the origin of the values.
+/// Replaces each moment that has a closed form by the value of this form. Row::origin states the origin of the values.
 void put_closed_forms(Row& row) {
   Moments& moments = row.moments;
   if (row.input.shape.sigma == 0.0) {

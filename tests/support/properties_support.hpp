@@ -1,4 +1,4 @@
-// Random points from the whole range of scenes, and the evaluators of all kernels, for tests of properties.
+// Random points from the whole range of scenes, and an evaluator for each compiled version of the kernels, for tests.
 #pragma once
 
 #include <fmt/format.h>

@@ -73,8 +73,7 @@ class Check {
   double bound_share_;
 };
 
-/// For each moment, divides the difference of the two results by the sum of their error bounds. Returns the largest
-/// ratio.
+/// Divides, for each moment, the difference of both results by the sum of both error bounds. Returns the largest ratio.
 double error_over_bound(const Moments& stated, const Moments& exact) {
   double worst = 0.0;
   for (const auto& [value, error] : kMomentMembers) {

@@ -17,7 +17,7 @@ struct HoldOutOptions {
   std::size_t entries = 1000;
   std::uint64_t seed = 1;
   std::size_t climbs = 0;          ///< number of climbs; they start from the random entries with the largest ratios
-  bool against_reference = false;  ///< compare with the reference (a second per entry on one core), not with finer rules
+  bool against_reference = false;  ///< compare with the reference, which takes a second per entry on one core
   /// Factor of all error bounds of the rules. The smallest factor at which all bounds still hold shows how far the
   /// bounds are above the errors.
   double bound_share = 1.0;

@@ -59,8 +59,8 @@ std::vector<Moments> computed(const MomentsRequest& request, const RuleModel& mo
   return moments;
 }
 
-/// Computes each entry again, at ever smaller tolerances, until it meets `tolerance`. Returns the sum over all entries
-/// of ln(weighted evaluations of the entry).
+/// Computes each entry at ever smaller tolerances until it meets `tolerance`. Returns the sum of ln(weighted
+/// evaluations) over all entries.
 double log_work(const MomentsRequest& all, double tolerance, const RuleModel& model) {
   std::vector<double> work(all.size(), 0.0);
   std::vector<std::uint32_t> wanted(all.size());

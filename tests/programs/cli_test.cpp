@@ -217,7 +217,7 @@ TEST_F(CommandLine, Evaluators_SamePoints_AgreeWithinTheirStatedErrors) {
       const auto sum = [&](const char* name) { return vulkan.at(name)[i] + other->at(name)[i]; };
       const auto difference = [&](const char* name) { return std::abs(vulkan.at(name)[i] - other->at(name)[i]); };
       EXPECT_LE(difference("dolp"), sum("error_estimate")) << i;
-      // rho_error_estimate is relative to rho_i. So the two estimates are multiplied by rho_i, the mean of both
+      // rho_error_estimate is relative to rho_i. So it is multiplied by rho_i, the mean of the values of both
       // evaluators.
       EXPECT_LE(difference("rho_i"), sum("rho_error_estimate") * 0.5 * sum("rho_i")) << i;
       EXPECT_LE(difference("rho_q"), sum("rho_error_estimate") * 0.5 * sum("rho_i")) << i;

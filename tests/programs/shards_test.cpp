@@ -160,8 +160,7 @@ TEST_F(Shards, OneOfOne_HasTheNameOfAShard_AndMerges) {
   expect_same("one.nc", "t.nc");
 }
 
-// A scene that names data files. `merge` must refuse shards that were made from different data or with different
-// options.
+// A scene that names data files. `merge` must refuse shards that were made from different data or by different options.
 class Inputs : public Shards {
  protected:
   void SetUp() override {

@@ -142,9 +142,9 @@ TEST(ReferenceBounces, ScatterOfTheEvaluator_IsTheSum) {
   for (std::size_t e = 0; e < 16; ++e) EXPECT_EQ(matrix.m[e], f[e / 4][e % 4]);
 }
 
-// Integrates the pBRDF elements f_00 and f_01 times cos(theta_r) over all directions of reflection omega_r. With the
-// horizontal components x and y of omega_r, cos(theta_r) d Omega = dx dy. The polar coordinates in the plane of x and y
-// have their centre at the mirror direction, where the pBRDF diverges.
+// Integrates the pBRDF elements f_00 and f_01 over the horizontal components x and y of the direction of reflection.
+// The solid angle is dx dy / cos(theta_r). The polar coordinates in the plane of x and y have their centre at the
+// mirror direction, where the pBRDF diverges.
 std::complex<double> hemispherical(const Surface& surface, const OpticalConstants& index, double theta_deg) {
   constexpr int kSectors = 12, kRings = 3;
   const double centre = -std::sin(theta_deg * kRadPerDeg);
@@ -153,16 +153,15 @@ std::complex<double> hemispherical(const Surface& surface, const OpticalConstant
     for (int ring = 0; ring < kRings; ++ring) {
       const auto in_sector = [&](double chi) {
         const double reach = std::sqrt(1.0 - std::pow(centre * std::sin(chi), 2)) - centre * std::cos(chi);
-        const auto at =
-            [&](double y) {  // y = 1 is the horizon; d distance / dy cancels the factor 1/cos(theta_r) there
-              const double distance = reach * y * (2.0 - y);
-              const double x = centre + distance * std::cos(chi), across = distance * std::sin(chi);
-              const double sine = std::hypot(x, across);
-              const double cosine = std::sqrt((1.0 - sine) * (1.0 + sine));
-              const ReferenceMueller f = reference_scattering(
-                  surface, index, theta_deg, std::atan2(sine, cosine) / kRadPerDeg, std::atan2(across, x) / kRadPerDeg);
-              return std::complex(f[0][0], f[0][1]) / cosine * distance * reach * 2.0 * (1.0 - y);
-            };
+        const auto at = [&](double y) {  // at the horizon, y = 1, the derivative of distance cancels 1/cosine
+          const double distance = reach * y * (2.0 - y);
+          const double x = centre + distance * std::cos(chi), across = distance * std::sin(chi);
+          const double sine = std::hypot(x, across);
+          const double cosine = std::sqrt((1.0 - sine) * (1.0 + sine));
+          const ReferenceMueller f = reference_scattering(
+              surface, index, theta_deg, std::atan2(sine, cosine) / kRadPerDeg, std::atan2(across, x) / kRadPerDeg);
+          return std::complex(f[0][0], f[0][1]) / cosine * distance * reach * 2.0 * (1.0 - y);
+        };
         return gauss<double, 7>::integrate(at, static_cast<double>(ring) / kRings, (ring + 1.0) / kRings);
       };
       total += 2.0 * gauss<double, 3>::integrate(in_sector, pi * sector / kSectors, pi * (sector + 1) / kSectors);

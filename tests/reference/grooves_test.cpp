@@ -123,8 +123,7 @@ std::vector<double> counted_shares(double alpha, const reference::Vector<double>
 
 TEST(GrooveBeam, Fluxes_MatchCountedRays) {
   constexpr int kRays = 20000;
-  constexpr double kTolerance =
-      3.0 / kRays;  // rays with k bounces form up to three beams; one ray may be wrong in each
+  constexpr double kTolerance = 3.0 / kRays;  // for each k up to three beams, each with an error of one ray
   for (const double alpha_deg : {10.0, 35.0, 60.0, 80.0, 85.0}) {
     for (const double theta_deg : {0.0, 20.0, 55.0, 80.0, 89.0}) {
       for (const double phi_deg : {0.0, 40.0, 89.0, 130.0}) {

@@ -1,5 +1,4 @@
-// Masking functions and Mueller matrix of the reference, compared with the model's definitions programmed a second
-// time.
+// Masking and Mueller matrix of the reference, compared with the model's definitions, which are programmed again here.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -57,8 +56,7 @@ double plain_g1(Distribution distribution, double sigma, double q, double theta,
 }
 
 TEST(ReferenceMasking, G1_MatchesIntegrationOverTheTilt) {
-  constexpr double kTolerance =
-      1e-11;  // error of the tanh-sinh rule if the integrand has a peak at an end of the range
+  constexpr double kTolerance = 1e-11;  // error of the tanh-sinh rule if the integrand peaks at an end of the range
   for (const double theta_deg : {20.0, 50.0, 75.0, 88.0}) {
     for (const double alpha_deg : {0.5, 20.0, 60.0}) {
       const double alpha = alpha_deg * kRadPerDeg;

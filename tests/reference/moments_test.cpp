@@ -56,8 +56,7 @@ Reflectances fresnel_reflectances(OpticalConstants constants, double theta_deg) 
 }
 
 TEST(Adaptive, KronrodPanel_Polynomials_AreExactUpToTheOrdersOfBothRules) {
-  // Gauss's rule with 10 points is exact up to degree 19. Kronrod's rule, with 11 more points, is exact up to
-  // degree 31.
+  // Gauss's rule with 10 points is exact up to degree 19, Kronrod's rule with 11 more points up to degree 31.
   constexpr double kRounding = 1e-15;
   for (int degree = 0; degree <= 30; degree += 2) {
     const auto panel =
@@ -196,8 +195,7 @@ TEST(ReferenceMoments, PlainQuadratureOfTheMuellerMatrix_Agrees) {
 }
 
 // With v-cavity and smith masking rho has a limit at 90 degrees and is linear in cos(theta) just below 90 degrees. So
-// the values of rho at 1, 2 and 4 gaps below 90 degrees lie on a line. If the reference lost digits, they would
-// scatter.
+// rho at 1, 2 and 4 gaps below 90 degrees lies on a line. If the reference lost digits, the values would scatter.
 TEST(ReferenceMoments, NextToGrazing_KeepTheirDigits) {
   constexpr double kTolerance = 1e-13;
   const ReferenceOptions options{.relative_tolerance = kTolerance, .subdivisions = 2};

@@ -30,8 +30,8 @@ inline constexpr double kNoise = 0.002;
 
 inline FitRange number(const std::string& key, double low, double high) { return {key, low, high, {}}; }
 
-/// Fits to synthetic data. The data are Q/I of the scene at zeniths up to 80 degrees, plus random errors with the
-/// standard deviation `noise`.
+/// Fits to synthetic data: Q/I of the scene at zeniths up to 80 degrees, with random errors (standard deviation
+/// `noise`).
 class FitTest : public testing::Test {
  protected:
   MeasuredData measured(double noise, const std::vector<std::string>& overrides = {}, bool has_uncertainties = true,

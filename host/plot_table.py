@@ -3,10 +3,10 @@
 
 Usage: plot_table.py TABLE.nc OUT.png [--q Q] [--wavelength UM] [--temperature K] [--n N] [--k K] [--material NAME] [--band FROM-TO]
        plot_table.py TABLE.nc OUT.png --rank THETA ...   ranks the materials of a table by DOLP at this zenith
-From each other axis, such as q, the picture shows one value: the value nearest to the option --q. Without the option it
-is the value nearest to the scene's, or the middle value if the scene has none; of materials and bands it is the first.
-One of the curves has the scene's sigma. If the table has winds, wind takes the role of sigma. Entries whose status is
-not 0 are faint in the curves and hatched grey in the map. Needs python3-netcdf4, python3-numpy and python3-matplotlib.
+The picture shows one value of every further axis, such as q: the value nearest to the number in the option, here --q Q.
+Without the option it shows the value nearest to the scene's value, or the middle value if the scene has no value, or
+the first material or band. One curve has the scene's sigma. If the table has winds, winds replace sigma. Entries with a
+nonzero status are faint in curves, hatched in maps. Needs python3-netcdf4, python3-numpy and python3-matplotlib.
 Exit status: 0 done, 2 usage or a file that is not such a table, 4 the picture could not be written.
 """
 import argparse
@@ -31,8 +31,8 @@ import picture_file  # noqa: E402
 COLOURS = "viridis"
 MOST_CURVES = 6
 CONTOURS_PERCENT = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50)
-SHOWN_SHARE_PERCENT = 97  # share of the entries inside the DOLP scale; a steep rise near grazing may lie outside
-FEW_ANGLES = 25  # with at most this many zeniths each entry gets a dot
+SHOWN_SHARE_PERCENT = 97  # share of the entries for which the DOLP scale is long enough; a steep rise may exceed it
+FEW_ANGLES = 25  # a curve of at most this many zeniths has a dot at each entry
 # Least number of values of theta and of sigma for a map. A smaller map would suggest structure that the table lacks.
 FEWEST_OF_MAP = 6
 SMALLEST_SPAN_PERCENT = 0.01  # least range of the DOLP axis, so that rounding noise does not look like a signal
@@ -46,26 +46,26 @@ STATUS_MEANINGS = {
 RHO_TOLERANCE_NOT_MET = 16
 
 
-# Axes with numbers, and the symbols of these axes. The picture shows one value of each axis.
+# The axes of numbers from which the picture shows one value, and the symbol of each axis.
 SYMBOLS = {"q": "q", "wavelength": "λ", "temperature": "T", "n": "n", "k": "k"}
-NAMED = ("material", "band")  # axes with names; the picture shows one name of each axis
+NAMED = ("material", "band")  # the axes of names from which the picture shows one name
 UNITS = {"wavelength": " µm", "temperature": " K", "band": " µm"}
 KEYS = {"temperature": ("emission", "temperature_K"), "q": ("surface", "q"), "wavelength": ("spectrum", "wavelength_um"), "n": ("surface", "n"), "k": ("surface", "k"),
-        "sigma": ("surface", "sigma"), "wind_m_s": ("surface", "wind_m_s")}  # keys of the scene's values on these axes
+        "sigma": ("surface", "sigma"), "wind_m_s": ("surface", "wind_m_s")}  # the scene's key for each axis
 
 
 def text_of(dataset, name):
-    """A text attribute of a table. Long texts are stored as variables of characters."""
+    """A text attribute of a table. A table stores a long text as a variable of characters instead."""
     return dataset[name][:].tobytes().decode() if name in dataset.variables else getattr(dataset, name, "")
 
 
 def scene_part(dataset, part):
-    """The keys of one part of the scene, such as surface, with the overrides applied. Empty if a text is not TOML."""
+    """The keys of one TOML table of the scene, such as surface, with the overrides. Empty if the scene is not TOML."""
     try:
         keys = tomllib.loads(text_of(dataset, "scene")).get(part, {})
         for line in text_of(dataset, "scene_overrides").splitlines():
             if line.startswith(f"{part}."):
-                kept = {} if part == "spectrum" else keys  # wavelength and band exclude each other
+                kept = {} if part == "spectrum" else keys  # a wavelength replaces a band, a band a wavelength
                 keys = {**kept, **tomllib.loads(line.removeprefix(f"{part}."))}
         return keys
     except ValueError:
@@ -100,7 +100,7 @@ class NotATable(Exception):
 
 
 def position_of(dataset, axis, name):
-    """Position of a material or band on its axis: the name that equals the text, or the only name that contains it."""
+    """Position of a material or band on its axis. A part of its name is enough if no other name contains this part."""
     names = [str(own) for own in dataset[axis][:]]
     alike = [i for i, own in enumerate(names) if name.lower() in own.lower()]
     same = [i for i in alike if names[i].lower() == name.lower()]
@@ -114,7 +114,7 @@ class Slice:
     percent. If the table has winds, `sigma` contains the winds instead."""
 
     def __init__(self, dataset, wanted):
-        """`wanted` has a value for each axis in SYMBOLS and NAMED, or None for the default."""
+        """`wanted` has a value for each axis in SYMBOLS and NAMED. None means the scene's value, or the first name."""
         for name in ("theta", "sigma", "q", "dolp"):
             if name not in dataset.variables:
                 raise NotATable(f"has no variable {name}; a table with DOLP is expected")
@@ -148,10 +148,10 @@ class Slice:
             return data[np.ix_(rows, columns)]
 
         self.dolp = 100.0 * values("dolp", np.nan)
-        if "stokes_i" in dataset.variables:  # leaves out limits of DOLP at 90 degrees, where I is NaN
+        if "stokes_i" in dataset.variables:  # not drawn: limits of DOLP at 90 degrees where I has no limit
             self.dolp[np.isnan(values("stokes_i", np.nan))] = np.nan
         status = values("status", 0) if "status" in dataset.variables else np.zeros(self.dolp.shape, int)
-        self.status = status & ~RHO_TOLERANCE_NOT_MET  # DOLP may meet its tolerance even if rho does not
+        self.status = status & ~RHO_TOLERANCE_NOT_MET  # the picture shows DOLP, not rho
         has_bracket = "dolp_low" in dataset.variables and "dolp_high" in dataset.variables
         self.bracket = [100.0 * values(name, np.nan) for name in ("dolp_low", "dolp_high")] if has_bracket else None
         errors = values("error_estimate", np.nan) if "error_estimate" in dataset.variables else None
@@ -169,7 +169,7 @@ class Slice:
         return promised.max() if promised.size else None
 
     def largest(self):
-        """End of the DOLP scale: SHOWN_SHARE_PERCENT of the entries with status 0 lie below this end."""
+        """Upper end of the DOLP scale. SHOWN_SHARE_PERCENT of the entries with status 0 lie below it."""
         trusted = self.dolp[(self.status == 0) & np.isfinite(self.dolp)]
         shown = trusted if trusted.size else self.dolp[np.isfinite(self.dolp)]
         return max(np.percentile(shown, SHOWN_SHARE_PERCENT), SMALLEST_SPAN_PERCENT) if shown.size else 1.0
@@ -186,7 +186,7 @@ class Slice:
 
 
 def cell_edges(centres):
-    """Edges of the cells of a map, halfway between their centres. The outer edges are the outer centres."""
+    """Edges of the cells of a map: the first value of the axis, the midpoints between its values, the last value."""
     middle = 0.5 * (centres[1:] + centres[:-1])
     return np.concatenate([[centres[0]], middle, [centres[-1]]])
 
@@ -199,7 +199,7 @@ def highest_peak(curve):
 
 
 def drawn_columns(table):
-    """Columns of sigma to draw: at most MOST_CURVES, evenly spread. The scene's column replaces the nearest one."""
+    """Indices of the sigmas to draw: at most MOST_CURVES, evenly spread. The scene's sigma replaces the nearest one."""
     chosen = np.linspace(0, table.sigma.size - 1, min(MOST_CURVES, table.sigma.size)).round().astype(int)
     chosen[np.argmin(np.abs(chosen - table.column_in_scene))] = table.column_in_scene
     return chosen

@@ -15,11 +15,12 @@ namespace {
 constexpr double kFinerBy = 1e-5;
 constexpr double kFinest = 1e-13;
 constexpr double kReferenceTolerance = 1e-9;
-constexpr std::size_t kAtOnce = 2000;  // entries per call of an evaluator, which keeps a masking table for each
+constexpr std::size_t kAtOnce = 2000;  // entries per call of an evaluator; limits the memory for masking tables
 constexpr std::size_t kClimbSteps = 40;
 constexpr std::size_t kNeighbours = 16;
 
-/// Moments of some entries: by the rule under test, with the errors that it states, and by a far more accurate rule.
+/// Moments of some entries. `stated` come from the rule under test, with its error bounds. `exact` come from a far more
+/// accurate rule.
 struct Answers {
   std::vector<Moments> stated;
   std::vector<Moments> exact;
@@ -72,7 +73,7 @@ class Check {
   double bound_share_;
 };
 
-/// The largest ratio over all moments: the difference of both results, divided by the sum of their stated errors.
+/// Divides, for each moment, the difference of both results by the sum of both error bounds. Returns the largest ratio.
 double error_over_bound(const Moments& stated, const Moments& exact) {
   double worst = 0.0;
   for (const auto& [value, error] : kMomentMembers) {
@@ -97,7 +98,7 @@ MomentsPoint neighbour(Draw& draw, const MomentsPoint& entry, Domain domain, dou
   return next;
 }
 
-/// True if the entry lies in the domain of random_entry. A search for worse entries (a climb) must not leave it.
+/// True if random_entry may return this entry. A search for entries with larger errors (a climb) stays in this domain.
 bool is_in(Domain domain, const MomentsPoint& entry, double q_end) {
   if (domain == Domain::kCorners) return entry.shape.sigma <= 10.0 && entry.shape.q <= q_end + 20.0;
   return entry.shape.sigma >= 0.01 && entry.shape.sigma <= 2.0 && entry.shape.q >= q_end + 0.1 &&

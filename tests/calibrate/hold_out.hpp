@@ -1,5 +1,6 @@
-// Test of the error bounds with random entries that did not take part in the fit of the rules. Compares the results
-// with those of finer rules or of the independent reference. A climb then searches near a bad entry for a worse one.
+// Tests the error bounds with random entries that were not used to fit the rules. Compares the moments with moments by
+// finer rules or by the independent reference. Then searches near the entries with the largest ratio of error to bound
+// for a larger ratio. Such a search is called a climb.
 #pragma once
 
 #include <cstddef>
@@ -15,13 +16,14 @@ struct HoldOutOptions {
   double tolerance = 1e-4;
   std::size_t entries = 1000;
   std::uint64_t seed = 1;
-  std::size_t climbs = 0;          ///< a climb starts from each of so many entries, the worst of the random ones
-  bool against_reference = false;  ///< compare with the reference, which takes a second of one core per entry
-  /// multiplies all bounds. The smallest share without an error above its bound shows how much too large bounds are.
+  std::size_t climbs = 0;          ///< number of climbs; they start from the random entries with the largest ratios
+  bool against_reference = false;  ///< compare with the reference, which takes a second per entry on one core
+  /// Factor of all error bounds of the rules. The smallest factor at which all bounds still hold shows how far the
+  /// bounds are above the errors.
   double bound_share = 1.0;
 };
 
-/// An entry, and its error divided by its stated bound. Above 1 the bound is wrong.
+/// An entry, and the ratio of its error to its error bound. If the ratio is above 1, the bound is wrong.
 struct CheckedEntry {
   MomentsPoint entry;
   double ratio = 0.0;
@@ -31,14 +33,15 @@ struct CheckedEntry {
 struct HoldOut {
   std::size_t entries = 0;
   std::size_t understated = 0;  ///< number of entries where the error of at least one moment exceeds its bound
-  /// share of the entries whose bound of r_i or r_q exceeds the tolerance, so that a run would compute them again
+  /// Share of the entries with an error bound of r_i or r_q above tolerance * r_i. A run would compute them again.
   double flagged_share = 0.0;
   double mean_evaluations = 0.0;
-  CheckedEntry worst;    ///< worst of the random entries
-  CheckedEntry climbed;  ///< worst of all entries, including those that climbs found
+  CheckedEntry worst;    ///< the random entry with the largest ratio
+  CheckedEntry climbed;  ///< the entry with the largest ratio, including the entries that climbs found
 };
 
-/// Tests the rules of one model on the CPU, in float if the tolerance allows it. `model` is a request without entries.
+/// Tests the rules of `model`, a request without entries, on the CPU. Computes in double if the tolerance is too small
+/// for float.
 HoldOut hold_out(const MomentsRequest& model, const HoldOutOptions& options);
 
 }  // namespace dolp

@@ -58,7 +58,7 @@ std::string entry_text(const dolp::CheckedEntry& checked) {
                      e.shape.sigma, e.shape.q, e.index.index.n, e.index.index.k);
 }
 
-/// Prints a line for each tolerance, integrand and distribution. Returns true if no error exceeds its bound.
+/// Prints a line for each combination of tolerance, integrand and distribution. True if no error exceeds its bound.
 bool check(const CheckArguments& arguments) {
   std::size_t understated = 0;
   for (const double tolerance : arguments.tolerances) {

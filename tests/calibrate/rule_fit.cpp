@@ -21,11 +21,11 @@ namespace {
 
 constexpr std::array kTolerances = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8};
 constexpr double kCornerShare = 0.25;
-// Cost of an evaluation when an entry is computed again, relative to an evaluation in its first computation. It would
-// be 1 for scattered points, and 30 for a dense grid: interpolation first computes one entry of 30, but every entry
-// that misses its tolerance is computed again. The value lies between both costs.
+// Weight of the evaluations in repeated computations of an entry. Evaluations in the first computation have weight 1.
+// For scattered points the right weight is 1. For a dense grid it is 30, because a run first computes one entry in 30
+// and interpolates the others, but later computes every entry that misses its tolerance. 8 is a compromise.
 constexpr double kAgainWeight = 8.0;
-// The DOLP of the reflected light is r_q / r_i. Its error is at most the sum of the relative errors of r_q and r_i.
+// The reflected light has the DOLP r_q / r_i. Its error is at most (error of r_q + error of r_i) / r_i.
 constexpr double kErrorsOfDolp = 2.0;
 constexpr int kMostLevels = 8;
 constexpr double kLeastTolerance = 1e-13;
@@ -59,7 +59,8 @@ std::vector<Moments> computed(const MomentsRequest& request, const RuleModel& mo
   return moments;
 }
 
-/// Sum over all entries of the logarithm of the evaluations that an entry needs until it meets `tolerance`.
+/// Computes each entry at ever smaller tolerances until it meets `tolerance`. Returns the sum of ln(weighted
+/// evaluations) over all entries.
 double log_work(const MomentsRequest& all, double tolerance, const RuleModel& model) {
   std::vector<double> work(all.size(), 0.0);
   std::vector<std::uint32_t> wanted(all.size());
@@ -87,7 +88,7 @@ double log_work(const MomentsRequest& all, double tolerance, const RuleModel& mo
   return sum;
 }
 
-/// A constant of the rules, and the first step of the search along it.
+/// A constant of the rules, and the amount by which the search first changes it.
 struct Parameter {
   double RuleModel::*value;
   double step;
@@ -134,7 +135,7 @@ RuleModel fit_rule(const MomentsRequest& integrand, const RuleFitOptions& option
           least = work;
           note(best, least);
         }
-        if (least < before) break;  // A step in the opposite direction would undo the last one.
+        if (least < before) break;  // steps in this direction helped, so steps in the opposite direction would not
       }
     }
   }

@@ -16,8 +16,8 @@ struct RuleFitOptions {
   int rounds = 4;  ///< passes over all constants; each pass halves the steps
 };
 
-/// Mean of ln(evaluations) per entry, over both distributions and tolerances from 1e-2 to 1e-8. Entries that miss the
-/// tolerance are computed again, as in a run. `integrand` is a request without entries.
+/// Mean of ln(weighted evaluations per entry) over random entries, both distributions and tolerances from 1e-2 to 1e-8.
+/// Entries that miss a tolerance are computed again, as in a run. `integrand` is a request without entries.
 double mean_log_work(const MomentsRequest& integrand, const RuleModel& model, const RuleFitOptions& options);
 
 /// The starting point of every search.
@@ -29,8 +29,8 @@ inline constexpr RuleModel kFitStart = {.margin_digits = 2.0,
                                         .phi_digits = 0.0,
                                         .cluster_stretch = 5.0};
 
-/// The constants with the least mean_log_work. The search starts at kFitStart and varies one constant at a time. Calls
-/// `note` after each improvement. The result is the same on every machine.
+/// Searches for the constants with the least mean_log_work. Starts at kFitStart and changes one constant at a time.
+/// Calls `note` after each improvement. The result is the same on every machine.
 RuleModel fit_rule(const MomentsRequest& integrand, const RuleFitOptions& options,
                    const std::function<void(const RuleModel&, double)>& note);
 

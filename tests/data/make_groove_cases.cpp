@@ -17,9 +17,10 @@ namespace {
 
 using namespace dolp;
 
-// A tenth of the tightest tolerance in the tests of grooves. Near q = 1 the reference does not reach this accuracy.
+// Relative tolerance of the reference: a tenth of the tightest tolerance in the tests of grooves. The reference misses
+// it near q = 1.
 constexpr double kTolerance = 1e-7;
-// Leaves out random entries if the relative error of the reference is larger.
+// Random entries for which the reference has a larger relative error are left out.
 constexpr double kLeastKnown = 1e-3;
 constexpr std::uint64_t kSeed = 20261122;
 constexpr int kOrdinary = 12;  // random entries per distribution

@@ -15,7 +15,8 @@ SEED = 19
 TIMEOUT_S = 120
 OLD = b"kept\n"
 DONE, INPUT, DEVICE, IO, MEMORY, INTERRUPTED = 0, 2, 3, 4, 6, 130
-# Allowed ends if a C library has no memory: it ends the program, or reports a bad file or device.
+# Exit statuses and signals that are allowed if a C library has no memory: the library may end the program, or report a
+# bad file or device.
 LIBRARY = (INPUT, DEVICE, IO, 255, -signal.SIGABRT, -signal.SIGSEGV, -signal.SIGBUS)
 SCENE = (pathlib.Path(__file__).resolve().parents[1] / "data/scene.toml").read_text(encoding="utf-8")
 POINTS = "theta_deg,sigma,q\n0,0.1,2\n60.0,0.4,3.5\n80.5,0.1,2\n"
@@ -34,12 +35,12 @@ PARTS = (*CPU, "--tolerance", "1e-2", "--set", "surface.masking=none", "--set", 
 OF_HDF5 = re.compile(r"^(HDF5-DIAG: |  #\d+: |    (major|minor): ).*\n", re.MULTILINE)
 # Name of the temporary file that a process leaves if it is killed or runs out of memory before it renames the file.
 LEFT_BY_THE_KILLED = re.compile(r"\.dolp-\d+-\d+\.tmp")
-# A file system in memory, where fsync takes no time.
+# Parent folder of the tries: a file system in memory, because fsync takes no time there.
 FOLDERS = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
 
 
 class Broken(Exception):
-    """A try that broke a rule."""
+    """A try after which a condition of check() does not hold."""
 
 
 class Driver:
@@ -60,11 +61,11 @@ class Driver:
         return {"LD_PRELOAD": str(self.faults / f"libfail_{name}.so"), **environment}
 
     def values(self, output):
-        """The values in a complete output file. Equal runs have equal values. Empty if the file is incomplete."""
+        """Content of an output file that is equal in equal runs. For example, it lacks the times in a table file."""
         if output.suffix == ".nc":
             read = [self.program, "lookup", output.name, "--points", "points.csv", "-o", "-", "--quiet"]
             looked_up = subprocess.run(read, cwd=output.parent, capture_output=True, check=False).stdout
-            # The file has a hash of all values. `lookup` compares it with the values.
+            # The hash stands for all values of the table. `lookup` fails if the values do not have this hash.
             return looked_up, re.findall(rb"placed64:[0-9a-f]{16}", output.read_bytes())
         return output.read_bytes()
 
@@ -85,7 +86,7 @@ class Driver:
             yield Attempt(self, command, options, pathlib.Path(folder), **settings)
 
     def numbers(self, most, quick):
-        """The numbers 1 to `most`. A quick run gets only `quick` of them: 1, `most` and random ones."""
+        """The numbers 1 to `most`. In a quick run only `quick` of these numbers: 1, `most`, and random ones."""
         if not self.is_quick or most <= quick:
             return list(range(1, most + 1))
         return sorted({1, most, *(self.random.randint(1, most) for _ in range(quick - 2))})
@@ -124,7 +125,7 @@ class Attempt:
 
     def start(self):
         def prepare():
-            # A shell may start this script in the background with these signals ignored.
+            # If a shell starts this script in the background, the script and its children ignore these signals.
             for number in (signal.SIGINT, signal.SIGHUP):
                 signal.signal(number, signal.SIG_DFL)
             if self.limit:
@@ -143,7 +144,7 @@ class Attempt:
         return process.returncode, OF_HDF5.sub("", err.decode(errors="replace"))
 
     def check(self, status, err, allowed, may_stay=None):
-        """Raises Broken unless the run ended in an allowed way and the files obey the rules."""
+        """Raises Broken unless `status` is allowed, its message fits, and the folder contains only files that may stay."""
         fault = {name: value for name, value in self.environment.items() if name.startswith("DOLP_")}
         what = f"{self.words[1:]}, {fault}, exit status {status}, {err!r}"
         if status not in allowed:

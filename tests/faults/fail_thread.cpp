@@ -17,7 +17,7 @@ long most_threads() {
   return most != nullptr ? std::strtol(most, nullptr, 10) : -1;
 }
 
-/// Counts a running thread. The destructor ends the count, even if the thread ends by pthread_exit.
+/// Each running thread has such an object. The destructor lowers the count of threads, even after pthread_exit.
 struct Counted {
   Counted() = default;
   Counted(const Counted&) = delete;

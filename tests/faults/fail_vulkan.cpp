@@ -1,7 +1,7 @@
 // A library that is preloaded into a program and makes Vulkan calls fail. Environment:
-//   DOLP_FAIL_VULKAN     FUNCTION:N:RESULT fails the N-th call, FUNCTION:N+:RESULT also all later ones. For example
-//                        vkQueueSubmit:3:-4 loses the device at the third submission. With RESULT never the call does
-//                        not return.
+//   DOLP_FAIL_VULKAN     FUNCTION:N:RESULT makes the N-th call of FUNCTION return the number RESULT. For example,
+//                        vkQueueSubmit:3:-4 loses the device at the third submission. With N+ instead of N all later
+//                        calls fail, too. If RESULT is the word `never`, the call does not return.
 //   DOLP_VULKAN_MEMORY   bytes: larger pieces of device memory are refused
 //   DOLP_VULKAN_WITHOUT  float64, compute or version: devices lack double precision, compute queues or Vulkan 1.2
 //   DOLP_COUNT_SUBMISSIONS a file that receives the number of submissions when the program ends
@@ -121,7 +121,7 @@ extern "C" VKAPI_ATTR VkResult VKAPI_CALL vkQueueSubmit(VkQueue queue, uint32_t 
   return fault == VK_SUCCESS ? next<PFN_vkQueueSubmit>("vkQueueSubmit")(queue, count, submits, fence) : fault;
 }
 
-// The real call always waits first, because work on a device that is reported as lost must have ended.
+// Waits in the real function before it reports a fault: the work of a device that is reported as lost must have ended.
 extern "C" VKAPI_ATTR VkResult VKAPI_CALL vkWaitForFences(VkDevice device, uint32_t count, const VkFence* fences,
                                                           VkBool32 all, uint64_t timeout) {
   const VkResult result = next<PFN_vkWaitForFences>("vkWaitForFences")(device, count, fences, all, timeout);

@@ -3,10 +3,9 @@
 
 Usage: faults.py BUILD [--quick] [--json FILE] [KIND...]    BUILD is the folder that has dolp and tests/faults
        faults.py --table FILE      prints the results in FILE as the table of tests/README.md
-Each try runs dolp in a separate folder with an old output file. Rules: the old file is unchanged or replaced by a complete
-new one, no other file is left, and a failed run reports one line and the exit status of its fault, unless a C library ends
-it for lack of memory. With --quick each KIND has fewer tries. Exit status: 0, or 1 after a try that broke a rule.
-FILE of --json gets a row for each KIND. Rows of kinds that do not run stay in it.
+A KIND is a kind of fault. Each try runs dolp in a new folder with an old output file and causes one fault. Then the
+conditions in tests/README.md must hold. With --quick each KIND has fewer tries. Exit status: 1 if a condition did not
+hold after a try, otherwise 0. --json writes a row for each KIND to FILE, and keeps the rows of the other kinds in FILE.
 """
 import argparse
 import collections
@@ -41,14 +40,14 @@ def markdown(results):
 
 
 def rows_of(path):
-    """The rows of a result file by fault. Empty if there is no file yet."""
+    """The rows of a result file. The key of a row is the description of its fault. Empty if there is no file yet."""
     if not path or not path.exists():
         return {}
     return {row["fault"]: row for row in json.loads(path.read_text(encoding="utf-8"))["kinds"]}
 
 
 def drive(driver, kinds, path):
-    """Runs the kinds. Writes the result file after each kind, because all kinds together take hours."""
+    """Tries the given kinds of fault. Writes the result file after each kind, because all kinds together take hours."""
     version = subprocess.run([driver.program, "--version"], capture_output=True, text=True, check=True).stdout.strip()
     for kind in kinds:
         start = time.monotonic()

@@ -1,4 +1,4 @@
-"""Faults of Vulkan devices and their drivers. Each kind of fault yields the exit status of every try."""
+"""Faults of Vulkan devices and their drivers. The function of a fault yields the exit status of each try."""
 import json
 import os
 import pathlib
@@ -89,7 +89,7 @@ def endless_compilation(driver):
         yield driver.try_once(command, (), (DEVICE,), environment=fault)
     patient = {**fault, "DOLP_COMPILATION_LIMIT_S": "1000"}
     with driver.attempt("table", environment=patient) as attempt, attempt.start() as process:
-        time.sleep(1)  # until the driver compiles; earlier a signal would end the program anyway
+        time.sleep(1)  # the signal must arrive while the driver compiles
         process.terminate()
         err = process.communicate(timeout=TIMEOUT_S)[1].decode()
         attempt.check(process.returncode, err, (INTERRUPTED, -signal.SIGTERM))

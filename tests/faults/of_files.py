@@ -1,4 +1,4 @@
-"""Faults of files and folders. Each kind of fault yields the exit status of every try."""
+"""Faults of files and folders. The function of a fault yields the exit status of each try."""
 import resource
 import shutil
 import signal
@@ -16,8 +16,8 @@ def file_limit(driver):
             most = attempt.output.stat().st_size
         for n in driver.numbers(20, 3):
             limit = (resource.RLIMIT_FSIZE, most * (n - 1) // 20)
-            # The smallest limits also stop files that a Vulkan driver writes. Mesa's lavapipe from release 24 keeps its
-            # buffers in a file and does not check whether the file could grow. The run then ends with SIGBUS.
+            # The smallest limits also affect files of the Vulkan driver. The driver lavapipe of Mesa 24 keeps buffers in
+            # a file and does not check whether the file could grow. The run then ends with SIGBUS.
             yield driver.try_once(command, (), (IO, DEVICE, MEMORY, -signal.SIGBUS), limit=limit)
 
 

@@ -1,4 +1,4 @@
-"""Faults of memory and threads. Each kind of fault yields the exit status of every try."""
+"""Faults of memory and threads. The function of a fault yields the exit status of each try."""
 import concurrent.futures
 import csv
 import operator
@@ -10,7 +10,7 @@ from attempt import CPU, DONE, LARGE, LIBRARY, MEMORY
 
 
 def agree(ours, theirs):
-    """True if two results of `eval` agree within their stated errors, as results of different kernels do."""
+    """True if two results of `eval` differ by at most the sum of their error bounds. Different kernels cause this."""
     rows, others = (list(csv.DictReader(text.decode().splitlines())) for text in (ours, theirs))
     if len(rows) != len(others):
         return False
@@ -22,7 +22,7 @@ def agree(ours, theirs):
 
 
 def allocations_of(driver, command, options, quick, step, is_same=operator.eq):
-    """Two tries for each n: the n-th allocation fails, or the n-th and all later ones. n is a multiple of `step`."""
+    """Makes two tries for each multiple n of `step`. In one only the n-th allocation fails, in the other all from n."""
     driver.expect(command, options)
     count = driver.count("allocation", "DOLP_COUNT_ALLOCATIONS", command, options)
 
@@ -30,7 +30,7 @@ def allocations_of(driver, command, options, quick, step, is_same=operator.eq):
         environment = driver.preload("allocation", DOLP_FAIL_ALLOCATION=number)
         return driver.try_once(command, options, (DONE, MEMORY, *LIBRARY), environment=environment, is_same=is_same)
 
-    # The order of allocations differs between runs with several threads, so a try may end before its allocation.
+    # With several threads the number of allocations differs between runs. So a run may end before the n-th allocation.
     numbers = [f"{n}{after}" for n in driver.numbers(count // step, quick // 2) for after in ("", "+")]
     numbers = [re.sub(r"\d+", lambda n: str(int(n.group()) * step), number) for number in numbers]
     with concurrent.futures.ThreadPoolExecutor(1 if driver.is_quick else os.cpu_count()) as pool:
@@ -69,7 +69,7 @@ def memory_limit(driver):
 def few_threads(driver):
     """the system allows n threads beside the first"""
     driver.expect("table", LARGE)
-    # Number of threads that lavapipe (which cannot work with fewer) and the program need.
+    # Number of threads that the program and the driver lavapipe need. With fewer threads lavapipe cannot work.
     needed = 2 * min(os.cpu_count(), 32) + 3
     for n in [0, *driver.numbers(needed, 7)] if driver.is_quick else range(needed + 20):
         fault = driver.preload("thread", DOLP_MOST_THREADS=str(n))

@@ -1,4 +1,4 @@
-"""Signals at random moments. Each kind of fault yields the exit status of every try."""
+"""Signals at random moments. The function of a fault yields the exit status of each try."""
 import os
 import pathlib
 import re
@@ -46,7 +46,7 @@ def kill_and_resume(driver):
 
 
 def damage(driver, folder, victim):
-    """Damages a file that a killed run left, or replaces it by a link to `victim`. Returns the link, if any."""
+    """Damages a file that a killed run left, or replaces it by a link to `victim`. Returns the link, otherwise None."""
     left = sorted(folder.glob("out.nc.partial*"))
     how = driver.random.choice(("cut", "overwritten", "replaced", "removed", "symbolic link", "hard link"))
     if not left:

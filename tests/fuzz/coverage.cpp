@@ -1,4 +1,5 @@
-// Coverage counters in the section in which libFuzzer looks for them. GCC calls the function below at each basic block.
+// Counts which code a fuzzer reaches. libFuzzer finds the counters by the name of their section in the program file.
+// Code that GCC compiles calls the function below at each basic block.
 #include <array>
 #include <cstddef>
 #include <cstdint>

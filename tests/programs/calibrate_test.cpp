@@ -32,8 +32,8 @@ HoldOutOptions few_entries() {
   return options;
 }
 
-// A typical error is a tenth of its bound. So if all bounds are a thousand times too small, most entries fail, and the
-// worst ratio of error to bound is a thousand times larger.
+// A typical error is a tenth of its bound. If all bounds are divided by a thousand, most errors exceed their bounds,
+// and the largest ratio of error to bound grows by a factor of about a thousand.
 TEST(HoldOut, PlantedUnderstatement_IsFound) {
   HoldOutOptions options = few_entries();
   const HoldOut honest = held_out(options);
@@ -47,7 +47,7 @@ TEST(HoldOut, PlantedUnderstatement_IsFound) {
   EXPECT_GT(planted.understated, options.entries / 2);
   EXPECT_LE(planted.understated, options.entries);
   EXPECT_GT(planted.worst.ratio, 100.0 * honest.worst.ratio);
-  // Bounds that are too small only for the worst entry must be found too.
+  // The test must also find bounds that are too small only for one entry, the worst.
   options.bound_share = 0.9 * honest.worst.ratio;
   const HoldOut lowered = held_out(options);
   EXPECT_GE(lowered.understated, 1U);

@@ -265,7 +265,7 @@ TEST_F(CommandLine, Interrupt_WhileWriting_Exit130) {
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"eval", "scene.toml", "--evaluator", "cpu"}, {"lookup", "out.nc"}}) {
     TerminalProcess process(command(joined(arguments, {"--points", "many.csv", "-o", "pipe"})));
-    // returns when the program opens the pipe
+    // open() returns when the program opens the pipe
     const Descriptor reader(::open(at("pipe").c_str(), O_RDONLY | O_CLOEXEC));
     process.send_signal(SIGINT);
     const Outcome outcome = process.finish();
@@ -283,7 +283,7 @@ TEST_F(CommandLine, Hangup_Ignored_IsNoInterrupt) {
   wanted.arguments.insert(wanted.arguments.begin(), {"nohup"});
   TerminalProcess process(wanted);
   {
-    std::ifstream reader(at("pipe"));  // returns when the program opens the pipe
+    std::ifstream reader(at("pipe"));  // waits until the program opens the pipe
     process.send_signal(SIGHUP);
     const std::string written{std::istreambuf_iterator<char>(reader), {}};
     EXPECT_EQ(std::ranges::count(written, '\n'), 2001);
@@ -310,7 +310,7 @@ TEST_F(CommandLine, OutOfMemory_Exit6InOneLine) {
 TEST_F(CommandLine, Interrupt_WaitingForInput_Ends) {
   ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
   TerminalProcess process(command({"eval", "scene.toml", "--points", "pipe", "-o", "out.csv"}));
-  const Descriptor writer(::open(at("pipe").c_str(), O_WRONLY | O_CLOEXEC));  // returns when the program opens the pipe
+  const Descriptor writer(::open(at("pipe").c_str(), O_WRONLY | O_CLOEXEC));  // waits until the program opens the pipe
   process.send_signal(SIGINT);
   EXPECT_EQ(process.finish().status, -SIGINT);  // a shell reports status 130
   EXPECT_FALSE(fs::exists(at("out.csv")));

@@ -217,7 +217,8 @@ TEST_F(CommandLine, Evaluators_SamePoints_AgreeWithinTheirStatedErrors) {
       const auto sum = [&](const char* name) { return vulkan.at(name)[i] + other->at(name)[i]; };
       const auto difference = [&](const char* name) { return std::abs(vulkan.at(name)[i] - other->at(name)[i]); };
       EXPECT_LE(difference("dolp"), sum("error_estimate")) << i;
-      // rho_error_estimate is relative to rho_i. So the bound is the sum of the estimates times the mean of both rho_i.
+      // rho_error_estimate is relative to rho_i. So it is multiplied by rho_i, the mean of the values of both
+      // evaluators.
       EXPECT_LE(difference("rho_i"), sum("rho_error_estimate") * 0.5 * sum("rho_i")) << i;
       EXPECT_LE(difference("rho_q"), sum("rho_error_estimate") * 0.5 * sum("rho_i")) << i;
     }
@@ -250,7 +251,7 @@ TEST_F(CommandLine, Json_EachEvaluator_HasTheContractsKeys) {
   }
 }
 
-// For a rough metal multiple bounces matter. The summary must report the error of single scattering.
+// For a rough metal single scattering is wrong. The summary must report how much DOLP changes with direct emission.
 TEST_F(CommandLine, Summary_MaskingWithADirectEmission_SaysWhatSingleScatteringLeavesOpen) {
   const std::vector<std::string> metal = {"--set", "surface.masking=smith", "--set", "surface.n=10",
                                           "--set", "surface.k=60"};

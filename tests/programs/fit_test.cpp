@@ -22,7 +22,8 @@ class FitProgram : public CommandLine {
     put("points.csv", points);
     measure("data.csv", "theta_deg", {"dolp"}, {});
   }
-  /// Writes a file of measured data: exact columns for sigma = 0.2 and the settings `keys`, with uncertainty 0.001.
+  /// Writes noise-free measured data: the model's `columns` for sigma = 0.2 and the settings `keys`. The file states an
+  /// uncertainty of 0.001.
   void measure(const std::string& name, const std::string& zenith, const std::vector<std::string>& columns,
                const std::vector<std::string>& keys) const {
     std::vector<std::string> options = {"--set", "surface.sigma=0.2", "--tolerance", "1e-7", "--evaluator", "cpu"};
@@ -40,7 +41,7 @@ class FitProgram : public CommandLine {
     }
     put(name, data.str());
   }
-  /// Fits sigma and n with additional options. Expects the values that the data were made with.
+  /// Fits sigma and n with additional options. Expects the sigma and n from which the data were computed.
   void expect_truth(std::vector<std::string> options) const {
     options.insert(options.end(), {"--vary", "surface.sigma=0.02:1", "--vary", "surface.n=1.1:3", "--json"});
     const Outcome outcome = fit(options);
@@ -348,7 +349,7 @@ TEST_F(FitProgram, Spectrum_SharesItsPasses_AndIsDrawnOverWavelength) {
   EXPECT_NEAR(report["parameters"][0]["value"].get<double>(), 0.2, 1e-3);
   EXPECT_NEAR(report["parameters"][1]["value"].get<double>(), 300.0, 0.3);
   EXPECT_LT(report["chi_square"].get<double>(), 0.1);
-  // One parameter set needs only a few dispatches, because each dispatch computes all wavelengths.
+  // One dispatch computes all wavelengths. So an evaluation of the model takes far fewer dispatches than wavelengths.
   EXPECT_LT(report["dispatches"].get<int>(), kWavelengths / 4 * report["evaluations"].get<int>());
 }
 

@@ -1,4 +1,4 @@
-// Dense tables as a user makes them: interpolated entries, what reports tell about them, and a check of their errors.
+// Dense tables, in which the program interpolates most entries: their values and errors, and the reports about them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ const std::vector<std::string> kDense = split_at(
     ' ');
 constexpr std::size_t kDenseEntries = std::size_t{2} * 40 * 36;
 const std::vector<std::string> kOff = {"--set", "accuracy.interpolation=off"};
-// Relative error of predictions that `dolp plan` makes from some of the directions.
+// Relative error of the predicted number of evaluations. `dolp plan` counts the evaluations at only some zeniths.
 constexpr double kSampling = 0.2;
 
 class DenseTable : public CommandLine {

@@ -1,4 +1,4 @@
-// `dolp lookup` as a user runs it: stated errors, compared with `dolp eval` at the same points, and messages.
+// `dolp lookup` as a user runs it: its results and error estimates, compared with `dolp eval`, and its messages.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -81,7 +81,7 @@ TEST_F(Lookup, AbsentColumns_ComeFromTheScene) {
   EXPECT_EQ(few.at("dolp"), looked_up().at("dolp"));
 }
 
-// With the rows of its sky the scene is longer than an attribute of NetCDF can be.
+// The table stores the scene together with the rows of the sky. This text is too long for an attribute of NetCDF.
 TEST_F(Lookup, TableWithALongProfile_HasItsScene) {
   std::ostringstream text;
   text << "wavelength_um,zenith_deg,temperature_K\n";

@@ -22,7 +22,7 @@ BUILD = pathlib.Path("build/release")
 FILES_WITH_COMMANDS = ("README.md", "host/programs/cli/README.md", "host/lib/fit/README.md", "host/core/scene/README.md")
 BLOCK_TIMEOUT_S = 300  # for a sanitizer build on two busy cores; in a release build a block takes seconds
 
-# Text in blocks that do not run, with the reason.
+# Blocks that contain one of these texts do not run. The second text is the reason.
 NOT_RUN = {
     "quickstart.sh": "builds the program",
     "tests/run.sh": "runs this test",
@@ -30,7 +30,8 @@ NOT_RUN = {
     "export PATH": "has no effect beyond its own shell; the test sets PATH likewise",
 }
 
-# Prints a line with rho_i and rho_q of all entries, then for each entry a line of input for README's GLSL function.
+# Prints rho_i and rho_q of all entries in one line. Then prints for each entry a line with the three arrays that
+# RHO_IN_CPP passes to README's GLSL function.
 PRINT_RHO = """
 print(*np.stack([rho_i, rho_q], axis=-1).ravel())
 for w, v in zip(table.response_i.values.reshape(-1, 24), table.response_q.values.reshape(-1, 24)):
@@ -147,7 +148,7 @@ class Manual(unittest.TestCase):
         for script in BUILD_FOLDER.rglob("cmake_install.cmake"):
             for file in re.findall(f'"({re.escape(str(BUILD_FOLDER))}/[^"]+)"', script.read_text(encoding="utf-8")):
                 names = {file, str(pathlib.Path(file).relative_to(BUILD_FOLDER))}
-                if names & everything:  # cmake writes the other files
+                if names & everything:  # the build does not make the other files
                     self.assertTrue(names & built, f"{file} is installed, and quickstart.sh does not build it")
                     checked += 1
         self.assertGreater(checked, 5)

@@ -14,8 +14,8 @@ using namespace dolp;
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-// Precision of the numbers in the manual: 0.01 percentage points of DOLP, 0.1 degrees, and 0.001 of G. The curves have
-// steps of 0.1 degrees and DOLP to 0.01 percentage points, the tolerance of the scenes.
+// The manual rounds DOLP to 0.01 percentage points, angles to 0.1 degrees and G to 0.001. The computed curves have
+// errors, too: their steps are 0.1 degrees, and the tolerance of the scenes is 0.01 percentage points of DOLP.
 constexpr double kPointTolerance = 0.02;
 constexpr double kAngleToleranceDeg = 0.2;
 constexpr double kAttenuationTolerance = 6e-4;

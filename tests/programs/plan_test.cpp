@@ -1,4 +1,4 @@
-// Dropped effects and `dolp plan` as a user runs it.
+// `dolp plan` as a user runs it, and the effects (parts of the radiation) that a run leaves out.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,13 +15,15 @@ using nlohmann::json;
 const std::vector<std::string> kIsothermal = {"--set", "surroundings.temperature_K=300"};
 const std::vector<std::string> kBistatic = {"--set", "geometry.mode=bistatic", "--set",
                                             "source.relative_irradiance=0.5"};
-// With emission and surroundings equally warm, only the source adds polarisation. So the run needs no moments.
+// The surface is as warm as its surroundings, so emitted and reflected polarisation cancel. Only the source polarises
+// the radiation, and the run needs no moments.
 const std::vector<std::string> kBeamAlone = {"--set", "surroundings.temperature_K=300",
                                              "--set", "geometry.mode=bistatic",
                                              "--set", "source.relative_irradiance=0.5"};
-// Relative error of predictions: in float the device may round the order of a quadrature rule differently than the CPU.
+// Relative error of the predicted number of evaluations. In float a device may round the number of quadrature nodes
+// differently than the CPU.
 constexpr double kOrderRounding = 0.05;
-// Relative error of predictions that are made from 256 of the entries.
+// Relative error of the predicted number of evaluations if `dolp plan` counts the evaluations of only 256 entries.
 constexpr double kSampling = 0.1;
 
 std::vector<std::string> names_in(const json& rows) {
@@ -45,7 +47,8 @@ class Plan : public CommandLine {
   }
 };
 
-// A run computes a few entries again as a check. If all entries had masking tables for this, memory would run out.
+// As a check, a run computes a few entries again. This needs masking tables. Masking tables of all entries would need
+// too much memory.
 TEST_F(Plan, MillionValuesOfAnAxis_FitIntoTwoGigabytes) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "AddressSanitizer takes terabytes of addresses";
@@ -86,7 +89,8 @@ TEST_F(Plan, Memory_IsAboutThatOfTheTable) {
   const std::string peak =
       "import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True); "
       "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)";
-  // Largest ratio of real to predicted memory. It depends on the driver, and on how many parts are in memory at a time.
+  // Largest ratio of the measured to the predicted memory. The ratio depends on the driver, and on whether the run
+  // still writes one part of the table while it computes the next.
   constexpr double kAbout = 1.7;
   // These tables have one, two and six parts. With more parts the memory stays constant.
   for (const char* count : {"200", "1200", "6000"}) {
@@ -159,7 +163,7 @@ TEST_F(Plan, WhatTheResultDoesNotNeed_IsNotComputed_AndTheAnswerIsThatOfEverythi
     EXPECT_EQ(table(joined(of.options, {"--keep-all"}))["effects"]["dropped"].size(), 0U);
     const TableValues all = read_table(at("t.nc"));
     for (const Quantity quantity : kAllQuantities) {
-      // files have these quantities only with emission.bracket
+      // a file has dolp_low and dolp_high only with emission.bracket
       const bool is_of_bracket = std::string(description_of(quantity).name).starts_with("dolp_");
       EXPECT_EQ(all[quantity].size(), is_of_bracket ? 0U : all.size()) << description_of(quantity).name;
     }
@@ -206,7 +210,7 @@ TEST_F(Plan, FewEntries_PredictsTheCpuRunExactly) {
 
 TEST_F(Plan, Bistatic_PredictsMomentsAndBeams) {
   const json predicted = plan(kBistatic);
-  EXPECT_EQ(predicted["moments"], 4);  // one view direction, four surfaces
+  EXPECT_EQ(predicted["moments"], 4);  // one view direction, four pairs of sigma and q
   EXPECT_EQ(predicted["beams"], 16);
   EXPECT_TRUE(predicted["first_attempt"]["is_exact"]);
   EXPECT_EQ(predicted["evaluations"], table(joined(kBistatic, {"--evaluator", "cpu"}))["evaluations"]);

@@ -124,7 +124,7 @@ TEST_F(Response, Verify_ComparesWithTheReference) {
 TEST_F(Response, Verify_FindsWrongWeights) {
   ASSERT_EQ(response({"--set", "grid.q=2", "--set", "surface.masking=none", "--quiet"}).status, 0);
   TableValues table = read_table(at("r.nc"));
-  // each entry has 24 weights, so this weight is of the second entry
+  // each entry has 24 weights, so weight 30 belongs to the second entry
   table.responses[ResponseVariable::kResponseQ][30] += 1e-3;
   write_table(table, at("r.nc"));
   const Outcome outcome = dolp({"verify", "r.nc"});

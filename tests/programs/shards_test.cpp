@@ -14,7 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The values of theta and sigma are not in ascending order. Sigma and q are so dense that the program interpolates.
+// The values of theta and sigma are not in ascending order. The values of sigma and q are so dense that the program
+// interpolates between some of them.
 const std::string kGrid = R"(title = "in parts"
 [surface]
 k = 0.2
@@ -159,7 +160,7 @@ TEST_F(Shards, OneOfOne_HasTheNameOfAShard_AndMerges) {
   expect_same("one.nc", "t.nc");
 }
 
-// A scene that names data files. Shards must notice changes of these files, and of options that are not in the scene.
+// A scene that names data files. `merge` must refuse shards that were made from different data or by different options.
 class Inputs : public Shards {
  protected:
   void SetUp() override {
@@ -304,7 +305,8 @@ TEST_F(Resume, AfterCtrlC_SaysHowToGoOn_AndGivesTheSameBits) {
   EXPECT_NE(resumed.out.find("2621440"), std::string::npos) << resumed.out;
 }
 
-// The files of an interrupted run are damaged before it resumes: values (t.nc.partial), progress (t.nc.partial.txt).
+// An interrupted run leaves its values in t.nc.partial and its progress in t.nc.partial.txt. One of the files is
+// damaged before the run resumes.
 TEST_F(Resume, OverADamagedPartialFile_GivesTheSameBits) {
   make_whole();
   ASSERT_EQ(interrupted(SIGINT).status, 130);

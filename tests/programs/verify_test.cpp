@@ -134,7 +134,7 @@ TEST_F(Verify, ValueOfAnyQuantityThatIsOff_IsFound) {
   const TableValues table = make_table({"--set", "grid.theta_deg=[0.001, 40, 60, 80]"});
   for (const Quantity quantity : quantities) {
     const double right = table[quantity][0];
-    // At theta near 0 (entry 0) DOLP is tiny, so its error estimate would be no bound for the error of I.
+    // Entry 0 has a theta near 0 and a tiny DOLP. There error_estimate gives no bound for the error of I.
     put_value(at("t.nc"), quantity, 0, right + 0.05 * std::max(1.0, std::abs(right)));
     const nlohmann::json json = verify_json(kAccuracy);
     EXPECT_EQ(json["failures"].size(), 1U) << description_of(quantity).name;
@@ -199,7 +199,7 @@ TEST_F(Verify, OneCorruptedValue_Exit1AndIsNamed) {
                                       : table[Quantity::kRhoErrorEstimate][at_entry] * table[Quantity::kRhoI][at_entry];
     if (name.starts_with("stokes")) bound *= table[Quantity::kStokesI][at_entry];
     if (corruption.quantity == Quantity::kStokesI) bound /= table[Quantity::kDolp][at_entry];
-    // The table's error is at most `bound`. So adding three bounds makes an error of at least two.
+    // The value in the table has an error of at most `bound`. After the change the error is at least two bounds.
     put_value(at("t.nc"), corruption.quantity, at_entry, table[corruption.quantity][at_entry] + 3.0 * bound);
     const nlohmann::json json = verify_json(kAccuracy);
     EXPECT_EQ(json["passed"], false);
@@ -265,7 +265,7 @@ TEST_F(Verify, ReducedVariables_AreComparedAsFarAsTheyAreThere) {
   }
   write_table(table, at("t.nc"));
   const nlohmann::json json = verify_json(kDone);
-  // compared: dolp, q_over_i, stokes_i, stokes_q, albedo, emissivity_s, emissivity_p
+  // These are dolp, q_over_i, stokes_i, stokes_q, albedo, emissivity_s and emissivity_p.
   EXPECT_EQ(json["quantities"].size(), 7U);
 }
 
@@ -394,7 +394,7 @@ TEST_F(Verify, HardCases_OneLinePerModelAndAllRowsOnRequest) {
     const std::string out = dolp(arguments).out;
     return static_cast<std::size_t>(std::ranges::count(out, '\n'));
   };
-  // The report has a line for the title, the device, the verdict, and each distribution with each masking.
+  // 3 lines for title, device and verdict, and a line for each of the 8 pairs of distribution and masking.
   constexpr std::size_t kFrame = 3 + 8;
   EXPECT_EQ(lines(command), kFrame + static_cast<std::size_t>(failed));
   std::vector<std::string> with_all = command;

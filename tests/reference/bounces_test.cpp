@@ -114,7 +114,8 @@ TEST(ReferenceBounces, Sum_IsPhysical) {
   }
 }
 
-// After two bounces, light in the mirror direction comes from all grooves; at zenith 0 only from right-angled ones.
+// Grooves of every azimuth send light that bounces twice into the mirror direction. So the pBRDF diverges there. At
+// zenith 0 only right-angled grooves do this.
 TEST(ReferenceBounces, MirrorDirection_IsWhereTwoBouncesDiverge) {
   const Surface surface = grooves(Distribution::kCauchy, 0.4, 2.0);
   const auto twice = [&](double theta_r_deg, double delta_phi_deg) {
@@ -141,17 +142,18 @@ TEST(ReferenceBounces, ScatterOfTheEvaluator_IsTheSum) {
   for (std::size_t e = 0; e < 16; ++e) EXPECT_EQ(matrix.m[e], f[e / 4][e % 4]);
 }
 
-// Integrates the pBRDF elements f_00 and f_01 over x and y, the horizontal components of omega_r, because d Omega
-// cos(theta_r) = dx dy. Uses polar coordinates around the mirror direction, where the pBRDF diverges.
+// Integrates the pBRDF elements f_00 and f_01 over the horizontal components x and y of the direction of reflection.
+// The solid angle is dx dy / cos(theta_r). The polar coordinates in the plane of x and y have their centre at the
+// mirror direction, where the pBRDF diverges.
 std::complex<double> hemispherical(const Surface& surface, const OpticalConstants& index, double theta_deg) {
   constexpr int kSectors = 12, kRings = 3;
   const double centre = -std::sin(theta_deg * kRadPerDeg);
-  std::complex<double> total;  // sum over all sectors and rings
+  std::complex<double> total;
   for (int sector = 0; sector < kSectors; ++sector) {
     for (int ring = 0; ring < kRings; ++ring) {
       const auto in_sector = [&](double chi) {
         const double reach = std::sqrt(1.0 - std::pow(centre * std::sin(chi), 2)) - centre * std::cos(chi);
-        const auto at = [&](double y) {  // distance = reach (1 - (1 - y)^2) removes 1/cos(theta_r)
+        const auto at = [&](double y) {  // at the horizon, y = 1, the derivative of distance cancels 1/cosine
           const double distance = reach * y * (2.0 - y);
           const double x = centre + distance * std::cos(chi), across = distance * std::sin(chi);
           const double sine = std::hypot(x, across);

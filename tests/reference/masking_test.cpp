@@ -1,4 +1,4 @@
-// Masking and Mueller matrix of the reference, compared with the definitions of the model in another form.
+// Masking and Mueller matrix of the reference, compared with the model's definitions, which are programmed again here.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ constexpr double kRadPerDeg = pi / 180.0;
 constexpr double kMaskingTolerance = 1e-13;
 constexpr OpticalConstants kSteel{1.508, 0.0};
 
-// Density of the slope in the plane of incidence, as in shaders/physics/README.md.
+// Density of the slope t in the plane of incidence. shaders/physics/README.md has the formula.
 double in_plane_density(Distribution distribution, double sigma, double q, double t) {
   if (distribution == Distribution::kGaussian) {
     return std::exp(-t * t / (2.0 * sigma * sigma)) / (std::sqrt(2.0 * pi) * sigma);
@@ -56,7 +56,7 @@ double plain_g1(Distribution distribution, double sigma, double q, double theta,
 }
 
 TEST(ReferenceMasking, G1_MatchesIntegrationOverTheTilt) {
-  constexpr double kTolerance = 1e-11;  // error of the tanh-sinh rule with the peak at an end
+  constexpr double kTolerance = 1e-11;  // error of the tanh-sinh rule if the integrand peaks at an end of the range
   for (const double theta_deg : {20.0, 50.0, 75.0, 88.0}) {
     for (const double alpha_deg : {0.5, 20.0, 60.0}) {
       const double alpha = alpha_deg * kRadPerDeg;
@@ -71,7 +71,7 @@ TEST(ReferenceMasking, G1_MatchesIntegrationOverTheTilt) {
 }
 
 TEST(ReferenceMasking, G1_HeavyTails_KeepTheWholeDensity) {
-  // At theta = 0 G_1 is the integral of the density. For q near 1 much of it lies at slopes beyond 1e16.
+  // At theta = 0 G_1 is the integral of the slope density. For q near 1 much of this integral is at slopes beyond 1e16.
   constexpr double kTolerance = 1e-11;
   for (const double q : {1.001, 1.01, 1.07, 1.3, 1.5, 2.0, 50.0, 1000.0}) {
     for (const double sigma : {1e-4, 0.3, 10.0}) {
@@ -82,8 +82,8 @@ TEST(ReferenceMasking, G1_HeavyTails_KeepTheWholeDensity) {
 }
 
 TEST(ReferenceMasking, G1_SingularDensity_MatchesIntegrationOverTheSlope) {
-  constexpr double kTolerance = 1e-10;                        // error of the exp-sinh rule for t^(1 - 2q)
-  constexpr double kSigma = 0.3, kTheta = 0.9, kAlpha = 0.4;  // with these angles the tilt's upper limit is pi/2
+  constexpr double kTolerance = 1e-10;  // error of the exp-sinh rule; the integrand falls as t^(1 - 2q)
+  constexpr double kSigma = 0.3, kTheta = 0.9, kAlpha = 0.4;  // so that the integral extends to infinite slopes
   const double sin_theta = std::sin(kTheta), cos_theta = std::cos(kTheta);
   boost::math::quadrature::exp_sinh<double> to_infinity;
   boost::math::quadrature::tanh_sinh<double> finite;
@@ -233,7 +233,8 @@ TEST(ReferenceMueller, FirstRowAndColumn_MatchEquation7) {
 }
 
 TEST(ReferenceMueller, Specular_IsTheMatrixOfSmoothReflection) {
-  // Here eta = 0, so M22 = M33 = Re(r_s* r_p) and M32 = -M23 = Im(r_s* r_p).
+  // The facet is horizontal, so the s and p directions of the facet and of the surface coincide. Let r_s and r_p be the
+  // amplitude reflection coefficients. Then M22 = M33 = Re(r_s* r_p) and M32 = -M23 = Im(r_s* r_p).
   constexpr double kRounding = 1e-13;
   constexpr double kTheta_deg = 50.0;
   const OpticalConstants index{1.6, 0.8};

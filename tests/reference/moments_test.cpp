@@ -56,7 +56,7 @@ Reflectances fresnel_reflectances(OpticalConstants constants, double theta_deg) 
 }
 
 TEST(Adaptive, KronrodPanel_Polynomials_AreExactUpToTheOrdersOfBothRules) {
-  // Gauss's rule with 10 points is exact up to degree 19, Kronrod's extension of it to 21 points up to degree 31.
+  // Gauss's rule with 10 points is exact up to degree 19, Kronrod's rule with 11 more points up to degree 31.
   constexpr double kRounding = 1e-15;
   for (int degree = 0; degree <= 30; degree += 2) {
     const auto panel =
@@ -103,7 +103,8 @@ TEST(ReferenceMoments, SmithAlbedoAt60Degrees_MatchesTheModelDocument) {
 }
 
 TEST(ReferenceMoments, Grazing_IsTheLimit) {
-  // Near 90 degrees moments change linearly with cos(theta), apart from logarithms, by less than 100 cos(theta).
+  // The moments at theta and at 90 degrees differ by less than 100 cos(theta). (Apart from logarithms, the moments are
+  // linear in cos(theta) near 90 degrees.)
   constexpr double kOffset_deg = 1e-4;
   const double tolerance = 100.0 * kOffset_deg * kRadPerDeg;
   for (const Masking masking : kMaskings) {
@@ -122,7 +123,7 @@ TEST(ReferenceMoments, GrazingWithHeavyTails_DivergesBelowThreeHalves) {
     const Moments heavy = moments(Distribution::kCauchy, masking, 90.0, {0.3, 1.5}, kSteel);
     EXPECT_EQ(heavy.r_i, std::numeric_limits<double>::infinity());
     EXPECT_EQ(heavy.r_q, -std::numeric_limits<double>::infinity());
-    // For q just above 3/2, r_i is proportional to 1/(2q - 3), with a relative error of up to 100 times q - 3/2.
+    // For q just above 3/2, r_i is nearly proportional to 1/(2q - 3): the relative error is at most 100 (q - 3/2).
     constexpr double kDistance = 1e-5;
     const double near = moments(Distribution::kCauchy, masking, 90.0, {0.3, 1.5 + kDistance}, kSteel).r_i;
     const double far = moments(Distribution::kCauchy, masking, 90.0, {0.3, 1.5 + 2.0 * kDistance}, kSteel).r_i;
@@ -150,9 +151,9 @@ Surface surface_of(Distribution distribution, Masking masking, double sigma, dou
   return surface;
 }
 
-// The azimuth at which v-cavity masking has a kink: (cos(theta_i) + cos(theta_r)) min(cos(theta_i), cos(theta_r)) =
-// cos^2(beta). At theta_r = 3 theta_i - 180 and 60 + theta_i / 3 degrees this azimuth is 180 degrees. There integrals
-// over the azimuth have a square root as functions of theta_r.
+// The azimuth Delta_phi at which v-cavity masking has a kink. There (cos(theta_i) + cos(theta_r)) min(cos(theta_i),
+// cos(theta_r)) = cos^2(beta). The kink reaches Delta_phi = 180 degrees at two theta_r: 3 theta_i - 180 and 60 +
+// theta_i / 3 degrees. The integral over theta_r is split there.
 double bend_deg(double theta_i_deg, double theta_r_deg) {
   const double c_i = std::cos(theta_i_deg * kRadPerDeg), c_r = std::cos(theta_r_deg * kRadPerDeg);
   const double sines = std::sin(theta_i_deg * kRadPerDeg) * std::sin(theta_r_deg * kRadPerDeg);
@@ -161,7 +162,7 @@ double bend_deg(double theta_i_deg, double theta_r_deg) {
 }
 
 TEST(ReferenceMoments, PlainQuadratureOfTheMuellerMatrix_Agrees) {
-  // Tolerances relative to r_i: kInner for integrals over the azimuth, kOuter for integrals of these over the zenith.
+  // Relative tolerances of the inner integral, over the azimuth, and of the outer integral, over the zenith.
   constexpr double kInner = 1e-6;
   constexpr double kOuter = 5e-6;
   constexpr unsigned kDepth = 8;
@@ -193,8 +194,8 @@ TEST(ReferenceMoments, PlainQuadratureOfTheMuellerMatrix_Agrees) {
   }
 }
 
-// With v-cavity and smith masking rho has a limit at 90 degrees. Just below 90 degrees rho is linear in cos(theta): at
-// 4, 2 and 1 times the gap its values lie on a line to 1e-13. Lost digits would appear as noise.
+// With v-cavity and smith masking rho has a limit at 90 degrees and is linear in cos(theta) just below 90 degrees. So
+// rho at 1, 2 and 4 gaps below 90 degrees lies on a line. If the reference lost digits, the values would scatter.
 TEST(ReferenceMoments, NextToGrazing_KeepTheirDigits) {
   constexpr double kTolerance = 1e-13;
   const ReferenceOptions options{.relative_tolerance = kTolerance, .subdivisions = 2};

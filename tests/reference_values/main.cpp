@@ -29,21 +29,22 @@ using dolp::name_of;
 using dolp::reference::Case;
 using dolp::reference::Group;
 
-// n = 1 and k = 0 reflect nothing. A reflection below this share of the albedo is 0 with a rounding error.
+// Relative errors are divided by at least this share of the albedo. With n = 1 and k = 0 r_i is only a rounding error,
+// which must not be the divisor.
 constexpr double kNegligible = 1e-12;
 // Relative rounding error of a closed form, which has fewer than 16 operations.
 constexpr double kClosedFormRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
-/// Two settings of the reference. Files get the values of `fine`. Stated errors are at least the difference from
-/// `coarse`.
+/// Two settings of the reference, which computes each case with both. The files contain the values with `fine`. The
+/// errors in the files are at least the differences between the values with `fine` and with `coarse`.
 struct Refinements {
   dolp::ReferenceOptions coarse;
   dolp::ReferenceOptions fine;
 };
-// The finest settings that still help: their results differ only by rounding in double.
+// Finer settings would not help: the results with these two settings differ only by rounding in double.
 constexpr Refinements kForHardCases{{.relative_tolerance = 3e-13, .subdivisions = 1},
                                     {.relative_tolerance = 1e-13, .subdivisions = 2}};
-// A thousand times more accurate than the tightest tolerance of tests with random points, 1e-9.
+// The tolerance of `fine` is a thousandth of 1e-9, the tightest tolerance of the tests with random points.
 constexpr Refinements kForRandomPoints{{.relative_tolerance = 1e-11, .subdivisions = 1},
                                        {.relative_tolerance = 1e-12, .subdivisions = 2}};
 
@@ -80,8 +81,9 @@ void replace(double& value, double& error, double exact) {
   error = kClosedFormRounding * std::abs(exact);
 }
 
-/// Albedo A at theta = 0. Without masking A = 1 - (m^2/(1 + m^2))^(q - 1) for cauchy, and A = 1 - exp(-1/m^2) for
-/// gaussian. For smith masking with q = 2 and sigma = 1/sqrt(2), A = 1 - ln 2.
+/// Replaces the albedo A at theta = 0 by its closed form. Without masking, and with m^2 = 2 sigma^2, A is
+/// 1 - (m^2/(1 + m^2))^(q - 1) for cauchy and 1 - exp(-1/m^2) for gaussian. For smith masking with q = 2 and
+/// sigma = 1/sqrt(2), A is 1 - ln 2. Returns false if there is no closed form.
 bool put_normal_albedo(const Row& row, Moments& moments) {
   const double m2 = 2.0 * row.input.shape.sigma * row.input.shape.sigma;
   const double q = row.input.shape.q;
@@ -96,7 +98,7 @@ bool put_normal_albedo(const Row& row, Moments& moments) {
   return is_ln2;
 }
 
-/// Replaces moments by closed forms where these exist. Row::origin records the origin of the values.
+/// Replaces each moment that has a closed form by the value of this form. Row::origin states the origin of the values.
 void put_closed_forms(Row& row) {
   Moments& moments = row.moments;
   if (row.input.shape.sigma == 0.0) {
@@ -156,7 +158,7 @@ std::string csv_line(const Row& row) {
   }
   for (const double error : {m.r_i_error, m.r_q_error, m.albedo_error, m.deficit_error}) {
     std::array<char, 32> text{};
-    // three digits; the factor 1.01 keeps rounding from making the error smaller
+    // the text has three digits; because of the factor 1.01 rounding does not make the error smaller
     std::snprintf(text.data(), text.size(), ",%.2e", 1.01 * error);
     line += text.data();
   }

@@ -7,9 +7,9 @@
 namespace dolp::reference {
 namespace {
 
-// Moments with smith masking and the Cauchy distribution exist for q > 1.5. Random cases have a larger q than this.
+// Smallest q of random cases with smith masking. With the Cauchy distribution their moments exist only for q > 1.5.
 constexpr double kSmallestSmithQ = 1.53;
-// Distance from a special angle, so large that rounding does not matter and no quadrature node lies in between.
+// Distance of a case from a special angle, where lines that split the integral coincide. It is far above rounding.
 constexpr double kBeside_deg = 1e-7;
 
 constexpr OpticalConstants kMetal{27.0, 90.0};

@@ -41,7 +41,7 @@ inline void expect_one_line(const std::string& err, const std::string& part = ""
   EXPECT_NE(err.find(part), std::string::npos) << err;
 }
 
-/// Expects no output, the exit status of wrong input, and one line of message that contains `part`.
+/// Expects the exit status `status`, no output, and a message of one line that contains `part`.
 inline void expect_refused(const Outcome& outcome, const std::string& part, int status = 2) {
   EXPECT_EQ(outcome.status, status);
   EXPECT_EQ(outcome.out, "");

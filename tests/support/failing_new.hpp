@@ -3,7 +3,7 @@
 
 namespace dolp {
 
-/// While the object exists, the allocation of this thread that follows `before` successful ones throws std::bad_alloc.
+/// While the object exists, the first `before` allocations of this thread succeed, and the next throws std::bad_alloc.
 class FailingNew {
  public:
   explicit FailingNew(long before);

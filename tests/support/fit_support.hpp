@@ -1,4 +1,4 @@
-// A scene, synthetic measurements of it, and fits of them.
+// A scene, synthetic measured data of the scene, and fits to these data, for tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -30,7 +30,8 @@ inline constexpr double kNoise = 0.002;
 
 inline FitRange number(const std::string& key, double low, double high) { return {key, low, high, {}}; }
 
-/// Fits to synthetic data: Q/I of the scene at zeniths up to 80 degrees, plus `noise` times random deviates.
+/// Fits to synthetic data: Q/I of the scene at zeniths up to 80 degrees, with random errors (standard deviation
+/// `noise`).
 class FitTest : public testing::Test {
  protected:
   MeasuredData measured(double noise, const std::vector<std::string>& overrides = {}, bool has_uncertainties = true,

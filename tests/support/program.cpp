@@ -29,7 +29,7 @@ int open_file(const fs::path& path, int flags) {
   return ::open(path.c_str(), flags | O_CLOEXEC | O_NOCTTY, kMode);
 }
 
-/// Opens the terminal end of a pseudo-terminal, which the program gets.
+/// Opens the end of a pseudo-terminal that the program under test uses as its terminal.
 int open_partner(const Descriptor& terminal) {
   require(::grantpt(terminal.number()) == 0 && ::unlockpt(terminal.number()) == 0, "cannot open a terminal");
   return open_file(::ptsname(terminal.number()), O_RDWR);
@@ -91,7 +91,7 @@ Descriptor::Descriptor(int number) : number_(number) { require(number_ >= 0, "ca
 Descriptor::~Descriptor() { ::close(number_); }
 
 Outcome run(const Command& command) {
-  // The program's output goes into files, because this process would have to read pipes while the program runs.
+  // The program writes to files. If it wrote to pipes, this process would have to read them while the program runs.
   const TemporaryFolder folder;
   const fs::path in_path = folder.path() / "in";
   const fs::path out_path = command.out_path.empty() ? folder.path() / "out" : command.out_path;

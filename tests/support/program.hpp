@@ -30,7 +30,7 @@ struct Command {
   std::vector<std::string> arguments;
   std::filesystem::path folder;
   std::string input = {};
-  std::filesystem::path out_path = {};  ///< receives standard output; if empty, Outcome::out does
+  std::filesystem::path out_path = {};  ///< file for standard output; if empty, Outcome::out gets standard output
   std::vector<std::pair<std::string, std::string>> environment = {};
 };
 

@@ -1,4 +1,4 @@
-// Random points from the whole range of scenes, and the evaluators of all kernels, for tests of properties.
+// Random points from the whole range of scenes, and an evaluator for each compiled version of the kernels, for tests.
 #pragma once
 
 #include <fmt/format.h>
@@ -75,13 +75,13 @@ class Random : public Draws {
     return uniform(0.0, 90.0);
   }
 
-  /// sigma 1e-4 to 10; q from 0.001 above its lower limit to 1e4.
+  /// A slope distribution with sigma from 1e-4 to 10, and q from 0.001 above its lower limit to about 1e4.
   SlopeShape shape(const Model& model) {
     const bool is_smith_cauchy = model.masking == Masking::kSmith && model.distribution == Distribution::kCauchy;
     return {log_uniform(1e-4, 10.0), (is_smith_cauchy ? 1.5 : 1.0) + log_uniform(1e-3, 9998.0)};
   }
 
-  /// Dielectrics, absorbers and metals. n is 0.001 to 1000, in one of four cases 0.7 to 1.5; k is 0 or 1e-4 to 1000.
+  /// A refractive index. n is 0.7 to 1.5 in one of four cases, otherwise 0.001 to 1000. k is 0 or 1e-4 to 1000.
   OpticalConstants index() {
     const double n = chance(0.25) ? uniform(0.7, 1.5) : log_uniform(1e-3, 1000.0);
     return {n, chance(0.4) ? 0.0 : log_uniform(1e-4, 1000.0)};

@@ -1,4 +1,4 @@
-// The radiometry of shaders/physics/README.md, section 4, programmed again in long double; scenes and moments to test.
+// Section 4 (radiometry) of shaders/physics/README.md, programmed again in long double. Scenes and moments for tests.
 #pragma once
 
 #include <algorithm>
@@ -22,9 +22,9 @@ using Real = long double;
 inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 inline constexpr unsigned kSeed = 20250811;
 inline constexpr int kRandomScenes = 2000;
-// Rounding in double, mainly of the exponent in Planck's law, which is below 50 in these scenes.
+// Relative tolerance. It allows for rounding in double, mainly of the exponent in Planck's law, which is up to 50 here.
 inline constexpr double kAgreement = 1e-12;
-// Stated accuracy of integrals over a band for tabulated materials.
+// Relative accuracy that the program promises for integrals over a band if n and k come from a table.
 inline constexpr double kBandAgreement = 1e-9;
 
 // ---- The printed formulas -------------------------------------------------------------------------------------------
@@ -56,7 +56,8 @@ struct PrintedStokes {
   Real q = 0.0L;
 };
 
-/// Hemispherical mode at one wavelength, eq. (18) of the model's paper. `specular` has rho_s and rho_p without k_s.
+/// I and Q of hemispherical mode at one wavelength, by eq. (18) of the paper. `specular` has rho_s and rho_p without
+/// the factor k_s.
 inline PrintedStokes printed_stokes(const SceneValues& scene, Real wavelength_um, Real c,
                                     const PrintedReflectance& specular) {
   const Real pi = std::numbers::pi_v<Real>;
@@ -92,7 +93,7 @@ inline PrintedStokes printed_stokes(const SceneValues& scene, Real wavelength_um
   return stokes;
 }
 
-/// Integral of `f` over the range of the ascending `points`. The slope of `f` may jump at these points, nowhere else.
+/// Integral of `f` from the first to the last of the ascending `points`. The derivative of `f` may jump only at these.
 inline Real integral(const std::vector<double>& points, const std::function<Real(Real)>& f) {
   boost::math::quadrature::tanh_sinh<Real> rule;
   Real sum = 0.0L;

@@ -1,4 +1,4 @@
-// A rough metal. Multiple bounces change its DOLP more than that of other surfaces.
+// A scene with a rough metal. Multiple bounces change the DOLP of a rough metal more than the DOLP of other surfaces.
 #pragma once
 
 #include <string>

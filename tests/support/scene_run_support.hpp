@@ -49,7 +49,7 @@ inline std::unique_ptr<ModelEvaluator> make_evaluator(Evaluator evaluator) {
   return std::make_unique<FixedPrecision>(evaluator == Evaluator::kFloat ? Precision::kFloat : Precision::kDouble);
 }
 
-/// Runs a scene only in the precision of the evaluator: after float there is no second computation in double.
+/// Runs a scene in the precision of the evaluator. Entries that miss the tolerance in float are not computed in double.
 inline std::vector<PointResult> run(const SceneValues& scene, const SceneEntries& entries, Evaluator evaluator) {
   SceneValues own = scene;
   if (evaluator == Evaluator::kFloat) own.accuracy.precision = Precision::kFloat;

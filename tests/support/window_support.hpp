@@ -18,15 +18,16 @@ namespace dolp::explore_test {
 using explore::App;
 using explore::Area;
 
-// Where drag_slider ends, as a share of the slider's length. A click moves the slider's handle to the mouse.
+// Position to which drag_slider drags the handle, as a share of the slider's length.
 inline constexpr float kPartOfSlider = 0.7F;
 // Frames that ImGui needs to process an event.
 inline constexpr int kFrames = 4;
 
-// Tolerance of a dragged value, as a share of the slider's range. It allows for the width of the slider's handle.
+// Tolerance of a value that a test sets by dragging a slider: a share of the slider's range, or of the value if the
+// slider is logarithmic. It allows for the width of the handle.
 inline constexpr double kGrab = 0.2;
 
-// A scene that is cheap to compute, because most tests wait for the whole map.
+// The scene in the window. It is cheap to compute, because most tests wait until the map is complete.
 inline const std::string kEdited = R"(title = "Painted"
 [surface]
 n = 1.5
@@ -126,7 +127,7 @@ class Window : public CommandLine {
     type(text);
     keys("Return");
   }
-  /// Presses a shortcut whose dialog suggests a path, and accepts it.
+  /// Presses a shortcut that opens a file dialog, and accepts the path that the dialog suggests.
   void accept(const std::string& shortcut) {
     keys(shortcut);
     keys("Return");
@@ -156,7 +157,7 @@ class Window : public CommandLine {
     const std::size_t number = tree.find("0x");
     return tree.substr(number, tree.find(' ', number) - number);
   }
-  /// `dolp eval` of the scene with the changes made in the window, at the zeniths of the curve.
+  /// Results of `dolp eval` for the scene as changed in the window, at the zeniths of the curve in the window.
   Columns evaluated() const {
     std::string points = "theta_deg\n";
     for (const explore::Point& point : session().curve().points()) {

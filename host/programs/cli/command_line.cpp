@@ -59,7 +59,7 @@ constexpr CommandRow kCommands[] = {
 
 /// An option, a flag, or a positional argument. The name of a positional argument has no hyphens.
 struct OptionRow {
-  const char* commands;  ///< "table plan!": commands with this option; `plan` requires the option
+  const char* commands;  ///< the commands with this option; "table plan!" means that `plan` requires the option
   const char* name;
   std::variant<bool Options::*, std::string Options::*, std::size_t Options::*, std::vector<std::string> Options::*>
       value;

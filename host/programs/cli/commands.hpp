@@ -12,7 +12,7 @@ namespace dolp::cli {
 /// The values of all options of the command line. An empty text means that the user has not given the option.
 struct Options {
   int (*run)(const Options&) = nullptr;  ///< function of the command; null if there is no command
-  std::string command_line;              ///< the whole line as typed; becomes the history of a table
+  std::string command_line;              ///< all words of the command line; a table stores them as its history
   std::string scene_path, points_path, table_path, output_path, measured_path, plot_path, screenshot_path;
   std::vector<std::string> overrides;  ///< the texts KEY=VALUE of --set
   std::string tolerance, precision, device;
@@ -35,7 +35,7 @@ struct Options {
 
 void check_one_stdin(const Options& options);  ///< Errors: InputError if two inputs would read stdin
 
-/// All settings of the command line: those of --set first, then --tolerance and --precision. Errors: InputError.
+/// The settings of the options --set, --tolerance and --precision, in this order. Errors: InputError.
 std::vector<Setting> all_settings(const Options& options);
 
 std::string allowed(const std::string& key);  ///< values that a scene key allows: "a number in [0, 10]"
@@ -43,10 +43,10 @@ std::string allowed(const std::string& key);  ///< values that a scene key allow
 /// Reads the scene, and applies all_settings() and then `more`. Prints Scene::remarks() as warnings on stderr.
 Scene load_scene(const Options& options, const std::vector<Setting>& more = {});
 
-/// The evaluator of --evaluator and --device. Errors: InputError if --device is given for an evaluator without devices.
+/// Makes the evaluator that --evaluator names. Errors: InputError if it uses no device but the user gives --device.
 Evaluator evaluator_of(const Options& options);
 
-/// Prints a report as --json and --quiet demand: to stdout, or to stderr if stdout gets the results themselves.
+/// Prints a report: with --json as JSON, otherwise as text unless --quiet. With `-o -` it goes to stderr.
 void print(const Report& report, const Options& options);
 
 /// Prints a report and its remarks. Returns kExitAccuracy if --strict is given and Report::is_good is false.
@@ -62,11 +62,11 @@ int run_merge(const Options& options);
 int run_eval(const Options& options);
 int run_mueller(const Options& options);
 int run_plan(const Options& options);
-/// Returns kExitAccuracy if an error exceeds its error bound, or if an entry misses its tolerance and its status has
-/// neither the bit kToleranceNotMet nor kRhoToleranceNotMet.
+/// Returns kExitAccuracy if an error exceeds its error bound. It does so too if DOLP or rho of an entry misses its
+/// tolerance and the status of the entry does not report this.
 int run_verify(const Options& options);
 int run_lookup(const Options& options);
-int run_fit(const Options& options);  ///< kExitAccuracy if no minimum is found
+int run_fit(const Options& options);  ///< returns kExitAccuracy if the fit finds no minimum
 int run_explore(const Options& options);
 int run_materials(const Options& options);
 int run_keys(const Options& options);

@@ -45,7 +45,7 @@ int finish_list(Report report, const char* name, const Json& list, const Options
   return finish(report, options);
 }
 
-/// The wavelengths in um that a text names: "UM", "FROM:TO" or "FROM:TO:COUNT". Errors: InputError.
+/// The wavelengths in um that the argument of --at means: "UM", "FROM:TO" or "FROM:TO:COUNT". Errors: InputError.
 std::vector<double> wavelengths_of(const std::string& text) {
   constexpr double kDefaultCount = 11.0;
   constexpr double kMost = 1e6;
@@ -120,7 +120,7 @@ int run_keys(const Options& options) {
   std::vector<std::string> names;
   for (const Key& key : dolp::keys()) {
     names.push_back(key.key);
-    const bool is_further_layer = key.layer > 1;  // such films have the same keys as the first
+    const bool is_further_layer = key.layer > 1;  // the keys of the first film stand for the keys of all films
     const bool is_wanted = (options.key.empty() && !is_further_layer) || key.key == options.key ||
                            (!options.key.empty() && key.key.starts_with(options.key + "."));
     if (is_wanted) add_key(report, list, key);

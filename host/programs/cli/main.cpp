@@ -75,8 +75,8 @@ int parse_and_run(int argc, char** argv) {
   return status;
 }
 
-/// Prints a message and ends the program. `new` calls this function if there is no memory, because then nothing else is
-/// safe. No incomplete output remains: an output file has no name until it is complete.
+/// Prints a message and ends the program. `new` calls this function if there is no memory. An output file that is not
+/// complete never has its final name.
 [[noreturn]] void end_out_of_memory() {
   static std::atomic_flag is_ending;
   while (is_ending.test_and_set()) ::pause();  // another thread is printing the message
@@ -94,11 +94,11 @@ void keep_freed_memory() {
 }  // namespace dolp::cli
 
 int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // so that write() fails if a file is too large
+  std::signal(SIGXFSZ, SIG_IGN);  // if a file is too large, write() then fails instead of ending the program
   std::set_new_handler(dolp::cli::end_out_of_memory);
   dolp::cli::keep_freed_memory();
   const int status = dolp::guarded("dolp", [&] { return dolp::cli::parse_and_run(argc, argv); });
   if (status != dolp::kExitMemory && !dolp::vulkan::driver_is_busy()) return status;
   std::fflush(stdout);
-  ::_exit(status);  // no cleanup, which would need memory or wait for the driver
+  ::_exit(status);  // skips the cleanup, because it needs memory and waits for a busy driver
 }

@@ -111,8 +111,7 @@ struct RuleNode {
 struct ThetaNode {
   real c;                         // cos(theta)
   real s;                         // sin(theta)
-  // Piece k lies between the slopes end[k] and end[k + 1]. Unused elements repeat the last end. Ends may exceed the
-  // cut.
+  // Piece k lies between the slopes end[k] and end[k + 1]. Unused elements repeat the last end.
   real end[DOLP_MAX_PIECES + 1];
 };
 
@@ -167,8 +166,8 @@ struct BeamNode {
   GeometryNode g;
   ShapeNode shape;  // with the scale and the cut that physics/in_plane.glsl needs
   real density;     // D(alpha) / 4 [1/sr], divided by a power of two: 0 or in [1/2, 1)
-  // Mueller matrix of the facet in the frame of the facet, with r_s* r_p = cross_re + i cross_im: [m00 m01 0 0; m01 m00
-  // 0 0; 0 0 cross_re -cross_im; 0 0 cross_im cross_re].
+  // Mueller matrix of the facet in the frame of the facet, with r_s* r_p = cross_re + i cross_im:
+  // [m00 m01 0 0; m01 m00 0 0; 0 0 cross_re -cross_im; 0 0 cross_im cross_re].
   real m00;
   real m01;
   real cross_re;

@@ -31,8 +31,7 @@ using Emitted = Values<kCount>;
 
 using Absorption = std::function<FresnelCoefficients(double cos_beta)>;
 
-// Integrates the emission of all facets toward one direction, to errors relative to cos(theta) if `is_response`, else
-// relative to the emission.
+// The emission of all facets toward one direction. With `is_response`, errors are relative to cos(theta).
 class Facets {
  public:
   Facets(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants, Absorption absorption,
@@ -117,8 +116,7 @@ class Facets {
     return std::min(vertical, slopes_.quantile(kNoShare));
   }
 
-  // Emission of the facets steeper than t. Their visible area is proportional to the slope with smith masking, and
-  // constant with v-cavity masking.
+  // Emission of facets steeper than t. Their visible area grows like the slope with smith, not with v-cavity masking.
   Emitted tail(double t, const Refinement& refinement) {
     const double share = masking_ == Masking::kVCavity ? slopes_.share_above(t) : slopes_.length_above(t) / t;
     if (share < kNoShare) return {};

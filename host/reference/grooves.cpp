@@ -102,9 +102,9 @@ void follow(const Groove<double>& groove, const SlopePoint& point, const Vector3
   }
 }
 
-// A number that differs on both sides of a bend of the integrand (Regime). It is a hash over the bounces of a beam:
-// does none, some or all of the light leave the groove, and on which side of each special angle is the angle of
-// incidence?
+// A number that differs on both sides of a bend of the integrand (see Regime): a hash over the bounces of a beam. For
+// each bounce it contains whether no, some or all light leaves the groove, and on which sides of the special angles the
+// angle of incidence lies.
 std::uint64_t history(const SlopePoint& point, const Vector3& omega, Facet first, const SpecialAngles& special,
                       const SkyFunction* sky) {
   constexpr std::uint64_t kPrime = 1099511628211U;

@@ -31,8 +31,7 @@ constexpr double kSmallAbsorbed = 1e-2;
 constexpr double kElevationRounding = 32.0 * std::numeric_limits<double>::epsilon();
 // At theta = 90 degrees the integral over theta_r ends this far from the horizon. A power law gives the rest.
 constexpr double kHorizonGap = 1e-30;
-// If theta is closer to the horizon than this, the masking varies quickly where theta_r is close to the horizon, too.
-// So break points are added there.
+// If theta is closer to the horizon than this, break points are added where theta_r is close to the horizon, too.
 constexpr double kNearHorizon_rad = 1e-3;
 constexpr double kLayerGrowth = 10.0;
 constexpr double kInnerShare = 0.02;  // error of an inner integral, relative to the error of the outer integral
@@ -234,8 +233,7 @@ class Hemisphere {
     return both;
   }
 
-  // cos(theta) f cos(theta_r) = D G M / 4 with the Mueller matrix M. Only M00 and M01 are needed; they do not depend on
-  // eta_r.
+  // cos(theta) f cos(theta_r) = D G M / 4. The moments need only the elements M00 and M01 of the Mueller matrix M.
   AzimuthValues integrand(const Row& row, double delta) const {
     const double sin_half = std::sin(0.5 * delta);
     const double cos_half = std::cos(0.5 * delta);
@@ -296,8 +294,8 @@ double amplitude_rounding(double reflected, double albedo) {
   return kRounding * (2.0 * std::sqrt(reflected * albedo) + kRounding * albedo);
 }
 
-// Adds to the errors of both integrals rounding and the error of G, relative to `magnitude`. As G_1 may be as small as
-// 1/2, the relative error of G is up to twice its absolute error.
+// Adds rounding and the error of G to the errors of both integrals. These two errors are relative to `magnitude`. The
+// factor 2 is needed because G_1 may be as small as 1/2.
 template <std::size_t N>
 double error_of(const Integral<N>& integral, std::size_t k, double magnitude, const Refinement& refinement) {
   const double masking_error = 2.0 * masking_tolerance_for(refinement);

@@ -86,9 +86,8 @@ reference::Amplitudes<Number> fresnel_amplitudes(const FacetOptics& constants,
   return {(cos_beta - w) / (cos_beta + w), (n2 * cos_beta - w) / (n2 * cos_beta + w)};
 }
 
-// Column 0 is the (s, p) amplitudes that an s wave of amplitude 1 has after reflection, column 1 those of a p wave. The
-// s vector of the facet is normal to both beams. In the retro direction any vector in the facet works, because r_p =
-// -r_s.
+// Column 0: (s, p) amplitudes after reflection of an s wave of amplitude 1; column 1: after reflection of a p wave.
+// In the retro direction any vector in the facet may be `facet_s`, because r_p = -r_s.
 Jones<Complex> jones_matrix(const BeamFrame& in, const BeamFrame& out, const reference::Amplitudes<Complex>& r) {
   const Vector normal = cross(in.k, out.k);
   const Vector facet_s = dot(normal, normal) > kRetro ? unit(normal) : in.s;
@@ -138,9 +137,8 @@ void add(ReferenceMueller& total, const ReferenceMueller& term) {
   for (std::size_t i = 0; i < 16; ++i) total[i / 4][i % 4] += term[i / 4][i % 4];
 }
 
-/// The plane across the grooves that reflect the beam `in` into the beam `out`. Reflection keeps the component of a
-/// beam along the groove, so the horizontal direction u of the plane points along the horizontal part of omega_i +
-/// omega_r (`sign` 1) or against this part (`sign` -1).
+/// The plane across the grooves that reflect the beam `in` into the beam `out`. The horizontal direction u of the plane
+/// is along the horizontal part of omega_i + omega_r if `sign` is 1, against this part if `sign` is -1.
 struct GroovePlane {
   Vector u, v;
   Real across;        ///< length of the horizontal part of omega_i + omega_r
@@ -181,8 +179,7 @@ Number along(const RealVector<Number>& a, const std::array<Number, 3>& e) {
   return a[0] * e[0] + a[1] * e[1] + a[2] * e[2];
 }
 
-// The part of reference_bounces() in one plane, for the beam that meets facet A first. `Number`: type of the
-// amplitudes.
+// The part of reference_bounces() in one plane, for the beam that meets facet A first. `Number` is a complex type.
 template <class Number>
 ReferenceMueller bounces_in_plane(const reference::Slopes& slopes, const FacetOptics& constants, const BeamFrame& in,
                                   const BeamFrame& out, const GroovePlane& plane, int bounces) {
@@ -267,8 +264,7 @@ BouncesSum reference_all_bounces(const Surface& surface, const FacetOptics& cons
     for (const double value : latest) recent += value;
     if (k >= kIdleBounces && recent <= kIdleShare * sum.matrix[0][0]) return sum;
   }
-  // The rest of the sum is smaller than this, if term k falls at least like k^(-9/8), or by 1e-4 of its value per
-  // bounce.
+  // The rest of the sum is smaller if term k falls at least like k^(-9/8), or by the share 1e-4 from term to term.
   sum.error = recent * kMostMuellerBounces;
   return sum;
 }

@@ -84,7 +84,7 @@ Moments mirror_of(const MomentsRequest& request, const MomentsPoint& point) {
   return m;
 }
 
-/// The moments with Chebyshev polynomials instead of the reflectances, as `request.response` asks.
+/// Responses: the moments with Chebyshev polynomials instead of the reflectances.
 std::vector<ColumnMoments> responses_of(const MomentsRequest& request, const MomentsPoint& point,
                                         const reference::Slopes& slopes, const reference::Refinement& refinement) {
   const double c0 = request.response->c0;

@@ -23,9 +23,8 @@ real2 clamp_half_angle(real2 phi, real2 from, real2 to) {
   return is_before(above, to) ? above : to;
 }
 
-// An arc of azimuths with a smooth integrand. A node of the arc's rule lies at phi = centre + 4 atan(extent *
-// abscissa). The centre is the middle, the beginning or the end of the arc. If it is the end, because the integrand has
-// a square root there, `extent` is negative.
+// An arc of azimuths with a smooth integrand. A rule node lies at phi = centre + 4 atan(extent * abscissa). The centre
+// is the middle or an end of the arc. `extent` is negative if the integrand has a square root at the end of the arc.
 struct Arc {
   real2 from;
   real2 to;
@@ -67,8 +66,7 @@ Arc make_arc(real2 from, real2 to) {
   return arc;
 }
 
-// If `has_root`, clusters the nodes where the integrand is singular: at the end of the arc if `at_end`, else at its
-// beginning.
+// If `has_root`, clusters nodes where the integrand is singular: at the end of the arc if `at_end`, else at the start.
 Arc with_root(Arc arc, bool at_end, bool has_root) {
   real2 root = choose(at_end, arc.to, arc.from);
   arc.centre_cos = choose(has_root, cosine(root), arc.centre_cos);
@@ -120,8 +118,7 @@ struct SplitLines {
   real2 critical;  // beginning of total reflection, cos(beta) = critical_cos: a square root on both sides
 };
 
-// Half angle of the azimuth phi at which s t cos(phi) is `level`, with `st` = s t. On a split line s t cos(phi) is
-// known.
+// Half angle of the azimuth phi with cos(phi) = level / st.
 real2 line_at(real level, real st) { return half_angle((st + level) / st, (st - level) / st); }
 
 SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines lines) {
@@ -171,16 +168,15 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
   return lines;
 }
 
-// A split line of a groove: the azimuth phi with tan(psi) = tan(theta) cos(phi), where psi is the zenith of the ray,
-// projected onto the plane across the groove. Let gamma = pi/2 - alpha. The number of bounces changes at psi = pi/2 - j
-// gamma and at psi = pi - (2j + 1) gamma, for some integers j. The formula for the width of the beam changes at psi =
-// gamma. At psi = -gamma facets turn away from the ray.
+// A split line of a groove: the azimuth phi with tan(psi) = tan(theta) cos(phi). psi is the zenith of the ray in the
+// plane across the groove. With gamma = pi/2 - alpha, the number of bounces changes at psi = pi/2 - j gamma and at
+// psi = pi - (2j + 1) gamma for some integers j, and the width of the beam has another formula beyond psi = gamma. At
+// psi = -gamma facets turn away from the ray.
 real2 groove_line(ThetaNode theta, real cos_psi, real sin_psi) {
   return line_at(theta.c * sin_psi / max(cos_psi, real(1e-30)), max(theta.s, real(1e-30)));
 }
 
-// If a slope needs no more digits than this, its azimuths are split only at psi = -gamma, where facets turn away from
-// the ray.
+// If a slope needs no more digits than this, its azimuths are split only where facets turn away from the ray.
 CONST real kDigitsOfLines = real(3.0);
 
 SplitLines groove_lines(RuleNode rule, ThetaNode theta, real t, real digits, SplitLines lines) {

@@ -30,8 +30,8 @@ AzimuthSums no_azimuths(Columns columns[DOLP_WIDTH]) {
   return sums;
 }
 
-// sin(theta_r). If q is just above 3/2 (is_diverging), G varies even where theta_r is so small that 1 - cos(theta_r)
-// has no correct digits. Then the sine is the length of the horizontal part of the reflected ray.
+// sin(theta_r). If q is just above 3/2 (is_diverging), G varies even where 1 - cos(theta_r) has lost its digits. Then
+// the sine is the length of the horizontal part of the reflected ray.
 real sine_of_ray(ThetaNode theta, Row row, Facet f, real t, Azimuth at) {
   if (!is_diverging(row.shape[0])) return sqrt((real(1.0) - f.cos_r) * (real(1.0) + f.cos_r));
   real turned = real(2.0) * f.e * t / (real(1.0) + t * t);
@@ -40,8 +40,7 @@ real sine_of_ray(ThetaNode theta, Row row, Facet f, real t, Azimuth at) {
   return sqrt(along * along + across * across);
 }
 
-// A column (columns.glsl) has two sums, which correspond to r_i and r_q. Returns the factor of the column's function in
-// each sum.
+// Factors of a column's function (columns.glsl) in the two sums of the column, which correspond to r_i and r_q.
 real2 column_factors(Slope slope, Facet f) {
   if (kColumns == DOLP_COLUMNS_SKY) return real2(f.m00, f.m01);
   real sky = (kColumns == DOLP_COLUMNS_SKY_RESPONSE) ? sky_function(slope.sky, 0, f.cos_r) : real(1.0);

@@ -1,5 +1,4 @@
-// The constants and buffers of the kernel source in GLSL. In C++ the class that includes the source has them as
-// members.
+// Constants and buffers of the kernel source in GLSL. In C++ they are members of the class that includes the source.
 layout(local_size_x_id = DOLP_SPEC_LOCAL_SIZE) in;
 layout(constant_id = DOLP_SPEC_DISTRIBUTION) const uint kDistribution = DOLP_CAUCHY;
 layout(constant_id = DOLP_SPEC_MASKING) const uint kMasking = DOLP_MASKING_NONE;

@@ -1,5 +1,4 @@
 // One facet: the integrand of the moments (README.md beside this file, sections 1 to 3).
-//
 // A facet has the slope t and the azimuth phi, measured from the plane of incidence. Let c = cos(theta), s =
 // sin(theta), x = cos(phi) and r = cos(alpha) = 1 / sqrt(1 + t^2). The projected area of the facet toward theta is e =
 // c + s t x, per area of its base. The reflected ray leaves the surface for phi from 0 to phi_m. Then
@@ -8,7 +7,6 @@
 //   sin^2(beta)             = r^2 [(c t x - s)^2 + t^2 (1 - x^2)],
 //   sin^2(beta) cos(2 eta)  = r^2 [(c t x - s)^2 - t^2 (1 - x^2)],
 //   M00 = R_s - D sin^2(beta) / 2,   M01 = D sin^2(beta) cos(2 eta) / 2,   D = (R_s - R_p) / sin^2(beta).
-//
 // The code stores moments and their sums as vectors (r_i, r_q, albedo, deficit). The deficit is the part of the beam
 // that does not leave the surface: the light is masked, absorbed, or reflected below the horizon.
 
@@ -47,8 +45,7 @@ Facet facet(ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
   return result;
 }
 
-// The projection e of a facet, in two parts: the visible e G and the hidden e (1 - G). Both are stored, because e minus
-// the larger part would lose digits.
+// The projection e of a facet in two parts: visible e G, hidden e (1 - G). A difference of e and one part loses digits.
 struct Projection {
   real visible;
   real hidden;

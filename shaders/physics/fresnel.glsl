@@ -1,5 +1,4 @@
 // Fresnel reflection for N = n + ik, in forms without cancellation.
-//
 // With c = cos(beta), w = sqrt(N^2 - sin^2 beta) = sqrt((N^2 - 1) + c^2), B = |c + w|^2, a = |N^2 - 1|^2 / B:
 //   R_s = |c - w|^2 / B = a / B                      because (c - w)(c + w) = 1 - N^2
 //   (R_s - R_p) / sin^2(beta) = 4 c Re(w) a / |N^2 c + w|^2

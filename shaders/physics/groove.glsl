@@ -1,13 +1,11 @@
 // Follows a ray through all its bounces in a V-groove (README.md beside this file, section 3).
-//
-// The two facets of the groove have the slope t = tan(alpha) and meet at the apex. The horizontal direction u across
-// the groove has the azimuth phi. Let gamma = pi/2 - alpha, c = cos(theta), s = sin(theta) and x = cos(phi). The unit
-// vector of the ray has the component b = s sin(phi) along the groove. Projected onto the plane across the groove, it
+// The two facets of the groove have the slope t = tan(alpha) and meet at the apex. The horizontal direction across the
+// groove has the azimuth phi. Let gamma = pi/2 - alpha, c = cos(theta), s = sin(theta) and x = cos(phi). The unit
+// vector of the ray has the component b = s sin(phi) along the groove. Its projection onto the plane across the groove
 // has the length a = sqrt(c^2 + (s x)^2) and the zenith psi.
-//
 // Mirror the groove at each facet that the ray meets. Then the ray becomes a straight line, and the facets become a fan
-// at the angles gamma, 3 gamma, 5 gamma, ... from the vertical. The ray meets facet k at the angle chi_k = psi + (2k -
-// 1) gamma. With X_k = a sin(chi_k) and Y_k = a cos(chi_k):
+// at the angles gamma, 3 gamma, 5 gamma, ... from the vertical. The ray meets facet k at the angle
+// chi_k = psi + (2k - 1) gamma. With X_k = a sin(chi_k) and Y_k = a cos(chi_k):
 //   cos(beta_k) = X_k is the cosine of the angle of incidence,
 //   eta_k turns the plane of incidence: (cos(eta_k), sin(eta_k)) is proportional to (Y_k, b X_k).
 // Bounce k multiplies the Stokes vector by Fresnel's matrix between two turns by eta_k. The beam of the rays that meet
@@ -41,8 +39,7 @@ Fan fan(real t, real c, real u) {
   f.doublings = 0;
   f.is_steep = false;
   f.is_black = false;
-  // In grooves that are less steep, no ray has more than DOLP_MOST_BOUNCES bounces. Devices skip a loop of one turn if
-  // no ray needs it, but not an `if`.
+  // Only steep grooves have more than DOLP_MOST_BOUNCES bounces. Devices skip a loop of one turn, but not an `if`.
   for (bool may_be = t > real(DOLP_MOST_BOUNCES) / kPi; may_be; may_be = false) {
     real to_horizon = arc_tangent(c / max(abs(u), real(1e-30)));
     f.gamma = arc_tangent(real(1.0) / t);
@@ -55,8 +52,7 @@ Fan fan(real t, real c, real u) {
   return f;
 }
 
-// Share of the beam that goes on to the next bounce in a steep groove: the formula in the head of this file, with small
-// angles instead of their sines.
+// Share of the beam that goes on to the next bounce in a steep groove. For small angles, angles replace their sines.
 real last_share(Fan f) {
   real sum = max(real(1.0) + f.slant, real(1e-30));
   return (real(2.0) * f.left + f.slant - real(1.0)) / sum;
@@ -132,8 +128,7 @@ real2 doubled_angle(real x, real y) {
   return real2((x - y) * (x + y) * inverse, real(2.0) * x * y * inverse);
 }
 
-// Adds two angles. `at` is (sin, cos) of the first angle, `step` is (cos, sin) of the second. Returns (sin, cos) of the
-// sum.
+// Adds two angles, given as (sin, cos) in `at` and as (cos, sin) in `step`. Returns (sin, cos) of the sum.
 real2 further_on(real2 at, real2 step) {
   return real2(at.x * step.x + at.y * step.y, at.y * step.x - at.x * step.y);
 }
@@ -156,16 +151,14 @@ GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index,
   real inverse_a2 = real(1.0) / max(c * c + u * u, kSmallestSquare);
   Fan f = fan(t, c, u);
   real first = c * f.turn.y + u * f.turn.x;  // X_1
-  // X_k - X_1 is a sum of X_(k+1) - X_k = 2 sin(gamma) a cos(psi + 2 k gamma). A subtraction would lose digits near the
-  // horizon.
+  // X_k - X_1 is a sum of X_(k+1) - X_k = 2 sin(gamma) a cos(psi + 2 k gamma). Subtraction would lose digits.
   real width = (u * f.turn.x > c * f.turn.y) ? real(2.0) * c * f.turn.y : first;
   real inverse_width = real(1.0) / max(width, real(1e-30));
   real rise = real(0.0);        // X_k - X_1
   real2 between = real2(u, c);  // a (sin, cos) of psi + 2 k gamma
   real share = f.is_black ? real(0.0) : real(1.0);  // share of the beam that continues
   real absorbed = real(1.0) - share;
-  // Two Stokes vectors in the axes of the groove. At first `natural` is unpolarised light with I = 1, and `polarised`
-  // is Q = 1 in the axes of the surface.
+  // Stokes vectors in the axes of the groove. At first `natural` is unpolarised, `polarised` is Q = 1 of the surface.
   real4 natural = real4(share, real(0.0), real(0.0), real(0.0));
   real2 seen = doubled_angle(-x, c * sin_phi);
   real4 polarised = real4(real(0.0), share * seen.x, share * seen.y, real(0.0));

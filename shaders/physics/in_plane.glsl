@@ -44,8 +44,7 @@ real in_plane_sum(ShapeNode shape, uint weight, real mu, real from, real to) {
   return sum * length * shape.scale;
 }
 
-// Integral of p times `weight` over all slopes above `from`. There p of the cauchy is proportional to tau^(1 - 2q). For
-// the gaussian the integral counts as 0.
+// Integral of p times `weight` over all slopes above `from`, where p ~ tau^(1 - 2q). For the gaussian it counts as 0.
 real power_law_sum(ShapeNode shape, uint weight, real mu, real from) {
   if (kDistribution == DOLP_GAUSSIAN) return real(0.0);
   real a = real(2.0) * shape.q_minus_1;

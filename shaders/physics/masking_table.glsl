@@ -21,8 +21,7 @@ real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {
   return real4(h * beyond.y + height, first, probability, marginal_density(shape, tau0));
 }
 
-// (l, C, Pt, p) at the end of the table. For the cauchy, l, C and Pt follow from the power law p ~ tau^(1-2q); for the
-// gaussian they are 0.
+// (l, C, Pt, p) at the end of the table: for the cauchy by the power law p ~ tau^(1-2q), for the gaussian (0, 0, 0, p).
 real4 masking_table_end(ShapeNode shape, real tau) {
   real p = marginal_density(shape, tau);
   if (kDistribution == DOLP_GAUSSIAN) return real4(real(0.0), real(0.0), real(0.0), p);
@@ -33,8 +32,7 @@ real4 masking_table_end(ShapeNode shape, real tau) {
   return real4(tail * tau * weight / (a + real(1.0)), tail * a * weight / (a + real(1.0)), tail, p);
 }
 
-// `table` is the position of the first node. With heavy tails the sums have hundreds of nearly equal terms, so their
-// rounding is compensated (Kahan 1965).
+// Heavy tails add hundreds of nearly equal terms, so sums are compensated (Kahan 1965). `table`: position of node 0.
 void build_masking_table(ShapeNode shape, uint table) {
   real tau1 = masking_node_tau(shape, kMaskingNodes - 1u);
   real4 tails = masking_table_end(shape, tau1);

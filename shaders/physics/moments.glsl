@@ -25,8 +25,7 @@ Piece make_piece(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task 
   piece.root_at_a = task.root_at_start;
   bool ends_before_cut = b < shape.cut;
   piece.root_at_b = ends_before_cut && task.root_at_end;
-  // A square root in a neighbouring piece counts as a root at the end of this piece, if it is nearer to this end than
-  // kNearRoot times the length of the piece.
+  // A square root in a neighbouring piece counts as a root at an end, if it is nearer than kNearRoot times the length.
   real end = piece.start + piece.extent;
   real before = asinh_real(task.before / shape.scale);
   bool is_near_a = piece.start - before < kNearRoot * piece.extent;
@@ -123,8 +122,7 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
     }
     sums.evaluations += azimuths.evaluations;
   }
-  // The rule also gives the share of facets on the piece, whose exact value is known. The ratio of the exact share to
-  // the share by the rule corrects the sums.
+  // The exact share of facets on the piece, divided by the share that the rule gives, corrects the sums.
   for (int g = 0; g < DOLP_WIDTH; ++g) {
     real ratio = choose(mass[g] > real(0.0), piece.mass[g] / mass[g], real(1.0));
     sums.member[g] *= ratio;

@@ -13,7 +13,6 @@ CONST real kMoreDigits = real(0.3);  // slope axis: a digit beyond kPlainDigits 
 CONST real kPlainDigits = real(7.0);
 CONST real kLeastWeight = real(1e-20);  // replaces the weights that are 0 at 90 degrees
 
-// acosh(1 + gap), without cancellation.
 real acosh_above_1(real gap) { return log1p_real(gap + sqrt(gap) * sqrt(gap + real(2.0))); }
 
 // |y| + |y - 1| - 1 for y = a + i b. It is 0 on [0, 1], and constant on each ellipse with the foci 0 and 1.
@@ -35,8 +34,7 @@ real arc_cosine(real u) {
   return choose(u < real(0.0), kPi - angle, angle);
 }
 
-// The complex azimuth phi with cos(phi) = a + i b, from the distances between a + i b and the points 1 and -1 (Hull,
-// Fairgrieve and Tang 1997).
+// The complex azimuth phi with cos(phi) = a + i b, from the distances of a + i b to 1 and -1 (Hull et al. 1997).
 Singularity singularity_at(real a, real b) {
   real to_minus_1 = sqrt((a + real(1.0)) * (a + real(1.0)) + b * b);
   real to_1 = sqrt((a - real(1.0)) * (a - real(1.0)) + b * b);
@@ -63,8 +61,7 @@ real weight_of_slope(ThetaNode theta, real t) {
   return kMasking == DOLP_MASKING_V_CAVITY ? min(bare, max(real(2.0) * theta.c, kLeastWeight)) : bare;
 }
 
-// Estimated contribution of all facets to the albedo, if facets up to slope t1 reflect all light upward, facets from t1
-// to t2 half of the light, and steeper facets no light.
+// Estimate of the light that all facets reflect upward: all light up to slope t1, half of it up to t2, none beyond.
 real weight_of_shape(ThetaNode theta, ShapeNode shape) {
   real t1 = theta.c / (real(1.0) + theta.s);
   real t2 = (real(1.0) + theta.s) / max(theta.c, real(1e-15));
@@ -149,10 +146,8 @@ real diverging_nodes(ThetaNode theta, ShapeNode shape, Piece piece) {
 }
 
 // Nodes of a piece. The nearest singularity of the integrand decides how many nodes a digit costs. Singularities are
-// - t = i m, because of the density, and t = i, because of the factors 1 + t^2,
-// - those of Fresnel's coefficients,
-// - square roots beyond the ends of the piece.
-// The fall of the density over the piece needs further nodes, and each end with a square root needs one.
+// t = i m (density), t = i (factors 1 + t^2), those of Fresnel's coefficients, and square roots beyond the ends of the
+// piece. The fall of the density over the piece needs further nodes, and each end with a square root needs one.
 real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, bool has_split_line, Piece piece) {
   real cost = piece_cost(piece, real_part_of_asinh(real(1.0) / shape.scale), real(0.5) * kPi);
   if (kDistribution == DOLP_CAUCHY) {
@@ -167,8 +162,7 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
   cost = max(cost, choose(piece.root_before < piece.start, before, real(0.0)));
   real after = piece_cost(piece, piece.root_after, real(0.0));
   cost = max(cost, choose(piece.root_after > piece.start + piece.extent, after, real(0.0)));
-  // If both ends have a square root, the map y = v^2 (3 - 2v) removes the roots at v = 0 and v = 1. But the map also
-  // gives y = 0 at v = 3/2 and y = 1 at v = -1/2, where the roots remain.
+  // For two square roots the map is y = v^2 (3 - 2v). At v = 3/2 (y = 0) and v = -1/2 (y = 1) it does not remove them.
   bool has_two_roots = piece.root_at_a && piece.root_at_b;
   cost = max(cost, choose(has_two_roots, nodes_per_digit(acosh_above_1(real(1.0))), real(0.0)));
   real roots = (piece.root_at_a ? real(1.0) : real(0.0)) + (piece.root_at_b ? real(1.0) : real(0.0));
@@ -192,8 +186,7 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
 // ---- Azimuth -------------------------------------------------------------------------------------------------------
 
 // Nodes per digit on an arc because of a singularity at the azimuth `at`. Rules of section `half` (quadrature.glsl)
-// converge like Gauss rules in the square of the abscissa, rules of section `cluster` like Gauss rules in the square
-// root.
+// converge like Gauss rules in the squared abscissa, rules of section `cluster` in the square root of the abscissa.
 real arc_cost(Arc arc, Singularity at) {
   real re = abs(at.re - arc.origin) / arc.span;
   real im = at.im / arc.span;
@@ -329,8 +322,7 @@ Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, Arc arc,
   return arc;
 }
 
-// Nodes of an arc that begins at the line b = pi/2 (single_lines() in arcs.glsl). A part of G is exp(-1/distance^2),
-// with the distance from this line.
+// Nodes of an arc that begins at the line b = pi/2 (single_lines() in arcs.glsl): G contains exp(-1/distance^2).
 real line_nodes(ShapeNode shape, bool has_split_line, real digits, int zone) {
   if (kMasking != DOLP_MASKING_INTEGRAL || kDistribution != DOLP_GAUSSIAN) return real(0.0);
   bool is_line = has_split_line && zone == 2;

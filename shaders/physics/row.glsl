@@ -1,7 +1,6 @@
 // Entries that one invocation computes together. They differ only in q, so they share the facets and the reflection.
 
-// The entries are in ascending order of q. All have the scale, cut, table_scale and cusp_digits of the one that needs
-// most nodes.
+// In ascending order of q. All entries get the most demanding scale, cut, table_scale and cusp_digits of any of them.
 struct Row {
   ShapeNode shape[DOLP_WIDTH];
   uint table[DOLP_WIDTH];  // position of the first node of each entry's masking table
@@ -46,8 +45,7 @@ MaskingTerms masking_of_direction(Row row, real cos_theta, real sin_theta) {
   return heights;
 }
 
-// 1 - G1 of `integral`. `limited` is computed even if it is unused: invocations run in lockstep, so a branch saves no
-// time.
+// 1 - G1 of `integral`. `limited` is computed even if it is unused: in lockstep, a branch saves no time.
 MaskingTerms shadows(Row row, MaskingTerms heights, real cos_theta, real sin_theta, real t) {
   ShadowRange range = shadow_range(row.shape[0], cos_theta, sin_theta, t);
   TableCell cell = table_cell(row.shape[0], range.far);

@@ -10,8 +10,8 @@ real slope_tail_exponent(ShapeNode shape, real t) { return exponent_factor(shape
 
 real slope_tail(ShapeNode shape, real t) { return exp_real(-slope_tail_exponent(shape, t)); }
 
-// P(t) t m: the share of facets per radian of azimuth and per du. `exponent` is common_exponent(u). The formula
-// contains neither m^2 nor t^2, so it does not overflow.
+// P(t) t m: the share of facets per radian of azimuth and per du. `exponent` is common_exponent(u). The formula has
+// neither m^2 nor t^2, so it does not overflow.
 real slope_density(ShapeNode shape, real u, real exponent) {
   real shape_factor = (kDistribution == DOLP_CAUCHY) ? shape.q_minus_1 / (u + real(1.0) / u) : u;
   return shape_factor * exp_real(-exponent_factor(shape) * exponent) / kPi;

@@ -44,8 +44,7 @@ class Breaks {
   std::vector<double> points_;
 };
 
-/// Integrates by the 21-point Kronrod rule. Returns a pessimistic error: the difference from the 10-point Gauss rule,
-/// plus rounding.
+/// 21-point Kronrod rule. The error is pessimistic: the difference from the 10-point Gauss rule, plus rounding.
 template <std::size_t N, class Integrand>
 Integral<N> kronrod_panel(const Integrand& integrand, double low, double high) {
   using Kronrod = boost::math::quadrature::gauss_kronrod<double, 21>;
@@ -77,8 +76,7 @@ Integral<N> kronrod_panel(const Integrand& integrand, double low, double high) {
   return result;
 }
 
-/// Maps s in [0, 1] to an interval by s^2 (3 - 2 s). As a function of s, an integrand with square roots or 3/2 powers
-/// at the ends is smooth.
+/// Maps s in [0, 1] to an interval by s^2 (3 - 2 s). Square roots and 3/2 powers at the ends are smooth functions of s.
 struct Stretch {
   double low;
   double high;
@@ -130,8 +128,7 @@ double scaled_error(const Values<N>& error, const Values<N>& scale) {
   return worst;
 }
 
-/// Halves the panel with the largest error, until all errors are at most `goal.relative` times their scales, or until
-/// there are `goal.max_panels` panels.
+/// Halves the worst panel until all errors are at most `goal.relative` times their scales, or up to `goal.max_panels`.
 template <std::size_t N, class Integrand, class Scale>
 Integral<N> integrate(const Integrand& integrand, const Breaks& breaks, const Goal& goal, const Scale& scale) {
   const std::vector<double> points = breaks.sorted();

@@ -1,7 +1,6 @@
-// Follows a beam in a symmetric V-groove from facet to facet, without the light that passes a rim. Axes: u across the
-// groove, v along the groove, z upward; the origin is the middle of the aperture. Both facets have length 1. Facet A
-// reaches from the rim at u = -cos(alpha), z = 0 to the apex at u = 0, z = -sin(alpha). Facet B reaches from the rim at
-// u = cos(alpha) to the apex.
+// Follows a beam in a symmetric V-groove from facet to facet, without the light that passes a rim.
+// Axes: u across the groove, v along it, z upward, from the middle of the aperture. Both facets have length 1 and meet
+// at the apex, u = 0 and z = -sin(alpha). The rim of facet A is at u = -cos(alpha), the rim of B at u = cos(alpha).
 #pragma once
 
 #include <algorithm>
@@ -53,8 +52,7 @@ class GrooveBeam {
   }
 
  private:
-  // Follows the edge of the beam to the facet on `side_`. Returns the flux of a beam that covers the facet from this
-  // edge to the rim.
+  // Follows the edge of the beam to the facet on `side_`. Returns the flux of a beam that reaches from it to the rim.
   Real land() {
     const Vector<Real> n = normal();
     const Real cos_beta = -dot(k_, n);

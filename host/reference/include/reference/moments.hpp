@@ -38,8 +38,8 @@ Zenith zenith_from_deg(double theta_deg);
 Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants,
                            const Refinement& refinement, const SkyFunction* sky = nullptr);
 
-/// r_i and r_q with each of the `curves` instead of the reflectances, to errors relative to the albedo. `bend`: cosine
-/// of the angle of incidence at which the curves bend sharply.
+/// r_i and r_q with each of the `curves` instead of the reflectances. The errors are relative to the albedo. `bend`:
+/// cosine of the angle of incidence at which the curves bend sharply.
 std::vector<ColumnMoments> hemisphere_responses(const Slopes& slopes, Masking masking, double theta_deg,
                                                 const Curves& curves, double bend, const Refinement& refinement);
 
@@ -68,8 +68,7 @@ struct GrooveLight {
   double bounces = 0.0;         ///< number of followed bounces
 };
 
-/// Follows the light into a groove with facets of slope t > 0. chi is 90 degrees minus the azimuth phi of the facets,
-/// so sin_chi = cos(phi). Domain: cos(theta) > 0.
+/// Domain: slope t > 0; cos(theta) > 0. chi is 90 degrees minus the azimuth phi of the facets, so sin_chi = cos(phi).
 GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zenith& view, const FacetOptics& constants,
                             const SkyFunction* sky = nullptr);
 

@@ -29,8 +29,7 @@ ReferenceMueller reference_scattering(const Surface& surface, const FacetOptics&
 ReferenceMueller reference_bounces(const Surface& surface, const FacetOptics& constants, double theta_i_deg,
                                    double theta_r_deg, double delta_phi_deg, int bounces);
 
-/// Sum of reference_bounces() over all numbers of bounces. `error` is the error of element m00, because the sum ends
-/// after 2000 bounces. It is 0 unless theta_i is close to theta_r.
+/// Sum of reference_bounces(). `error` is 0 unless theta_i is so close to theta_r that 2000 bounces are too few.
 struct BouncesSum {
   ReferenceMueller matrix{};
   double error = 0.0;

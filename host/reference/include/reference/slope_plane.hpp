@@ -33,14 +33,12 @@ inline SlopePoint slope_point(double t, double chi_rad) { return {t, std::sin(ch
 
 using Electric = std::array<std::complex<double>, 3>;
 
-/// Unit vector toward the viewer, in the axes of a groove: u across the groove (at the azimuth phi), v along the
-/// groove, z up.
+/// Unit vector toward the viewer in the axes of a groove: u across the groove (azimuth phi), v along the groove, z up.
 inline Vector<double> toward_view(const SlopePoint& point, const Zenith& view) {
   return {view.sin * point.sin_chi, -view.sin * point.cos_chi, view.cos};
 }
 
-/// Electric vectors of an s wave and a p wave of unit amplitude along k. s is the unit vector along k x z, and p = k x
-/// s.
+/// Electric vectors of an s wave and a p wave of amplitude 1 along k. s is the unit vector along k x z, and p = k x s.
 struct UnitLight {
   Electric from_s;
   Electric from_p;
@@ -91,8 +89,8 @@ class RegimeScan {
  public:
   RegimeScan(const Zenith& view, double theta_rad, const ScanSteps& steps, Regime regime)
       : view_(view), theta_rad_(theta_rad), steps_(steps), regime_(std::move(regime)) {}
-  /// Values of chi in (0, pi/2) at which the integral at slope t is split: bends, unless there are too many, and points
-  /// close to chi = 0 if the integrand varies quickly there.
+  /// Values of chi in (0, pi/2) at which the integral at slope t is split: bends (unless there are too many), and at
+  /// grazing zeniths small values of chi.
   std::vector<double> chi_breaks(double t) const;
   /// Slopes up to `end` at which the integral over t is split: those with a bend at chi = 0 or pi/2, and small slopes.
   std::vector<double> t_breaks(double width, double end) const;
@@ -110,16 +108,14 @@ struct SlopeTask {
   std::function<Values<N>(const Values<N>&)> scales;  ///< scales of the errors, see Goal::relative
   double steepest;                                    ///< upper end of the integral over t
   double bends_end;                                   ///< bends are searched up to this t, which is at most `steepest`
-  /// At a slope whose weight is below this, the integral over chi may have a larger error, in proportion to thin_weight
-  /// / weight.
+  /// At slopes with a smaller weight, the integral over chi may have an error that is larger by thin_weight / weight.
   double thin_weight = 0.0;
   std::function<double()> work = [] { return 0.0; };  ///< work done so far, in any unit
   double most_work = 1.0;                             ///< after this much work no integral is refined
 };
 
-/// Integrals of N functions over the slopes: int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} dchi, with the slope
-/// density P. The result holds these N integrals, then the errors of their inner integrals over chi, summed in the same
-/// way. `expected`: rough values of the N integrals.
+/// Integrals of N functions: int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} dchi, with the slope density P. The result
+/// holds these N integrals, then N integrals of the errors of the inner integrals. `expected`: rough values of the N.
 template <std::size_t N>
 Integral<2 * N> integrate_slopes_of(const SlopeTask<N>& task, const Slopes& slopes, const RegimeScan& scan,
                                     const Refinement& refinement, const Values<N>& expected) {

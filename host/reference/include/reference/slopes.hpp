@@ -26,8 +26,7 @@ class Slopes {
 
   double quantile(double share) const;
 
-  /// Contribution of the slopes above t to the mean slope. Domain: cauchy q > 3/2; t >= 1e8 m(), where P is a power
-  /// law.
+  /// Contribution of slopes above t to the mean slope. Domain: cauchy q > 3/2; t >= 1e8 m(), where P is a power law.
   double length_above(double t) const;
 
   /// Integrals over slopes use the variable v, with t = at(v) = width() sinh(v). density_at(v) is 2 pi P t dt/dv.
@@ -59,11 +58,9 @@ struct Zenith {
 /// Lambda of Smith's height-correlated masking, in closed form. Domain: cos(zenith) > 0; cauchy q > 3/2.
 double smith_lambda(const Slopes& slopes, const Zenith& zenith);
 
-/// G_1 of the masking `integral` for a facet of tilt alpha, integrated over the tilts gamma of facets in one vertical
-/// plane. With the density p of tan(gamma) and the probability P:
-/// Equation: G_1 = P(gamma < a) + int_a^b p (1 + cos(theta + gamma)/cos(theta - alpha)), where a = pi/2 - theta and b =
-/// min(pi/2, pi - 2 theta + alpha).
-/// Source: Wang, Li, Wang 2025, eqs. (9)-(12). Accuracy: `tolerance`, absolute.
+/// G_1 of the masking `integral` for a facet of tilt alpha. Accuracy: `tolerance`, absolute.
+/// Equation: G_1 = P(gamma < a) + int_a^b p (1 + cos(theta + gamma)/cos(theta - alpha)) over tilts gamma in one plane;
+/// a = pi/2 - theta and b = min(pi/2, pi - 2 theta + alpha). Source: Wang, Li, Wang 2025, eqs. (9)-(12).
 class IntegralMasking {
  public:
   IntegralMasking(const Slopes& slopes, const Zenith& zenith, double tolerance);

@@ -242,8 +242,8 @@ real fresnel_cost(RuleNode rule, ThetaNode theta, IndexNode index, real t, Arc a
   return kTotalReflection ? choose(arc.is_critical, critical_cost(theta, index, t, arc), cost) : cost;
 }
 
-// Nodes per digit on an arc because the masking toward the reflected ray has singularities. The density p of in-plane
-// slopes is singular at cot(theta_r) = +- i m. With `integral` masking, kappa (masking.glsl) has a pole at -t.
+// Nodes per digit on an arc because of singularities of the masking toward the reflected ray: the density of in-plane
+// slopes at cot(theta_r) = +- i m, and with `integral` masking kappa (masking.glsl) at cot(theta_r) = -t.
 real masking_cost(ThetaNode theta, ShapeNode shape, real t, Arc arc, int zone) {
   if (kMasking != DOLP_MASKING_SMITH && kMasking != DOLP_MASKING_INTEGRAL) return real(0.0);
   real sec2 = real(1.0) + t * t;

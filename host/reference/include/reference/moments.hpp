@@ -22,8 +22,7 @@ struct SkyFunction {
   std::vector<double> corners_deg;
 };
 
-/// Functions of cos(beta) with values in [-1, 1]. In hemisphere_responses() each function replaces the reflectances: it
-/// takes the place of (R_s + R_p) / 2 in r_i, and of (R_s - R_p) / (2 sin^2(beta)) in r_q.
+/// Functions of cos(beta), from -1 to 1, in the place of (R_s + R_p) / 2 and (R_s - R_p) / (2 sin^2(beta)).
 inline constexpr std::size_t kCurves = 24;
 using Curves = std::function<std::array<double, kCurves>(double cos_beta)>;
 

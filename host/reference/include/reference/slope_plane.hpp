@@ -1,6 +1,6 @@
 // Integrals over the slope t and the azimuth phi of the facets, split where the integrand bends sharply. The variable
-// chi = 90 degrees - phi replaces phi. The integrand is the sum over two facets: A at phi, B at phi + 180 degrees. So
-// chi runs only from 0 to pi/2.
+// chi = 90 degrees - phi replaces phi. Each integrand covers two facets: A at phi, B at phi + 180 degrees. So, by
+// symmetry, chi runs only from 0 to pi/2.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // The interface between host and shaders. Structures have only members of type `real` (float or double), so std430
-// packs them tightly, and the host may treat them as numbers. Counts that are stored as `real` are small integers.
+// packs them tightly, and the host may treat them as numbers. Members that count something are small integers.
 
 // ---- Bindings of descriptor set 0: storage buffers; from DOLP_BINDING_RULE_NODES, texel buffers ---------------------
 #define DOLP_BINDING_THETAS 0         // ThetaNode[]
@@ -34,7 +34,7 @@
 #define DOLP_MASKING_INTEGRAL 2u
 #define DOLP_MASKING_SMITH 3u
 #define DOLP_COLUMNS_SKY 0u           // moments times functions of a sky, see physics/columns.glsl
-#define DOLP_COLUMNS_RESPONSE 1u      // responses: moments of reflected light, with polynomials instead of reflectances
+#define DOLP_COLUMNS_RESPONSE 1u      // responses: r_i and r_q with polynomials in the place of the reflectances
 #define DOLP_COLUMNS_SKY_RESPONSE 2u  // responses times a function of a sky
 #define DOLP_COLUMNS_DIRECT 3u        // responses of the direct emission
 
@@ -53,65 +53,65 @@
 #define DOLP_TASK_MEMBERS_BITS 5u    // from bit 0: number of entries that the invocation computes
 #define DOLP_TASK_PIECE_SHIFT 5u     // from this bit: number of the piece of the slope axis
 #define DOLP_TASK_PIECE_BITS 6u
-#define DOLP_TASK_ROOT_AT_START 11u   // bit: the integrand has a square root at the start of the piece
+#define DOLP_TASK_ROOT_AT_START 11u   // bit: the integrand behaves like a square root at the start of the piece
 #define DOLP_TASK_ROOT_AT_END 12u    // bit: square root at the end of the piece
 #define DOLP_TASK_ROOT_BEFORE_START 13u // bit: square root at the start of the preceding piece
 #define DOLP_TASK_ROOT_AFTER_END 14u // bit: square root at the end of the next piece
-#define DOLP_TASK_SPLIT_LINE 15u     // bit: a kink of `integral` or smith masking splits the pieces
+#define DOLP_TASK_SPLIT_LINE 15u     // bit: pieces or arcs end where `integral` or smith masking is not smooth
 #define DOLP_TASK_AZIMUTHS_SHIFT 16u // from this bit: largest number of azimuth nodes on an arc; bounds the loops
 
 // ---- Sizes ---------------------------------------------------------------------------------------------------------
 #ifndef DOLP_WIDTH
 #define DOLP_WIDTH 1             // number of entries that one invocation computes, see Row of physics/row.glsl
 #endif
-#define DOLP_ROW_WIDTH 4         // DOLP_WIDTH of the kernels that compute several entries; the others have 1
+#define DOLP_ROW_WIDTH 4         // DOLP_WIDTH in the kernels that compute several entries
 #ifndef DOLP_MOST_COLUMNS
 #define DOLP_MOST_COLUMNS 0      // largest number of columns that a kernel can compute; 0 in kernels without columns
 #endif
 #define DOLP_COLUMNS 24          // largest number of columns that any kernel computes
 #define DOLP_SKY_FUNCTIONS 8     // largest number of functions of a sky; DOLP_MOST_COLUMNS in kernels for skies
 #define DOLP_MOST_SKY_CORNERS 24 // largest number of corners of a sky that split the azimuths
-#define DOLP_COLUMN_PARTS 4      // numbers per column: r_i and r_q by the coarser of two rules, then by the finer one
+#define DOLP_COLUMN_PARTS 4      // numbers per column: r_i and r_q by the coarser rule, r_i and r_q by the finer rule
 #define DOLP_MAX_PIECES 63       // largest number of pieces of the slope axis for one direction
 #define DOLP_MAX_ARCS 13        // largest number of azimuth arcs at one slope, not counting those of total reflection
 // V-grooves, see physics/groove.glsl
 #define DOLP_STEEPEST_SPLIT 20.0  // for slopes below this, azimuths are split where the number of bounces changes
 #define DOLP_MOST_SPLITS 8       // largest RuleNode::split_bounces
-#define DOLP_MOST_BOUNCES 32      // longer paths: groups of 2, 4, 8 ... bounces in the middle of a path count as one
-#define DOLP_GROUPS_PER_DISTANCE 6 // before and after a group of n bounces lie at least n times this many bounces
+#define DOLP_MOST_BOUNCES 32      // in longer paths, a group of 2, 4, 8 ... bounces counts as one
+#define DOLP_GROUPS_PER_DISTANCE 6 // a group of n bounces has 6 n or more bounces before it, and 6 n or more after it
 #define DOLP_MOST_DOUBLINGS 12    // a group has at most 2^12 bounces
 #define DOLP_LAST_BOUNCES (DOLP_MOST_BOUNCES << DOLP_MOST_DOUBLINGS)  // a ray with more bounces is absorbed
-#define DOLP_CURVE_NODES 6       // rule nodes per cell of a table of reflectances: two per cubic, for three quantities
+#define DOLP_CURVE_NODES 6       // rule nodes per cell of a table of reflectances: three cubics with two nodes each
 #define DOLP_MAX_ORDER 128       // largest Gauss order of the rule nodes
-#define DOLP_MASKING_OCTAVES 29  // a masking table covers this many octaves of v = 1 + (slope tau) / table_scale
+#define DOLP_MASKING_OCTAVES 29  // octaves of v = 1 + tau / table_scale in a masking table, where tau is a slope
 #define DOLP_MASKING_CELL_BITS_FLOAT 3   // a masking table has 2^bits cells per octave
 #define DOLP_MASKING_CELL_BITS_DOUBLE 6
 #define DOLP_MASKING_NODES(CELL_BITS) ((DOLP_MASKING_OCTAVES << (CELL_BITS)) + 1)
 
 // ---- Structures ----------------------------------------------------------------------------------------------------
 
-// Constants for the orders (numbers of nodes) of the Gauss rules; physics/orders.glsl has the formulas.
+// Constants of the formulas in physics/orders.glsl, which compute the numbers of nodes of the Gauss rules.
 struct RuleNode {
   real digits;            // decimal digits required of the moments
   real t_nodes;           // slope axis: constant part of the number of nodes of a piece
-  real t_digits;          // slope axis: digits added to the required ones because of the strength of singularities
-  real t_fall;            // slope axis: nodes for each factor e by which the density falls over a piece
-  real phi_nodes;         // azimuth: nodes per radian of an arc, in addition to the nodes for digits
-  real phi_digits;        // azimuth: digits added to the required ones because of the strength of singularities
-  real cluster_stretch;   // smith: an arc clusters nodes at the cusp if it needs more nodes per digit than this
+  real t_digits;          // slope axis: added to the required digits, because singularities have different strengths
+  real t_fall;            // slope axis: nodes for each time the density falls by the factor e over a piece
+  real phi_nodes;         // azimuth: nodes per radian of an arc, beside the nodes that the digits cost
+  real phi_digits;        // azimuth: added to the required digits, because singularities have different strengths
+  real cluster_stretch;   // smith: if the cusp of G costs more nodes per digit than this, nodes cluster at the cusp
   real split_bounces;     // all bounces: azimuths are split where the number of bounces changes, up to this number
   real dimmest;           // all bounces: a ray is followed until less than this share of its light is left
-  real cluster_below_q;   // `integral`: arcs cluster nodes at the kink of G if q is below this
+  real cluster_below_q;   // `integral`: if q is below this, nodes cluster at the azimuth where G has a kink
   real response_scale;    // for responses: 1 / c0 of chebyshev_at() in physics/columns.glsl
   real response_norm;     // for responses: 2 / asinh(1 / c0)
 };
 
-// One direction theta, with the pieces of the slope axis t = tan(alpha) on which the integrand is smooth. An index with
-// total reflection has separate ThetaNodes; so have slope distributions that need one more breakpoint.
+// One direction theta, and the pieces of the slope axis t = tan(alpha) on which the integrand is smooth. A direction
+// has several ThetaNodes if indices with total reflection, or some slope distributions, need other pieces.
 struct ThetaNode {
   real c;                         // cos(theta)
   real s;                         // sin(theta)
-  // The ends of the pieces, as ascending slopes. Elements after the last end repeat it. Ends may exceed ShapeNode::cut.
+  // Piece k lies between the slopes end[k] and end[k + 1]. Unused elements repeat the last end.
   real end[DOLP_MAX_PIECES + 1];
 };
 
@@ -132,8 +132,8 @@ struct ShapeNode {
   real marginal_norm;  // p(0), with the density p of the in-plane slopes
   real scale;          // the slope t is mapped to X with t = scale sinh(X)
   real cut;            // slopes above this one are left out
-  real table_scale;    // the masking table is a table over v = 1 + tau/table_scale, with the in-plane slope tau
-  real cusp_digits;    // smith: log10 of the error that the cusp causes, see cusp_digits() of plan/rule.hpp
+  real table_scale;    // the variable of the masking table is v = 1 + tau / table_scale, where tau is a slope
+  real cusp_digits;    // smith: log10 of the error without a split at the cusp, see cusp_digits() of plan/rule.hpp
 };
 
 struct IndexNode {
@@ -141,7 +141,7 @@ struct IndexNode {
   real n2m1_im;       // Im(N^2 - 1)
   real pole_re;       // pole of R_p as a function of cos(beta), -1 / sqrt(N^2 + 1)
   real pole_im;
-  real branch_re;     // branch point of w = sqrt(N^2 - sin^2(beta)) over cos(beta): i sqrt(N^2 - 1), parts >= 0
+  real branch_re;     // complex cos(beta) at which w = sqrt(N^2 - sin^2(beta)) is 0: i sqrt(N^2 - 1), with re, im >= 0
   real branch_im;
   real critical_cos;  // cos(beta) at which total reflection begins, sqrt(1 - Re N^2), if k is 0 or small; else 0
   real curve_start;   // position of the table of reflectances among the rule nodes
@@ -166,8 +166,8 @@ struct BeamNode {
   GeometryNode g;
   ShapeNode shape;  // with the scale and the cut that physics/in_plane.glsl needs
   real density;     // D(alpha) / 4 [1/sr], divided by a power of two: 0 or in [1/2, 1)
-  // Mueller matrix of the facet in its frame: [m00 m01 0 0; m01 m00 0 0; 0 0 cross_re -cross_im; 0 0 cross_im
-  // cross_re], with r_s* r_p = cross_re + i cross_im.
+  // Mueller matrix of the facet in the frame of the facet, with r_s* r_p = cross_re + i cross_im:
+  // [m00 m01 0 0; m01 m00 0 0; 0 0 cross_re -cross_im; 0 0 cross_im cross_re].
   real m00;
   real m01;
   real cross_re;
@@ -181,7 +181,7 @@ struct MuellerNode {
 #define DOLP_AZIMUTH_NUMBERS 8  // numbers of an AzimuthNode
 #define DOLP_MOMENTS_NUMBERS 13  // numbers of a MomentsNode
 
-// Integrals over the azimuths from 0 to pi for the facets of slope t, divided by the weight P(t) t dt of this slope.
+// Integrals over the azimuths from 0 to pi for the facets of slope t, without the weight P(t) t dt of this slope.
 struct AzimuthNode {
   real r_i;
   real r_q;
@@ -199,13 +199,13 @@ struct MomentsNode {
   real r_q;
   real albedo;
   real deficit;
-  real behind;               // sum that `deficit` subtracts (slope_sums()); the rounding bound needs it
+  real behind;               // a sum that slope_sums() subtracts from `deficit`, for the bound of the rounding error
   real many;                 // part of r_i from grooves with more bounces than DOLP_MOST_BOUNCES
   real direct_i;             // direct emission
   real direct_q;
-  real reflected_difference; // the larger difference between the two rules: of r_i or of r_q
+  real reflected_difference; // difference between the two rules: of r_i or of r_q, whichever is larger
   real albedo_difference;
   real deficit_difference;
-  real direct_difference;    // the larger difference between the two rules: of direct_i or of direct_q
+  real direct_difference;    // difference between the two rules: of direct_i or of direct_q, whichever is larger
   real evaluations;
 };

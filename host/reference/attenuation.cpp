@@ -57,7 +57,7 @@ IntegralMasking::IntegralMasking(const Slopes& slopes, const Zenith& zenith, dou
 double IntegralMasking::operator()(double alpha_rad) const {
   const double limit_rad = 2.0 * zenith_.elevation_rad + alpha_rad;
   const double cos_theta_minus_alpha = std::sin(zenith_.elevation_rad + alpha_rad);
-  if (cos_theta_minus_alpha <= 0.0) return share_below_;  // a = b, because theta = 90 degrees and alpha = 0
+  if (cos_theta_minus_alpha <= 0.0) return share_below_;  // theta = 90 degrees, alpha = 0: the integral is empty
   const auto weight = [&](double slope) {
     const double cos_gamma = 1.0 / std::sqrt(1.0 + slope * slope);
     const double cos_theta_plus_gamma = zenith_.cos * cos_gamma - zenith_.sin * slope * cos_gamma;
@@ -77,7 +77,7 @@ Attenuation::Attenuation(const Slopes& slopes, Masking masking, const Zenith& a,
   if (masking == Masking::kSmith) {
     smith_ = std::min(a.cos, b.cos) > 0.0 ? 1.0 / (1.0 + smith_lambda(slopes, a) + smith_lambda(slopes, b)) : 0.0;
   }
-  // G is the smaller of the masking functions G_1 of both directions, which is that of the lower direction.
+  // G is the smaller G_1 of the two directions. It belongs to the direction with the larger zenith.
   if (masking == Masking::kIntegral) integral_.emplace(slopes, a.elevation_rad < b.elevation_rad ? a : b, tolerance);
 }
 
@@ -86,7 +86,7 @@ double Attenuation::operator()(double tan2_alpha, double cos2_beta) const {
     case Masking::kNone:
       return 1.0;
     case Masking::kVCavity:
-      // G = 2 cos(alpha) cos(zenith) / cos(beta) of the lower direction; cos(alpha) = (cos a + cos b) / (2 cos(beta)).
+      // G = 2 cos(alpha) min(cos a, cos b) / cos(beta), with cos(alpha) = (cos a + cos b) / (2 cos(beta)).
       return std::min(1.0, v_cavity_ / cos2_beta);
     case Masking::kIntegral:
       return (*integral_)(std::atan(std::sqrt(tan2_alpha)));

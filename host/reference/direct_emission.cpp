@@ -20,10 +20,10 @@ using std::numbers::pi;
 namespace {
 
 constexpr double kRounding = 256.0 * std::numeric_limits<double>::epsilon();
-// Slopes above this times max(1, width) / sin(theta) count as vertical, with a relative error of 1 / kVertical.
+// Facets with slopes above kVertical max(1, width) / sin(theta) count as vertical. Relative error: 1 / kVertical.
 constexpr double kVertical = 1e10;
 constexpr double kSmallestSine = 1e-12;
-constexpr double kNoShare = 1e-19;  // a smaller share of the facets emits less than rounding
+constexpr double kNoShare = 1e-19;  // a smaller share of the facets emits less than the rounding error
 constexpr int kHalvings = 60;
 
 enum Component : std::size_t { kIntensity, kPolarised, kCount };
@@ -31,7 +31,7 @@ using Emitted = Values<kCount>;
 
 using Absorption = std::function<FresnelCoefficients(double cos_beta)>;
 
-// The facets of a surface that are visible from one direction. With `is_response`, errors are relative to cos(theta).
+// The emission of all facets toward one direction. With `is_response`, errors are relative to cos(theta).
 class Facets {
  public:
   Facets(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants, Absorption absorption,
@@ -65,7 +65,7 @@ class Facets {
   }
 
  private:
-  // Area of a facet as the viewer sees it, per horizontal area. `side`: 1 for the azimuth phi, -1 for phi + 180
+  // Projected area of a facet toward the viewer, per horizontal area. `side`: 1 for azimuth phi, -1 for phi + 180
   // degrees.
   double facing(const SlopePoint& point, double side) const {
     return view_.cos + side * point.t * view_.sin * point.sin_chi;
@@ -110,13 +110,13 @@ class Facets {
     return number;
   }
 
-  // The slope at which integration ends: steeper facets count as vertical, or their share is below kNoShare.
+  // The slope at which the integral ends: steeper facets count as vertical, or are fewer than the share kNoShare.
   double end() const {
     const double vertical = kVertical * std::max(1.0, slopes_.width()) / std::max(view_.sin, kSmallestSine);
     return std::min(vertical, slopes_.quantile(kNoShare));
   }
 
-  // Emission of the facets steeper than t. There visible area times masking is proportional to t (smith) or constant.
+  // Emission of facets steeper than t. Their visible area grows like the slope with smith, not with v-cavity masking.
   Emitted tail(double t, const Refinement& refinement) {
     const double share = masking_ == Masking::kVCavity ? slopes_.share_above(t) : slopes_.length_above(t) / t;
     if (share < kNoShare) return {};
@@ -152,7 +152,7 @@ Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg,
 Moments direct_response(const Slopes& slopes, Masking masking, double theta_deg,
                         const std::function<double(double cos_beta)>& curve, double bend,
                         const Refinement& refinement) {
-  const FacetOptics bent{1.0 / bend, 0.0};  // the index whose Brewster angle is where `curve` has its sharp bend
+  const FacetOptics bent{1.0 / bend, 0.0};  // an index with its Brewster angle at the bend of `curve`
   const auto absorption = [&](double cos_beta) -> FresnelCoefficients {
     const double sin2_beta = (1.0 - cos_beta) * (1.0 + cos_beta);
     const double f = curve(cos_beta);

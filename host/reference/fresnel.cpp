@@ -10,7 +10,7 @@ namespace {
 FresnelCoefficients bare_coefficients(const OpticalConstants& constants, double cos_beta) {
   const std::complex<double> refractive_index{constants.n, constants.k};
   const std::complex<double> n2 = refractive_index * refractive_index;
-  // N^2 - sin^2 beta in a form with which w is exactly cos(beta) for N = 1
+  // w = sqrt(N^2 - sin^2(beta)), in a form that gives exactly cos(beta) for N = 1
   const std::complex<double> w = std::sqrt((refractive_index - 1.0) * (refractive_index + 1.0) + cos_beta * cos_beta);
   const std::complex<double> below_s = cos_beta + w;
   const std::complex<double> below_p = n2 * cos_beta + w;

@@ -27,31 +27,30 @@ constexpr double kDark = 1e-24;  // light of lower intensity is not followed
 constexpr int kMostFollowed = 2000;
 constexpr double kSteepest = 1e15;
 constexpr double kSteeper = 1.5;
-// Grooves steeper than the steepest that is integrated reflect less than that one, except where the number of bounces
-// jumps. So they are assumed to reflect at most kTailRoom times as much.
+// The program assumes that grooves beyond the end of the integral reflect at most kTailRoom times as much as a groove
+// at the end. They usually reflect less, but the number of bounces jumps with the slope.
 constexpr double kTailRoom = 2.0;
-constexpr double kTailShare = 0.01;  // share of the tolerance for the error due to grooves that are not integrated
-// See ScanSteps::per_gamma. Over angles of about gamma, the half-angle of a groove, the number of bounces changes.
-constexpr double kStepsPerGamma = 3.0;
-// Bends of the integrand are searched up to the slope kSteepestBends, or up to the slope beyond which the share
-// kBendShare of the integral remains, if it is smaller. Steeper grooves have many small bends.
+constexpr double kTailShare = 0.01;     // share of the tolerance for the error due to grooves that are not integrated
+constexpr double kStepsPerGamma = 3.0;  // ScanSteps::per_gamma
+// Bends of the integrand are searched up to the slope kSteepestBends, but not beyond the slope above which less than
+// the share kBendShare of the integral remains. Steeper grooves have many small bends.
 constexpr double kBendShare = 1e-2;
 constexpr double kSteepestBends = 10.0;
-// An attempt with more than kMostBounces bounces, two seconds of work, is abandoned and repeated with kLessAmbitious
-// times the tolerance. An attempt with a tolerance of kLeastAmbition or more is the last and not abandoned.
+// An integration is abandoned after kMostBounces bounces (two seconds) and repeated with kLessAmbitious times the
+// tolerance. It is not abandoned if its tolerance is kLeastAmbition or more.
 constexpr double kMostBounces = 2e7;
 constexpr double kLessAmbitious = 100.0;
 constexpr double kLeastAmbition = 1e-5;
 constexpr double kThinWeight = 0.02;   // SlopeTask::thin_weight
 constexpr double kNegligible = 1e-12;  // smaller integrals, relative to the albedo, are only rounding errors
-// Factor from the difference of two quadrature rules to the error, which is larger in panels that still have bends.
+// The quadrature's error estimates are multiplied by this, because they are too small for panels with a bend inside.
 constexpr double kBentErrors = 6.0;
 // A first rough estimate of the moments uses kLookShares slopes, none above kLookSteepest, and kLookAzimuths azimuths.
 constexpr int kLookShares = 16;
 constexpr int kLookAzimuths = 16;
 constexpr double kLookSteepest = 50.0;
 
-// kReflected includes kLost, the light that is no longer followed. It may or may not leave the groove.
+// kReflected includes kLost: light after kMostFollowed bounces, which may or may not leave the groove.
 enum Component : std::size_t {
   kAlbedo,
   kReflected,
@@ -103,8 +102,9 @@ void follow(const Groove<double>& groove, const SlopePoint& point, const Vector3
   }
 }
 
-// A number that changes where the integrand bends: for each bounce of a beam it encodes whether none, some or all of
-// the light leaves the groove, and between which special angles the angle of incidence is.
+// A number that differs on both sides of a bend of the integrand (see Regime): a hash over the bounces of a beam. For
+// each bounce it contains whether no, some or all light leaves the groove, and on which sides of the special angles the
+// angle of incidence lies.
 std::uint64_t history(const SlopePoint& point, const Vector3& omega, Facet first, const SpecialAngles& special,
                       const SkyFunction* sky) {
   constexpr std::uint64_t kPrime = 1099511628211U;
@@ -187,7 +187,7 @@ class Surveyor {
     m.r_q = integral.value[kPolarised];
     m.deficit = integral.value[kAbsorbed] + (tail_weight - 0.5 * tail_most) + half_lost;
     m.albedo_error = error_of(kAlbedo) + kRounding * tail_weight;
-    // Amplitudes have an absolute rounding error. It matters in their squares if they are small, as for N near 1.
+    // Amplitudes have an absolute rounding error, so their squares have a large relative error if N is near 1.
     const double amplitude_error = kRounding * (std::sqrt(m.r_i * m.albedo) + kRounding * m.albedo);
     m.r_i_error = error_of(kReflected) + unknown + amplitude_error;
     m.r_q_error = std::max(error_of(kPolarised), error_of(kReflected)) + 2.0 * unknown + amplitude_error;
@@ -233,7 +233,7 @@ class Surveyor {
     double bends;  ///< bends of the integrand are searched up to this slope
     double all;    ///< the integral over slopes ends here
   };
-  // Slopes beyond which the rest of the integral is negligible, or light has too many bounces to be followed.
+  // The integral ends where the rest is negligible, or where most of the reflected light has too many bounces.
   Ends ends(const GrooveValues& expected) {
     const double scale = std::min(expected[kReflected], expected[kAbsorbed]);
     Ends ends{kSteepestBends, kSteepest};

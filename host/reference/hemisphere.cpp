@@ -1,6 +1,7 @@
-// Integrals over the zenith theta_r and the azimuth Delta_phi of reflection, for a fixed zenith theta. Let
-// mean = (theta + theta_r)/2, t = tan((theta_r - theta)/2), delta = pi - Delta_phi and s2 = sin^2(delta/2). Then
-// equations (2) and (3) of Wang, Li, Wang 2025 are sums of non-negative terms, in which nothing cancels:
+// Integrals over the zenith theta_r and the azimuth Delta_phi of the reflected ray, for a fixed zenith theta. Let mean
+// = (theta + theta_r)/2, t = tan((theta_r - theta)/2), delta = pi - Delta_phi and s2 = sin^2(delta/2). Then the angle
+// of incidence beta and the tilt alpha of the facet, equations (2) and (3) of Wang, Li, Wang 2025, are sums of
+// non-negative terms, in which no digits cancel:
 //   cos^2 beta  = cos^2 mean + sin(theta) sin(theta_r) s2
 //   sin^2 beta  = t^2/(1 + t^2) + sin(theta) sin(theta_r) cos^2(delta/2)
 //   tan^2 alpha = t^2 + (1 + t^2) sin(theta) sin(theta_r) s2 / cos^2 mean
@@ -24,13 +25,13 @@ namespace {
 
 constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// An absorbed part below this share of the albedo need not be accurate relative to itself.
+// If less than this share of the albedo is absorbed, the error of the absorbed part is relative to this share.
 constexpr double kSmallAbsorbed = 1e-2;
 // Relative error of elevations above the horizon, even tiny ones (test ReferenceMoments_NextToGrazing_KeepTheirDigits).
 constexpr double kElevationRounding = 32.0 * std::numeric_limits<double>::epsilon();
 // At theta = 90 degrees the integral over theta_r ends this far from the horizon. A power law gives the rest.
 constexpr double kHorizonGap = 1e-30;
-// If theta is closer to the horizon than this, the masking varies in a thin layer of theta_r, which gets break points.
+// If theta is closer to the horizon than this, break points are added where theta_r is close to the horizon, too.
 constexpr double kNearHorizon_rad = 1e-3;
 constexpr double kLayerGrowth = 10.0;
 constexpr double kInnerShare = 0.02;  // error of an inner integral, relative to the error of the outer integral
@@ -43,7 +44,6 @@ double masking_tolerance_for(const Refinement& refinement) {
   return std::max(1e-14, 1e-3 * kInnerShare * refinement.relative_tolerance);
 }
 
-// After the moments come K responses of r_i and K responses of r_q.
 enum Component : std::size_t { kAlbedo, kReflected, kPolarised, kAbsorbed, kMomentCount };
 template <std::size_t N>
 Values<N> moment_scales(const Values<N>& value) {
@@ -58,8 +58,8 @@ Values<N> moment_scales(const Values<N>& value) {
 template <std::size_t K>
 class Hemisphere {
  public:
-  // Components: moments and responses, then the two moments with a function of the sky. As many components follow for
-  // the errors of the integrals over the azimuth, which the outer integral sums.
+  // The inner integral, over the azimuth, has the moments, K responses of r_i and K responses of r_q. The outer
+  // integral has also the two moments with a function of the sky, and the sum of the inner errors of each component.
   static constexpr std::size_t kAzimuthCount = kMomentCount + 2 * K;
   static constexpr std::size_t kSkyReflected = kAzimuthCount;
   static constexpr std::size_t kSkyPolarised = kAzimuthCount + 1;
@@ -85,8 +85,8 @@ class Hemisphere {
     if (fixed_.cos > 0.0) {
       return integrate<kCount>([this](double u) { return row_values(u); }, breaks, goal, both_scales);
     }
-    // At theta = 90 degrees u ends at 0, where the integrand is |u|^(2q - 4) for q < 2. So the variable is log |u|, and
-    // a power law gives the part with |u| < kHorizonGap.
+    // At theta = 90 degrees u is negative, and for q < 2 the integrand grows like |u|^(2q - 4) toward u = 0. So the
+    // variable is log |u|, and a power law gives the part with |u| < kHorizonGap.
     const auto in_log = [this](double x) {
       BothValues values = row_values(-std::exp(x));
       for (double& value : values) value *= std::exp(x);
@@ -108,7 +108,7 @@ class Hemisphere {
   double evaluations() const { return evaluations_; }
 
  private:
-  // One zenith theta_r of the outer integral, with values that depend on theta and theta_r, but not on the azimuth.
+  // Values at one node theta_r of the outer integral. They do not depend on the azimuth.
   struct Row {
     double t;
     double cos2_mean;
@@ -116,8 +116,9 @@ class Hemisphere {
     Zenith running;
     Attenuation attenuation;
   };
-  // Break points in u, where tan((theta_r - theta)/2) = width sinh(u): the specular direction u = 0, kinks of the sky,
-  // and the theta_r at which a break point of the azimuth appears at Delta_phi = 180 or 0 degrees.
+  // Break points of the outer integral. Its variable u has tan((theta_r - theta)/2) = width sinh(u). Break points are
+  // the specular direction u = 0, kinks of the sky, and those theta_r at which azimuth_breaks() has a point at
+  // Delta_phi = 180 or 0 degrees.
   Breaks zenith_breaks() const {
     const double width = slopes_.width();
     Breaks breaks(std::asinh(-std::tan(0.5 * theta_rad_) / width),
@@ -149,10 +150,10 @@ class Hemisphere {
     return breaks;
   }
 
-  // Break points of the azimuth are where s2 has these values:
-  //   the angle beta is one of special_beta_rad()
-  //   v-cavity: (cos theta + cos theta_r) min(cos theta, cos theta_r) = cos^2 beta
-  //   integral: alpha = 2 max(theta, theta_r) - pi/2; for a larger alpha, the end b of the masking's integral is pi/2
+  // Break points of the azimuth:
+  //   beta is one of special_beta_rad()
+  //   v-cavity masking reaches 1: (cos theta + cos theta_r) min(cos theta, cos theta_r) = cos^2 beta
+  //   `integral` masking (IntegralMasking): alpha = 2 max(theta, theta_r) - pi/2, where the limit b reaches pi/2
   Breaks azimuth_breaks(const Row& row, double width) const {
     Breaks breaks(0.0, std::asinh(1.0 / width));
     const auto add_s2 = [&](double s2) {
@@ -177,7 +178,7 @@ class Hemisphere {
     return breaks;
   }
 
-  // The variable is v, tan(delta/4) = width sinh(v). At v = 1 the density D is small, as 4 tan^2(delta/4) is about s2.
+  // The variable v has tan(delta/4) = width sinh(v). The width is chosen so that D is small beyond about v = 1.
   Integral<kAzimuthCount> integrate_azimuth(const Row& row) {
     const double t2 = row.t * row.t;
     const double scale2 =
@@ -217,7 +218,7 @@ class Hemisphere {
     const Row row{t, cos_mean * cos_mean, fixed_.sin * running.sin, running,
                   Attenuation(slopes_, masking_, fixed_, running, masking_tolerance_for(refinement_))};
     const auto inner = integrate_azimuth(row);
-    // The first factor 2 is there because delta covers only half of the azimuth.
+    // The first factor 2 stands for the other half of the azimuths.
     const double jacobian = 2.0 * running.sin * 2.0 * slopes_.width() * std::cosh(u) / (1.0 + t * t);
     BothValues both;
     for (std::size_t k = 0; k < inner.value.size(); ++k) {
@@ -232,7 +233,7 @@ class Hemisphere {
     return both;
   }
 
-  // cos(theta) f cos(theta_r) = D G M / 4 with the Mueller matrix M. The needed M00 and M01 do not depend on eta_r.
+  // cos(theta) f cos(theta_r) = D G M / 4. The moments need only the elements M00 and M01 of the Mueller matrix M.
   AzimuthValues integrand(const Row& row, double delta) const {
     const double sin_half = std::sin(0.5 * delta);
     const double cos_half = std::cos(0.5 * delta);
@@ -293,15 +294,16 @@ double amplitude_rounding(double reflected, double albedo) {
   return kRounding * (2.0 * std::sqrt(reflected * albedo) + kRounding * albedo);
 }
 
-// Rounding and the error of the masking G are relative to `magnitude`; twice for G, because G_1 may be as small as 1/2.
+// Adds rounding and the error of G to the errors of both integrals. These two errors are relative to `magnitude`. The
+// factor 2 is needed because G_1 may be as small as 1/2.
 template <std::size_t N>
 double error_of(const Integral<N>& integral, std::size_t k, double magnitude, const Refinement& refinement) {
   const double masking_error = 2.0 * masking_tolerance_for(refinement);
   return integral.error[k] + integral.value[N / 2 + k] + (masking_error + kRounding + kElevationRounding) * magnitude;
 }
 
-// The limits theta -> 90 degrees for a Cauchy distribution with so many vertical facets that r_i grows without bound.
-// All vertical facets reflect into the hemisphere, and turn the plane of incidence by 90 degrees. So r_q is negative.
+// The moments for theta -> 90 degrees, if a Cauchy distribution has so many vertical facets that r_i becomes infinite.
+// Vertical facets turn the plane of incidence by 90 degrees, so r_q is negative.
 Moments divergent_moments(const FacetOptics& constants) {
   const bool is_vacuum = constants == FacetOptics(1.0, 0.0);
   const double grown = is_vacuum ? 0.0 : kInfinity;
@@ -344,7 +346,7 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
   moments.albedo_error = error_at(kAlbedo);
   moments.r_i_error = error_at(kReflected) + amplitude_error;
   moments.r_q_error = error_at(kPolarised) + amplitude_error;
-  // If little is reflected, cos(theta) - r_i is more accurate, otherwise (cos(theta) - albedo) + absorbed.
+  // The deficit has two formulas. cos(theta) - r_i is more accurate if little light is reflected.
   const double direct_error = moments.r_i_error + kRounding * cos_theta;
   const double split_error = moments.albedo_error + error_at(kAbsorbed) + kRounding * cos_theta;
   const bool is_split = split_error < direct_error;
@@ -362,7 +364,7 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
 
 std::vector<ColumnMoments> hemisphere_responses(const Slopes& slopes, Masking masking, double theta_deg,
                                                 const Curves& curves, double bend, const Refinement& refinement) {
-  const FacetOptics bent{1.0 / bend, 0.0};  // the index whose Brewster angle is where `curves` have their sharp bend
+  const FacetOptics bent{1.0 / bend, 0.0};  // an index with its Brewster angle at the bend of `curves`
   const auto integral =
       Hemisphere<kCurves>(slopes, masking, theta_deg, bent, refinement, nullptr, &curves).integrate_zenith();
   std::vector<ColumnMoments> columns;

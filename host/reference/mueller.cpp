@@ -19,7 +19,7 @@ namespace dolp {
 
 namespace {
 
-// 34 digits suffice, although the textbook formulas cancel near grazing, retro direction and critical angle.
+// In the textbook formulas digits cancel near grazing, the retro direction and the critical angle; 34 digits suffice.
 using Real = boost::multiprecision::cpp_bin_float_quad;
 using Complex = boost::multiprecision::cpp_complex_quad;
 using Vector = reference::Vector<Real>;
@@ -27,11 +27,11 @@ template <class Number>
 using Jones = std::array<std::array<Number, 2>, 2>;
 
 constexpr double kMaskingTolerance = 1e-13;
-constexpr double kRetro = 1e-50;  // below this sin^2(2 beta) there is no plane of incidence
-// Below this squared horizontal part of omega_i + omega_r, grooves of every azimuth reflect one beam into the other.
+constexpr double kRetro = 1e-50;  // if sin^2(2 beta) is smaller, the plane of incidence is undefined
+// If the squared length of the horizontal part of omega_i + omega_r is smaller, the directions are mirror directions.
 constexpr double kMirrored = 1e-50;
 constexpr int kMostMuellerBounces = 2000;
-constexpr int kMostInQuad = 24;  // light with more bounces is only a correction and may be in double
+constexpr int kMostInQuad = 24;  // light with more bounces is weak, so it is computed in double
 // The sum over bounces ends if its last kIdleBounces terms together are at most the share kIdleShare of it.
 constexpr int kIdleBounces = 8;
 constexpr double kIdleShare = 1e-14;
@@ -86,8 +86,8 @@ reference::Amplitudes<Number> fresnel_amplitudes(const FacetOptics& constants,
   return {(cos_beta - w) / (cos_beta + w), (n2 * cos_beta - w) / (n2 * cos_beta + w)};
 }
 
-// The columns are the reflected (s, p) amplitudes for an incident s wave and an incident p wave of unit amplitude. The
-// facet's s vector is normal to both beams. In the retro direction any vector in the facet works, because r_p = -r_s.
+// Column 0: (s, p) amplitudes after reflection of an s wave of amplitude 1; column 1: after reflection of a p wave.
+// In the retro direction any vector in the facet may be `facet_s`, because r_p = -r_s.
 Jones<Complex> jones_matrix(const BeamFrame& in, const BeamFrame& out, const reference::Amplitudes<Complex>& r) {
   const Vector normal = cross(in.k, out.k);
   const Vector facet_s = dot(normal, normal) > kRetro ? unit(normal) : in.s;
@@ -105,7 +105,7 @@ Jones<Complex> jones_matrix(const BeamFrame& in, const BeamFrame& out, const ref
   return jones;
 }
 
-// Element (a, b) is half the trace of sigma_a J sigma_b J^+, with the matrices sigma of I, Q, U and V in `basis`.
+// Element (a, b) is half the trace of sigma_a J sigma_b J^+. `basis` holds the matrices sigma of I, Q, U and V.
 template <class Number>
 ReferenceMueller mueller_from_jones(const Jones<Number>& jones) {
   using Matrix = Jones<Number>;
@@ -137,8 +137,8 @@ void add(ReferenceMueller& total, const ReferenceMueller& term) {
   for (std::size_t i = 0; i < 16; ++i) total[i / 4][i % 4] += term[i / 4][i % 4];
 }
 
-/// The plane across the grooves that reflect the beam `in` into the beam `out`. Its horizontal direction u is along the
-/// horizontal part of omega_i + omega_r, or against it, because reflection keeps the component along the groove.
+/// The plane across the grooves that reflect the beam `in` into the beam `out`. The horizontal direction u of the plane
+/// is along the horizontal part of omega_i + omega_r if `sign` is 1, against this part if `sign` is -1.
 struct GroovePlane {
   Vector u, v;
   Real across;        ///< length of the horizontal part of omega_i + omega_r
@@ -153,7 +153,7 @@ struct GroovePlane {
     psi_r = atan2(dot(out.k, u), out.k[2]);
   }
   Vector in_groove(const Vector& a) const { return {dot(a, u), dot(a, v), a[2]}; }
-  /// Half-angle of the groove that reflects one beam into the other with `bounces` bounces, the first one at facet A.
+  /// Half-angle of the groove that reflects `in` into `out` in `bounces` bounces, if the first bounce is at facet A.
   Real gamma(int bounces) const {
     const Real turn = bounces % 2 == 1 ? Real(psi_i + psi_r) : Real(psi_i - psi_r);
     return (boost::math::constants::pi<Real>() - turn) / (2 * bounces);
@@ -179,7 +179,7 @@ Number along(const RealVector<Number>& a, const std::array<Number, 3>& e) {
   return a[0] * e[0] + a[1] * e[1] + a[2] * e[2];
 }
 
-// f^(k) cos(theta_i) cos(theta_r), with k = `bounces`, of the beams that meet facet A first. `Number` is complex.
+// The part of reference_bounces() in one plane, for the beam that meets facet A first. `Number` is a complex type.
 template <class Number>
 ReferenceMueller bounces_in_plane(const reference::Slopes& slopes, const FacetOptics& constants, const BeamFrame& in,
                                   const BeamFrame& out, const GroovePlane& plane, int bounces) {
@@ -208,7 +208,7 @@ ReferenceMueller bounces_in_plane(const reference::Slopes& slopes, const FacetOp
   return scaled_matrix(mueller_from_jones(jones), slopes.facet_density(cotangent * cotangent) * factor);
 }
 
-/// Two beams, and the two groove planes (u along h and against it) in which grooves reflect one into the other.
+/// Two beams, and both planes across grooves that reflect one beam into the other (GroovePlane with `sign` 1 and -1).
 struct GroovePair {
   BeamFrame in, out;
   GroovePlane toward, against;
@@ -225,7 +225,7 @@ struct GroovePair {
     add(total, in_plane(slopes, constants, in, out, against, bounces));
     return total;
   }
-  /// True if no ray can leave at the angle psi_r after `bounces` or more bounces.
+  /// True if rays with `bounces` or more bounces cannot leave at the angle psi_r.
   bool is_beyond(int bounces) const {
     const Real widest = std::max(toward.gamma(bounces), against.gamma(bounces));
     return abs(Real(abs(toward.psi_i) - abs(toward.psi_r))) > 4 * widest;
@@ -264,7 +264,7 @@ BouncesSum reference_all_bounces(const Surface& surface, const FacetOptics& cons
     for (const double value : latest) recent += value;
     if (k >= kIdleBounces && recent <= kIdleShare * sum.matrix[0][0]) return sum;
   }
-  // Bounds the rest of the sum if its terms fall at least like bounces^(-9/8), or by the share 1e-4 per bounce.
+  // The rest of the sum is smaller if term k falls at least like k^(-9/8), or by the share 1e-4 from term to term.
   sum.error = recent * kMostMuellerBounces;
   return sum;
 }

@@ -26,7 +26,6 @@ void require(bool is_met, const std::string& what, double value) {
   if (!is_met) throw InputError("reference: " + what + ", but it is " + std::to_string(value));
 }
 
-// Such conditions fail for NaN, too.
 void check_zenith(double theta_deg) {
   require(theta_deg >= 0.0 && theta_deg <= 90.0, "theta must be in [0, 90] degrees", theta_deg);
 }
@@ -85,7 +84,7 @@ Moments mirror_of(const MomentsRequest& request, const MomentsPoint& point) {
   return m;
 }
 
-/// Responses of the reflected light or, for Response::Of::kDirect, of the direct emission.
+/// Responses: the moments with Chebyshev polynomials instead of the reflectances.
 std::vector<ColumnMoments> responses_of(const MomentsRequest& request, const MomentsPoint& point,
                                         const reference::Slopes& slopes, const reference::Refinement& refinement) {
   const double c0 = request.response->c0;
@@ -115,7 +114,7 @@ Moments moments_of(const MomentsRequest& request, const MomentsPoint& point, con
                : reference::groove_moments(slopes, point.theta_deg, point.index, refinement, sky);
   };
   Moments m = request.sky ? Moments{} : integrate(nullptr);
-  // Each function of the sky needs a separate integration, which computes the moments again.
+  // Integrates once for each function of the sky. Each integration also computes the moments again.
   for (std::size_t k = 0; request.sky && k < request.sky->size(); ++k) {
     const auto column = static_cast<Eigen::Index>(k);
     const reference::SkyFunction sky{[&](double zenith_deg) { return request.sky->at(zenith_deg)[column]; },

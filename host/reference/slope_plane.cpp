@@ -11,17 +11,17 @@ constexpr int kMostSteps = 150;
 constexpr int kPlainSteps = 12;
 // If the integrand has more bends, each is so small that it needs no break point.
 constexpr std::size_t kMostBends = 40;
-// The scan of the slope t has equal steps of log t, and equal steps of 1 / gamma, with the groove's half-angle gamma.
+// The scan of t has kStepsPerDecade steps per decade, and steps of 1 / gamma (gamma: half-angle of the groove).
 constexpr double kStepInverse = 0.04;
 constexpr double kMostInverse = 10.0;
 constexpr int kStepsPerDecade = 16;
 constexpr double kSmallestShare = 1e-7;  // smallest scanned slope, relative to the width of the distribution
-// Integrands may vary in a layer next to chi = 0 or t = 0. If this layer is thinner than kThinLayer, it gets break
-// points whose distances grow by the factor kPlaneLayerGrowth.
+// Near grazing the integrand varies quickly next to chi = 0 and t = 0. If this layer is thinner than kThinLayer, break
+// points are added, at distances that grow by the factor kPlaneLayerGrowth.
 constexpr double kThinLayer = 0.05;
 constexpr double kPlaneLayerGrowth = 8.0;
 
-// The positions between the ascending `points` at which `regime` changes, found by bisection to the last bits.
+// Finds the positions between the ascending `points` at which `regime` changes, by bisection to the last bits.
 std::vector<double> changes(const std::vector<double>& points, const std::function<std::uint64_t(double)>& regime) {
   std::vector<double> found;
   std::uint64_t below = regime(points.front());
@@ -65,7 +65,7 @@ std::vector<double> RegimeScan::chi_breaks(double t) const {
   const int steps = static_cast<int>(exact_steps) + 1;
   std::vector<double> points;
   for (int i = 0; i <= kPlainSteps; ++i) points.push_back(0.5 * pi * i / kPlainSteps);
-  // Equal steps of psi, the angle of the view projected on the plane across the groove: tan(psi) = tan(theta) sin(chi).
+  // Equal steps of psi, with tan(psi) = tan(theta) sin(chi): the zenith of the view in the plane across the groove.
   for (int i = 1; i < steps; ++i) {
     const double psi = theta_rad_ * i / steps;
     points.push_back(std::asin(std::min(1.0, std::tan(psi) * layer)));

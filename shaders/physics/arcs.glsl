@@ -1,5 +1,5 @@
-// Lines split the azimuths [0, pi] at one slope into arcs on which the integrand is smooth. An azimuth phi is stored as
-// its half angle (cos(phi/2), sin(phi/2)), which keeps its digits at 0 and pi and needs no arc cosine.
+// Splits the azimuths [0, pi] at one slope into arcs on which the integrand is smooth. An azimuth phi is stored as its
+// half angle (cos(phi/2), sin(phi/2)): this pair is accurate near 0 and pi, and needs no arc cosine.
 
 real2 half_angle(real one_plus_x, real one_minus_x) {
   return real2(sqrt(clamp(real(0.5) * one_plus_x, real(0.0), real(1.0))),
@@ -24,7 +24,7 @@ real2 clamp_half_angle(real2 phi, real2 from, real2 to) {
 }
 
 // An arc of azimuths with a smooth integrand. A rule node lies at phi = centre + 4 atan(extent * abscissa). The centre
-// may be the middle, the beginning or the end of the arc. The extent is negative if a square root lies at the end.
+// is the middle or an end of the arc. `extent` is negative if the integrand has a square root at the end of the arc.
 struct Arc {
   real2 from;
   real2 to;
@@ -32,11 +32,11 @@ struct Arc {
   real centre_sin;
   real extent;
   real quarter;     // tan of a quarter of the arc's length
-  real origin;      // phi where the rule is symmetric (0 or pi) or has a cluster; else phi at the beginning of the arc
+  real origin;      // phi of the centre if the centre is an end of the arc; else phi of the beginning of the arc
   real span;        // length in phi
   int section;      // section of the rule nodes, kSection*
   bool is_critical; // true if total reflection begins at or near the centre
-  real resolution;  // relative width of the smoothed square root at the centre, see critical_arc(); or 0
+  real resolution;  // see critical_arc(); 0 if the arc has no square root that absorption smooths
 };
 
 Arc make_arc(real2 from, real2 to) {
@@ -54,7 +54,7 @@ Arc make_arc(real2 from, real2 to) {
   arc.is_critical = false;
   arc.resolution = real(0.0);
   arc.span = real(4.0) * arc_tangent(arc.quarter);
-  // The integrand is even about 0 and pi. An arc that begins or ends there takes half of a symmetric rule.
+  // The integrand is symmetric about 0 and pi. So an arc that begins at 0 or ends at pi uses half of a symmetric rule.
   bool is_half = starts_at_0 || ends_at_pi;
   bool is_circle = starts_at_0 && ends_at_pi;
   arc.origin = choose(is_half, choose(starts_at_0, real(0.0), kPi), phase(from));
@@ -66,7 +66,7 @@ Arc make_arc(real2 from, real2 to) {
   return arc;
 }
 
-// If `has_root`, clusters nodes at the beginning (if `at_end`, the end) of the arc, where the integrand is singular.
+// If `has_root`, clusters nodes where the integrand is singular: at the end of the arc if `at_end`, else at the start.
 Arc with_root(Arc arc, bool at_end, bool has_root) {
   real2 root = choose(at_end, arc.to, arc.from);
   arc.centre_cos = choose(has_root, cosine(root), arc.centre_cos);
@@ -84,8 +84,8 @@ struct Azimuth {
   real weight;
 };
 
-// Moves `node` of an arc's rule if absorption smooths the square root at the centre of the arc. Then the distances of
-// nodes from the centre grow geometrically beyond Arc::resolution.
+// Moves the node of a rule, if Arc::resolution is not 0: absorption smooths the square root at the centre of the arc.
+// After the move, the distances of the nodes from the centre grow geometrically beyond the resolution.
 real2 place_on_arc(Arc arc, real2 node) {
   if (!kTotalReflection) return node;
   real scale = real(1.0) / sqrt(arc.resolution);  // sinh(a)
@@ -118,7 +118,7 @@ struct SplitLines {
   real2 critical;  // beginning of total reflection, cos(beta) = critical_cos: a square root on both sides
 };
 
-// The azimuth with cos(phi) = level / st, as a half angle.
+// Half angle of the azimuth phi with cos(phi) = level / st.
 real2 line_at(real level, real st) { return half_angle((st + level) / st, (st - level) / st); }
 
 SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines lines) {
@@ -132,8 +132,8 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
     lines.arcs = 2;
   }
   if (kMasking == DOLP_MASKING_INTEGRAL) {
-    // `integral` masking has a kink at the line b = pi/2, where the limit b of an integral (README.md beside this file,
-    // section 2) reaches pi/2. On this line theta_r = pi/4 + alpha/2, so cos^2(theta_r) = (1 - sin(alpha)) / 2.
+    // G1 of `integral` masking is an integral with the upper limit b (README.md beside this file, section 2). On the
+    // line b = pi/2, G1 is not smooth. There theta_r = pi/4 + alpha/2, so cos^2(theta_r) = (1 - sin(alpha)) / 2.
     real sec = sqrt(sec2);
     real cos_limit = sqrt(real(0.5) / (sec * (sec + t)));
     bool is_beyond = cos_limit < c;
@@ -145,7 +145,7 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
     lines.leaving = 3;
   }
   if (kMasking == DOLP_MASKING_V_CAVITY) {
-    // For t < 1, G = 1 between the line `shaded`, where 2 cos(alpha) cos(theta) = cos(beta), and the line where 2
+    // For t < 1, G = 1 between two lines. On the first, `shaded`, 2 cos(alpha) cos(theta) = cos(beta). On the second, 2
     // cos(alpha) cos(theta_r) = cos(beta). The masking G1 of the direct emission has a kink at `shaded`.
     real2 shaded = line_at(c, st);
     real level = c * (real(3.0) * t * t - real(1.0)) / (real(3.0) - t * t);
@@ -168,10 +168,10 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
   return lines;
 }
 
-// A split line of a groove: an azimuth at which the number of bounces, or the formula for the width of the beam,
-// changes. psi is the zenith of the direction theta, projected into the plane across the groove: tan(psi) = tan(theta)
-// cos(phi). The lines are at psi = +-gamma, where gamma = pi/2 - alpha, and, for some integers j, at psi = pi/2 - j
-// gamma and psi = pi - (2j + 1) gamma.
+// A split line of a groove: the azimuth phi with tan(psi) = tan(theta) cos(phi). psi is the zenith of the ray in the
+// plane across the groove. With gamma = pi/2 - alpha, the number of bounces changes at psi = pi/2 - j gamma and at
+// psi = pi - (2j + 1) gamma for some integers j, and the width of the beam has another formula beyond psi = gamma. At
+// psi = -gamma facets turn away from the ray.
 real2 groove_line(ThetaNode theta, real cos_psi, real sin_psi) {
   return line_at(theta.c * sin_psi / max(cos_psi, real(1e-30)), max(theta.s, real(1e-30)));
 }

@@ -6,15 +6,15 @@ struct Slope {
   int most_azimuths;
   bool is_coarse;
   SkyPlace sky;
-  real weight[DOLP_WIDTH];  // weight of this slope in the columns, for each entry of the kernel row
+  real weight[DOLP_WIDTH];  // factor of this slope in the columns (columns.glsl), for each entry of the row
 };
 
-// `member` and `columns` have an element for each entry of a row.
+// Sums over azimuths. `member` holds (r_i, r_q, albedo, deficit) for each entry of a row.
 struct AzimuthSums {
   real4 member[DOLP_WIDTH];
-  Columns columns[DOLP_WIDTH];  // already contain the columns of preceding slopes and arcs
-  real2 direct;       // direct emission of the facets as (I, Q), before smith masking
-  real behind;        // MomentsNode::behind
+  Columns columns[DOLP_WIDTH];  // include the sums over the slopes and arcs before this one
+  real2 direct;       // (I, Q) of the direct emission, not yet multiplied by smith masking
+  real behind;        // see MomentsNode::behind
   real evaluations;
 };
 
@@ -30,8 +30,8 @@ AzimuthSums no_azimuths(Columns columns[DOLP_WIDTH]) {
   return sums;
 }
 
-// sin(theta_r). If q is just above 3/2 (is_diverging), G varies so close to the zenith that 1 - cos(theta_r) has lost
-// its digits. The sine is then computed as the length of the ray's horizontal part.
+// sin(theta_r). If q is just above 3/2 (is_diverging), G varies even where 1 - cos(theta_r) has lost its digits. Then
+// the sine is the length of the horizontal part of the reflected ray.
 real sine_of_ray(ThetaNode theta, Row row, Facet f, real t, Azimuth at) {
   if (!is_diverging(row.shape[0])) return sqrt((real(1.0) - f.cos_r) * (real(1.0) + f.cos_r));
   real turned = real(2.0) * f.e * t / (real(1.0) + t * t);
@@ -40,7 +40,7 @@ real sine_of_ray(ThetaNode theta, Row row, Facet f, real t, Azimuth at) {
   return sqrt(along * along + across * across);
 }
 
-// The two factors that multiply the function of a column: in the sum like r_i, and in the sum like r_q.
+// Factors of a column's function (columns.glsl) in the two sums of the column, which correspond to r_i and r_q.
 real2 column_factors(Slope slope, Facet f) {
   if (kColumns == DOLP_COLUMNS_SKY) return real2(f.m00, f.m01);
   real sky = (kColumns == DOLP_COLUMNS_SKY_RESPONSE) ? sky_function(slope.sky, 0, f.cos_r) : real(1.0);
@@ -83,15 +83,15 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, S
   return sums;
 }
 
-// The azimuth at which theta_r, which increases with phi, reaches a corner (kink) of the sky.
+// The azimuth at which the zenith theta_r of the reflected ray reaches a corner (kink) of the sky.
 real2 corner_line(ThetaNode theta, Slope slope, int corner) {
   real t = slope.t;
   real level = real(0.5) * (cos_of_corner(slope.sky, corner) + theta.c) * (real(1.0) + t * t) - theta.c;
   return line_at(level, max(theta.s * t, real(1e-30)));
 }
 
-// Sums over the azimuths from 0 to pi. A zone lies between two neighbouring split lines. The line at which total
-// reflection begins divides a zone into two arcs, and corners (kinks) of a sky divide the arcs further.
+// Sums over the azimuths from 0 to pi. Split lines divide the azimuths into zones. The line at which total reflection
+// begins divides a zone into two arcs, and corners (kinks) of a sky divide the arcs further.
 AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope, SplitLines lines,
                          Columns columns[DOLP_WIDTH]) {
   AzimuthSums sums = no_azimuths(columns);
@@ -144,8 +144,8 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
   return sums;
 }
 
-// Sums over all facets of a slope. If the ray that a facet reflects does not leave the surface, the deficit gets the
-// projection e of the facet; e is negative if the facet faces away. From a groove every ray leaves.
+// Sums over all facets of a slope. Facets whose reflected ray does not leave the surface add their projection e to the
+// deficit. e is negative if a facet faces away from the direction theta. From a groove every ray leaves.
 AzimuthSums slope_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope,
                        Columns columns[DOLP_WIDTH]) {
   SplitLines lines = split_lines(rule, theta, index, slope.t, slope.has_split_line, slope.digits);
@@ -163,7 +163,7 @@ struct SlopeResult {
   Columns columns;
 };
 
-// slopes.comp serves only maskings that do not depend on the slope distribution, so the row is a dummy.
+// The computation of slopes.comp. Its maskings do not depend on the slope distribution, so the row is a dummy.
 SlopeResult azimuths_of(RuleNode rule, ThetaNode theta, IndexNode index, SlopeNode slope_node) {
   Slope slope;
   slope.t = slope_node.t;

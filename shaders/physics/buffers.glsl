@@ -1,4 +1,4 @@
-// The data that the kernel source reads in GLSL. In C++ they are members of the class that includes the kernel source.
+// Constants and buffers of the kernel source in GLSL. In C++ they are members of the class that includes the source.
 layout(local_size_x_id = DOLP_SPEC_LOCAL_SIZE) in;
 layout(constant_id = DOLP_SPEC_DISTRIBUTION) const uint kDistribution = DOLP_CAUCHY;
 layout(constant_id = DOLP_SPEC_MASKING) const uint kMasking = DOLP_MASKING_NONE;
@@ -24,8 +24,8 @@ layout(push_constant) uniform PushConstants { DOLP_PUSH_CONSTANTS } push;
 layout(std430, binding = DOLP_BINDING_SHAPES) readonly buffer Shapes { ShapeNode shapes[]; };
 layout(std430, binding = DOLP_BINDING_MASKING_TABLE) writeonly buffer MaskingTable { real4 masking_table[]; };
 
-// Data that neighbouring invocations read at different positions are in texel buffers. Reads from a storage buffer are
-// slow on processors without AVX-512: they loop over the lanes and wait for a store to the stack in each turn.
+// Texel buffers hold the data that neighbouring invocations read at different positions. From a storage buffer,
+// processors without AVX-512 read such data slowly: one lane after the other.
 #ifdef DOLP_DOUBLE
 layout(binding = DOLP_BINDING_RULE_NODES) uniform usamplerBuffer rule_nodes;
 layout(binding = DOLP_BINDING_MASKING_NODES) uniform usamplerBuffer masking_nodes;

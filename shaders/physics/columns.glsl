@@ -1,9 +1,9 @@
-// Columns: sums over the facets in addition to the moments. Their kinds are
-//   sky: the moments with functions g of the zenith of the reflected ray as factors, |g| <= 1. They give what a sky
-//     that changes with the zenith adds to a uniform sky (README.md beside this file, section 11).
-//   responses: the moments with Chebyshev polynomials of the local angle of incidence instead of the reflectances.
-//     The moments of every index are weighted sums of responses (section 8). There are responses of the reflected
-//     light, of the reflected light times the first function of a sky, and of the direct emission.
+// Columns are sums over the facets, like r_i and r_q but with another integrand. A column is of one of two kinds:
+//   sky: the integrand of r_i or r_q times a function g of the zenith theta_r of the reflected ray, |g| <= 1. These
+//     columns are needed for a sky that changes with the zenith (README.md beside this file, section 11).
+//   response: Chebyshev polynomials of the angle of incidence replace the reflectances in the integrand. The moments of
+//     any index are weighted sums of responses (section 8). There are responses of the reflected light, of the
+//     reflected light times the first function of a sky, and of the direct emission.
 // A function g is stored as straight lines over u = sqrt(1 - cos(theta_r)), in cells of equal width. A cell stores the
 // value at its start and the change over the cell (host/compute/plan/sky_table.cpp).
 
@@ -11,7 +11,7 @@
 struct SkyPlace {
   int cells;    // number of cells of each function's table
   int start;    // position of the first cell
-  int corners;  // number of corners (kinks over the zenith) of the sky
+  int corners;  // number of zeniths at which the sky has a corner (kink)
 };
 
 #if DOLP_MOST_COLUMNS > 0

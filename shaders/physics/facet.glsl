@@ -1,16 +1,14 @@
-// One facet: the integrand of the moments in slope space (README.md beside this file, sections 1 to 3).
-//
-// A facet has the slope t and the azimuth phi, measured from the plane of incidence. Let c = cos(theta),
-// s = sin(theta), x = cos(phi), r = cos(alpha) = 1 / sqrt(1 + t^2), r2 = r^2 and e = c + s t x. Facets from phi = 0 to
-// phi_m have reflected rays that leave the surface. Then
-//   rho_I c = integral P(t) t dt * 2 integral_0^phi_m e G M00 dphi,  rho_Q c with M01,
-//   cos(beta) = r e,   cos(theta_r) = 2 r2 e - c,
-//   sin^2(beta)             = r2 [(c t x - s)^2 + t^2 (1 - x^2)],
-//   sin^2(beta) cos(2 eta)  = r2 [(c t x - s)^2 - t^2 (1 - x^2)],
+// One facet: the integrand of the moments (README.md beside this file, sections 1 to 3).
+// A facet has the slope t and the azimuth phi, measured from the plane of incidence. Let c = cos(theta), s =
+// sin(theta), x = cos(phi) and r = cos(alpha) = 1 / sqrt(1 + t^2). The projected area of the facet toward theta is e =
+// c + s t x, per area of its base. The reflected ray leaves the surface for phi from 0 to phi_m. Then
+//   r_i = rho_I c = integral P(t) t dt * 2 integral_0^phi_m e G M00 dphi,   r_q = rho_Q c with M01 instead of M00,
+//   cos(beta) = r e,   cos(theta_r) = 2 r^2 e - c,
+//   sin^2(beta)             = r^2 [(c t x - s)^2 + t^2 (1 - x^2)],
+//   sin^2(beta) cos(2 eta)  = r^2 [(c t x - s)^2 - t^2 (1 - x^2)],
 //   M00 = R_s - D sin^2(beta) / 2,   M01 = D sin^2(beta) cos(2 eta) / 2,   D = (R_s - R_p) / sin^2(beta).
-//
-// Moments and their sums are vectors (r_i, r_q, albedo, deficit). The deficit is the part of the beam that does not
-// leave: it is masked, absorbed, or reflected below the horizon.
+// The code stores moments and their sums as vectors (r_i, r_q, albedo, deficit). The deficit is the part of the beam
+// that does not leave the surface: the light is masked, absorbed, or reflected below the horizon.
 
 struct Facet {
   real e;         // projected area toward theta divided by the area of the facet's base
@@ -47,7 +45,7 @@ Facet facet(ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
   return result;
 }
 
-// The visible part e G of the projection e, and the hidden part e (1 - G): e minus one part would lose digits.
+// The projection e of a facet in two parts: visible e G, hidden e (1 - G). A difference of e and one part loses digits.
 struct Projection {
   real visible;
   real hidden;
@@ -57,13 +55,13 @@ real4 reflected(Facet f, Projection part) {
   return real4(part.visible * f.m00, part.visible * f.m01, part.visible, part.hidden + part.visible * f.absorbed);
 }
 
-// The part of the projection e whose emission reaches the viewer directly; v-cavity masking toward theta is included.
+// The part of the projection e that the viewer at theta sees: e G1 with v-cavity masking, else e.
 real seen_directly(ThetaNode theta, Facet f) {
   return (kMasking == DOLP_MASKING_V_CAVITY) ? min(f.e, real(2.0) * theta.c) : f.e;
 }
 
-// Direct emission (I, Q) per radian of azimuth: e G1 (1 - M00) and -e G1 M01. G1 is the masking toward the viewer at
-// theta; moments.glsl applies it later for smith masking.
+// Direct emission (I, Q) per radian of azimuth: e G1 (1 - M00) and -e G1 M01, with the masking G1 toward the viewer at
+// theta. With smith masking the factor G1 is still missing here; moments.glsl multiplies by it later.
 real2 emitted(ThetaNode theta, Facet f) {
   real visible = seen_directly(theta, f);
   return real2(visible * f.absorbed, -visible * f.m01);

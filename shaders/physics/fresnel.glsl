@@ -1,5 +1,4 @@
 // Fresnel reflection for N = n + ik, in forms without cancellation.
-//
 // With c = cos(beta), w = sqrt(N^2 - sin^2 beta) = sqrt((N^2 - 1) + c^2), B = |c + w|^2, a = |N^2 - 1|^2 / B:
 //   R_s = |c - w|^2 / B = a / B                      because (c - w)(c + w) = 1 - N^2
 //   (R_s - R_p) / sin^2(beta) = 4 c Re(w) a / |N^2 c + w|^2
@@ -22,7 +21,7 @@ real2 sqrt_upper(real re, real im) {
   return real2(re >= real(0.0) ? larger : smaller, re >= real(0.0) ? smaller : larger);
 }
 
-// Arguments: N^2 - 1, cos(beta), w, c + w (`s_sum`) and N^2 c + w (`p_sum`).
+// The formulas of the head of this file. `n2m1` is N^2 - 1, `s_sum` is c + w, and `p_sum` is N^2 c + w.
 Fresnel fresnel_of_sums(real2 n2m1, real cos_beta, real2 w, real2 s_sum, real2 p_sum) {
   // Without the lower limit, N = 1 at grazing incidence would give 0/0 if the squares underflow.
   real inverse_b = real(1.0) / max(s_sum.x * s_sum.x + s_sum.y * s_sum.y, kSmallestSquare);
@@ -43,8 +42,8 @@ Fresnel fresnel(IndexNode index, real cos_beta) {
   return fresnel_of_sums(real2(index.n2m1_re, index.n2m1_im), cos_beta, w, s_sum, p_sum);
 }
 
-// Reads R_s, 1 - R_s and (R_s - R_p) / sin^2(beta) of films or of measured reflectances from their table: cubics over
-// sqrt(cos(beta)) in cells of equal width (host/compute/plan/reflectance_curve.cpp).
+// Reads R_s, 1 - R_s and (R_s - R_p) / sin^2(beta) of films or of measured reflectances from a table. Each cell of the
+// table has cubics in sqrt(cos(beta)) (host/compute/plan/reflectance_curve.cpp).
 Fresnel reflectance_at(IndexNode index, real cos_beta) {
   int cells = int(index.curve_cells);
   real position = sqrt(cos_beta) * real(cells);

@@ -1,31 +1,32 @@
-// All bounces of a ray in a V-groove (README.md beside this file, section 3). The two facets of the groove have the
-// slope t and meet at the apex. Their normals are (t u + z) cos(alpha) and (-t u + z) cos(alpha) with u = (cos(phi),
-// sin(phi), 0). Let gamma = pi/2 - alpha, c = cos(theta), s = sin(theta) and x = cos(phi).
-//
-// Unfolded about its apex, the groove is a fan of facets at the angles gamma, 3 gamma, 5 gamma, ... from the vertical,
-// and the ray is a straight line. In the plane across the groove, the unit vector of the ray has the length
-// a = sqrt(c^2 + (s x)^2) and the zenith psi; along the groove it has the component b = s sin(phi). The ray meets facet
-// k at the angle chi_k = psi + (2k - 1) gamma. With (X_k, Y_k) = a (sin(chi_k), cos(chi_k)):
-//   cos(beta_k) = X_k,   the plane of incidence is turned by eta_k, (cos(eta_k), sin(eta_k)) ~ (Y_k, b X_k).
-// If the fields are mirrored at each facet, a bounce is Fresnel's matrix between two turns by eta_k. The beam that
-// meets the facet of slope t first has the width min(e, 2c). Let X_0 = max(a sin(psi - gamma), 0). Then the share
-// (min(X_k, X_1) - X_0) / (X_1 - X_0) of the beam goes on to bounce k.
+// Follows a ray through all its bounces in a V-groove (README.md beside this file, section 3).
+// The two facets of the groove have the slope t = tan(alpha) and meet at the apex. The horizontal direction across the
+// groove has the azimuth phi. Let gamma = pi/2 - alpha, c = cos(theta), s = sin(theta) and x = cos(phi). The unit
+// vector of the ray has the component b = s sin(phi) along the groove. Its projection onto the plane across the groove
+// has the length a = sqrt(c^2 + (s x)^2) and the zenith psi.
+// Mirror the groove at each facet that the ray meets. Then the ray becomes a straight line, and the facets become a fan
+// at the angles gamma, 3 gamma, 5 gamma, ... from the vertical. The ray meets facet k at the angle
+// chi_k = psi + (2k - 1) gamma. With X_k = a sin(chi_k) and Y_k = a cos(chi_k):
+//   cos(beta_k) = X_k is the cosine of the angle of incidence,
+//   eta_k turns the plane of incidence: (cos(eta_k), sin(eta_k)) is proportional to (Y_k, b X_k).
+// Bounce k multiplies the Stokes vector by Fresnel's matrix between two turns by eta_k. The beam of the rays that meet
+// the facet of slope t first has the width min(c + s t x, 2c). With X_0 = max(a sin(psi - gamma), 0), the share
+// (min(X_k, X_1) - X_0) / (X_1 - X_0) of this beam goes on to bounce k.
 
-// A ray on its way through the fan. Groups of 2, 4, 8 ... bounces in the middle of its path count as one bounce; near
-// the first and last bounce, which may be grazing, groups are smaller (error: host/compute/plan/error_bounds.cpp).
+// The state of a ray in the fan. If a ray has many bounces, a group of 2, 4, 8 ... bounces counts as one. Groups are
+// smaller near the first and the last bounce, which may be grazing (error: host/compute/plan/error_bounds.cpp).
 struct Fan {
   real2 turn;    // (cos, sin) of gamma times `taken`
-  real gamma;    // pi/2 - alpha; gamma, left and slant are set only for steep grooves, see fan()
-  real left;     // number of bounces ahead; (pi/2 - psi) / gamma at first
+  real gamma;    // pi/2 - alpha; fan() sets gamma, left and slant only for steep grooves
+  real left;     // number of bounces ahead; before the first bounce (pi/2 - psi) / gamma
   real done;     // number of bounces behind
-  real slant;    // psi / gamma, at most 1
+  real slant;    // psi / gamma, or 1 if this is larger
   real taken;    // number of bounces in the next group, 2^doublings
   int doublings;
   bool is_steep;
   bool is_black;  // true if the ray has so many bounces that no light is left
 };
 
-// The ray has the vertical component c and the component u across the groove.
+// The state before the first bounce. The ray has the vertical component c and the component u across the groove.
 Fan fan(real t, real c, real u) {
   real r = real(1.0) / sqrt(real(1.0) + t * t);
   Fan f;
@@ -38,7 +39,7 @@ Fan fan(real t, real c, real u) {
   f.doublings = 0;
   f.is_steep = false;
   f.is_black = false;
-  // A ray has at most pi/gamma < pi t + 2 bounces. Devices skip this loop of one turn if no ray needs it, unlike an `if`.
+  // Only steep grooves have more than DOLP_MOST_BOUNCES bounces. Devices skip a loop of one turn, but not an `if`.
   for (bool may_be = t > real(DOLP_MOST_BOUNCES) / kPi; may_be; may_be = false) {
     real to_horizon = arc_tangent(c / max(abs(u), real(1e-30)));
     f.gamma = arc_tangent(real(1.0) / t);
@@ -51,7 +52,7 @@ Fan fan(real t, real c, real u) {
   return f;
 }
 
-// Share of the beam that goes on to the next bounce in a steep groove. Small angles replace their sines.
+// Share of the beam that goes on to the next bounce in a steep groove. For small angles, angles replace their sines.
 real last_share(Fan f) {
   real sum = max(real(1.0) + f.slant, real(1e-30));
   return (real(2.0) * f.left + f.slant - real(1.0)) / sum;
@@ -77,10 +78,11 @@ struct Bounce {
   real m00;
   real m01;
   real absorbed;  // 1 - m00
-  real2 cross;    // r_s r_p*, with the sign for which r_p = r_s at normal incidence
+  real2 cross;    // r_s* r_p, with the sign of r_p for which r_p = r_s at normal incidence
 };
 
-// Reflection by 2^doublings equal facets. r_p / r_s = (cos(beta) w - sin^2(beta)) / (cos(beta) w + sin^2(beta)).
+// Reflection by 2^doublings equal facets, one after the other. For one facet, Bounce::cross is |r_s|^2 r_p / r_s, with
+// r_p / r_s = (cos(beta) w - sin^2(beta)) / (cos(beta) w + sin^2(beta)).
 Bounce bounce(IndexNode index, real cos_beta, real sin2_beta, int doublings) {
   real2 w = sqrt_upper(index.n2m1_re + cos_beta * cos_beta, index.n2m1_im);
   real2 s_sum = real2(cos_beta + w.x, w.y);
@@ -110,7 +112,7 @@ Bounce bounce(IndexNode index, real cos_beta, real sin2_beta, int doublings) {
   return combined;
 }
 
-// Reflects the Stokes vector `stokes`. The plane of incidence is turned by eta; `twice` is (cos, sin) of 2 eta.
+// Turns the Stokes vector `stokes` by eta, reflects it, and turns it back. `twice` is (cos, sin) of 2 eta.
 real4 bounced(Bounce by, real2 twice, real4 stokes) {
   real q = twice.x * stokes.y + twice.y * stokes.z;
   real u = twice.x * stokes.z - twice.y * stokes.y;
@@ -120,13 +122,13 @@ real4 bounced(Bounce by, real2 twice, real4 stokes) {
                twice.y * q_after + twice.x * u_after, by.cross.x * stokes.w - by.cross.y * u);
 }
 
-// (cos, sin) of 2 eta for (cos(eta), sin(eta)) ~ (x, y).
+// (cos, sin) of 2 eta, where (cos(eta), sin(eta)) is proportional to (x, y).
 real2 doubled_angle(real x, real y) {
   real inverse = real(1.0) / max(x * x + y * y, kSmallestSquare);
   return real2((x - y) * (x + y) * inverse, real(2.0) * x * y * inverse);
 }
 
-// Adds angles: `at` is (sin, cos) of the first, `step` (cos, sin) of the second, the result (sin, cos) of the sum.
+// Adds two angles, given as (sin, cos) in `at` and as (cos, sin) in `step`. Returns (sin, cos) of the sum.
 real2 further_on(real2 at, real2 step) {
   return real2(at.x * step.x + at.y * step.y, at.y * step.x - at.x * step.y);
 }
@@ -135,12 +137,13 @@ real2 further_on(real2 at, real2 step) {
 struct GrooveLight {
   real4 moments;    // (r_i, r_q, albedo, deficit), as in facet.glsl
   real2 before;     // r_i and r_q of the part that leaves earlier
-  real cos_before;  // cos(theta_r) of that part
+  real cos_before;  // cos(theta_r) of the part that leaves earlier
   real2 last;       // r_i and r_q of the rest, which leaves after the last bounce
   real cos_last;
 };
 
-// Moments per radian for rays that meet the facet at phi first. After k bounces cos(theta_r) = -a cos(psi + 2 k gamma).
+// Moments per radian of azimuth, for the rays that meet the facet at the azimuth phi first. A ray that leaves after k
+// bounces has cos(theta_r) = -a cos(psi + 2 k gamma), with the symbols of the head of this file.
 GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
   real c = theta.c;
   real u = theta.s * x;
@@ -148,14 +151,14 @@ GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index,
   real inverse_a2 = real(1.0) / max(c * c + u * u, kSmallestSquare);
   Fan f = fan(t, c, u);
   real first = c * f.turn.y + u * f.turn.x;  // X_1
-  // Near the horizon, differences of X would lose digits. So X_(k+1) - X_k is 2 sin(gamma) a cos(psi + 2 k gamma).
+  // X_k - X_1 is a sum of X_(k+1) - X_k = 2 sin(gamma) a cos(psi + 2 k gamma). Subtraction would lose digits.
   real width = (u * f.turn.x > c * f.turn.y) ? real(2.0) * c * f.turn.y : first;
   real inverse_width = real(1.0) / max(width, real(1e-30));
   real rise = real(0.0);        // X_k - X_1
   real2 between = real2(u, c);  // a (sin, cos) of psi + 2 k gamma
   real share = f.is_black ? real(0.0) : real(1.0);  // share of the beam that continues
   real absorbed = real(1.0) - share;
-  // Stokes vectors in the frame of the surface: `natural` has I = 1 and is unpolarised, `polarised` has only Q = 1.
+  // Stokes vectors in the axes of the groove. At first `natural` is unpolarised, `polarised` is Q = 1 of the surface.
   real4 natural = real4(share, real(0.0), real(0.0), real(0.0));
   real2 seen = doubled_angle(-x, c * sin_phi);
   real4 polarised = real4(real(0.0), share * seen.x, share * seen.y, real(0.0));

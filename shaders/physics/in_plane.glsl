@@ -1,10 +1,11 @@
-// G of `integral` and smith masking at one geometry, by Gauss rules over the in-plane slopes tau. It uses no table,
-// because a pBRDF needs G only once or twice. With mu = cot(theta):
-//   smith, height-correlated:  Lambda(theta) = (1 / mu) int_mu^inf p(tau) (tau - mu) dtau.
-//   `integral`:  1 - G1 = int_mu^inf p(tau) min(1, kappa (tau - mu) / sqrt(1 + tau^2)) dtau, eqs. (9)-(12)
-//   of the paper with tau = tan(gamma). masking.glsl defines kappa and the slope tb at which the minimum switches.
-// The rules run over X = asinh(tau / scale). At large X, p of the cauchy is a power law, and the rest of the integral
-// has a closed form.
+// Computes G of `integral` and smith masking for one pair of directions, without a masking table: a pBRDF needs G only
+// once or twice. Gauss rules integrate over tau, the slope of a facet in the plane of incidence. Let p(tau) be the
+// density of these slopes, mu = cot(theta), and kappa = sqrt(1 + t^2) / (mu + t) for the facet slope t. Then
+//   smith, height-correlated:  Lambda(theta) = (1 / mu) int_mu^inf p(tau) (tau - mu) dtau
+//   `integral`:  1 - G1 = int_mu^inf p(tau) min(1, kappa (tau - mu) / sqrt(1 + tau^2)) dtau
+// The second formula is eqs. (9)-(12) of the paper with tau = tan(gamma). The minimum is 1 for tau > tb (masking.glsl).
+// The variable of the rules is X = asinh(tau / scale). For steep slopes p of the cauchy is a power law, so the rest of
+// the integral has a closed form.
 
 #ifdef DOLP_DOUBLE
 CONST int kInPlaneOrder = 16;  // order of the Gauss rule on a panel, whose length in X is at most 1
@@ -18,7 +19,7 @@ CONST real kSmallestSine = real(1e-18);
 CONST real kLargestSwitch = real(1e20);  // upper limit of tb; hardly any slope lies beyond it
 
 CONST uint kWeightOne = 0u;
-CONST uint kWeightVisible = 1u;  // tau - mu; for `integral` divided by sqrt(1 + tau^2)
+CONST uint kWeightVisible = 1u;  // weight tau - mu for smith, (tau - mu) / sqrt(1 + tau^2) for `integral`
 
 real in_plane_end(ShapeNode shape) { return min(shape.cut, kPowerLawSlope * max(shape.m, real(1.0))); }
 
@@ -43,7 +44,7 @@ real in_plane_sum(ShapeNode shape, uint weight, real mu, real from, real to) {
   return sum * length * shape.scale;
 }
 
-// Integral over all slopes above `from`, where p ~ tau^(1 - 2q). For the Gaussian the integral counts as 0.
+// Integral of p times `weight` over all slopes above `from`, where p ~ tau^(1 - 2q). For the gaussian it counts as 0.
 real power_law_sum(ShapeNode shape, uint weight, real mu, real from) {
   if (kDistribution == DOLP_GAUSSIAN) return real(0.0);
   real a = real(2.0) * shape.q_minus_1;
@@ -58,7 +59,7 @@ real in_plane_beyond(ShapeNode shape, uint weight, real mu, real from) {
   return in_plane_sum(shape, weight, mu, from, end) + power_law_sum(shape, weight, mu, max(from, end));
 }
 
-// Smith's Lambda of a direction. At 90 degrees Lambda is so large that G is 0.
+// Smith's Lambda for one direction. At 90 degrees Lambda is so large that G is 0.
 real in_plane_lambda(ShapeNode shape, real cos_theta, real sin_theta) {
   real mu = max(cos_theta / max(sin_theta, kSmallestSine), real(1e-30));
   return in_plane_beyond(shape, kWeightVisible, mu, mu) / mu;

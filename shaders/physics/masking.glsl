@@ -1,13 +1,14 @@
-// Geometric attenuation G (README.md beside this file, section 2). v-cavity has a closed form. `integral` and smith use
-// a table of one-dimensional integrals of the in-plane slope density p, one table per shape.
-// The integrals are Pt(x) = int_x^inf p, C(x) = int_x^inf g p and l(x) = int_x^inf g(tau) p(tau) (tau - x) dtau, where
-// g = 1 for smith and 1 / sqrt(1 + tau^2) for `integral`. Their derivatives are l' = -C, C' = -g p and Pt' = -p. With
-// mu = cot(theta):
-//   smith, height-correlated:  G = 1 / (1 + Lambda(theta) + Lambda(theta_r)),  Lambda = l(mu) / mu.
+// Geometric attenuation G by the maskings `integral` and smith (README.md beside this file, sections 2 and 8). Each
+// slope distribution has a table of integrals of p(tau), the density of the slopes tau in the plane of incidence. With
+// g = 1 for smith and g = 1 / sqrt(1 + tau^2) for `integral`, the integrals are
+//   Pt(x) = int_x^inf p dtau,   C(x) = int_x^inf g p dtau,   l(x) = int_x^inf g p (tau - x) dtau.
+// The masking follows from these integrals. Let mu = cot(theta), and let t be the slope of the facet.
+//   smith, height-correlated:  G = 1 / (1 + Lambda(theta) + Lambda(theta_r)),  Lambda(theta) = l(mu) / mu.
 //   `integral`, eqs. (9)-(12) of the paper, for kappa = sqrt(1 + t^2) / (mu + t) and d = (1 - mu^2) - 2 mu t:
-//     d <= 0:  1 - G1 = kappa l(mu)                                 (the limit b of the second integral is pi/2)
+//     d <= 0:  1 - G1 = kappa l(mu)
 //     d > 0:   1 - G1 = kappa [l(mu) - l(tb) - (tb - mu) C(tb)] + Pt(tb),   tb = (t (1 - mu^2) + 2 mu) / d.
-// A table holds (l, C, Pt, p) at the nodes v = 1 + tau / table_scale = 2^octave (1 + cell / 2^kCellBits).
+// A table holds (l, C, Pt, p) at nodes of the variable v = 1 + tau / table_scale. Node number `cell` of an octave lies
+// at v = 2^octave (1 + cell / 2^kCellBits).
 
 #ifdef DOLP_DOUBLE
 CONST uint kCellBits = DOLP_MASKING_CELL_BITS_DOUBLE;
@@ -18,17 +19,17 @@ CONST uint kMaskingNodes = DOLP_MASKING_NODES(kCellBits);
 CONST uint kUnusedBits = 23u - kCellBits;
 CONST uint kFirstNodeBits = 0x3f800000u >> kUnusedBits;  // exponent and leading mantissa bits of v = 1.0f
 
-// The float v has the number of the node in its exponent and the first bits of its mantissa.
+// v of a node. The bits of the node's number are the exponent and the first mantissa bits of v, less those of 1.0f.
 real masking_node_v(uint node) { return real(uintBitsToFloat((node + kFirstNodeBits) << kUnusedBits)); }
 
 real masking_node_tau(ShapeNode shape, uint node) { return (masking_node_v(node) - real(1.0)) * shape.table_scale; }
 
-// The factor g of the integrals.
+// The factor g of the integrals in the head of this file.
 real masking_weight(real tau) {
   return (kMasking == DOLP_MASKING_SMITH) ? real(1.0) : real(1.0) / sqrt(real(1.0) + tau * tau);
 }
 
-// -p'/p is marginal_decay times marginal_decay_factor; the factor depends only on the shape. -g'/g is weight_decay.
+// Relative decrease of p and g: -p'/p is marginal_decay() times marginal_decay_factor(), and -g'/g is weight_decay().
 real marginal_decay(ShapeNode shape, real tau) {
   real u = tau / shape.m;
   if (kDistribution == DOLP_GAUSSIAN) return real(2.0) * u / shape.m;
@@ -41,8 +42,8 @@ real weight_decay(real tau) {
   return (kMasking == DOLP_MASKING_SMITH) ? real(0.0) : tau / (real(1.0) + tau * tau);
 }
 
-// The cell of a table that contains tau. In the quintic Hermite interpolation between the ends of the cell, f are the
-// weights of the values, d and e the weights of the first and second derivatives.
+// The cell of a table that contains tau, and weights for the quintic Hermite interpolation in this cell: f of the
+// values, d of the first derivatives, e of the second derivatives, at the start (0) and at the end (1) of the cell.
 struct TableCell {
   uint node;  // the last node at or before tau
   real f0;
@@ -51,7 +52,7 @@ struct TableCell {
   real d1;
   real e0;
   real e1;
-  real g0;  // weight g at the ends
+  real g0;  // the factor g at the ends
   real g1;
 };
 
@@ -79,7 +80,7 @@ TableCell table_cell(ShapeNode shape, real tau) {
   return cell;
 }
 
-// l at the tau of `cell`, from l, l' = -C and l'' = g p at both ends. `table` is the first node of the table.
+// Interpolates l from l, l' = -C and l'' = g p at both ends of the cell. `table` is the position of the first node.
 real masking_height(TableCell cell, uint table) {
   real4 n0 = masking_node(table + cell.node);
   real4 n1 = masking_node(table + cell.node + 1u);
@@ -113,14 +114,14 @@ ShadowRange shadow_range(ShapeNode shape, real cos_theta, real sin_theta, real t
   return range;
 }
 
-// 1 - G1 is kappa l(mu) plus, if d > 0 (head of this file), the term Pt(tb) - kappa [l(tb) + (tb - mu) C(tb)]. This
-// term is a sum of these factors times values of the table at both ends of the cell that contains tb.
+// For d > 0 (head of this file), 1 - G1 is kappa l(mu) plus the term Pt(tb) - kappa [l(tb) + (tb - mu) C(tb)]. These
+// factors give the second term: multiplied by l, C, p and Pt at both ends of the cell that contains tb, and added up.
 struct LimitTerms {
   real l0;
   real l1;
   real c0;
   real c1;
-  real p0;  // p0 and p1 are factors of p; decay0 and decay1 are factors of p times marginal_decay_factor
+  real p0;  // p has the factor p0 + marginal_decay_factor() * decay0 at the start of the cell
   real p1;
   real decay0;
   real decay1;

@@ -1,8 +1,8 @@
-// Builds the table of one shape from its far end inwards. All terms are positive, so no digits are lost.
+// Builds a masking table (masking.glsl) from its far end inwards. All terms are positive, so no digits are lost.
 
 CONST int kTableOrder = 4;  // Gauss order; across a cell v = 1 + tau / table_scale grows by a factor of at most 9/8
 
-// The contributions of the cell to l, C and Pt; the last component is p(tau0). `beyond` is (l, C, Pt, p) at tau1.
+// Contributions of the cell from tau0 to tau1 to l, C and Pt, and p(tau0). `beyond` is (l, C, Pt, p) at tau1.
 real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {
   real h = tau1 - tau0;
   real height = real(0.0);
@@ -21,8 +21,7 @@ real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {
   return real4(h * beyond.y + height, first, probability, marginal_density(shape, tau0));
 }
 
-// (l, C, Pt, p) at the end of the table: by the power law p ~ tau^(1-2q) of the cauchy. For the gaussian, l = C = Pt =
-// 0.
+// (l, C, Pt, p) at the end of the table: for the cauchy by the power law p ~ tau^(1-2q), for the gaussian (0, 0, 0, p).
 real4 masking_table_end(ShapeNode shape, real tau) {
   real p = marginal_density(shape, tau);
   if (kDistribution == DOLP_GAUSSIAN) return real4(real(0.0), real(0.0), real(0.0), p);
@@ -33,7 +32,7 @@ real4 masking_table_end(ShapeNode shape, real tau) {
   return real4(tail * tau * weight / (a + real(1.0)), tail * a * weight / (a + real(1.0)), tail, p);
 }
 
-// `table` is the first node. Heavy tails add hundreds of nearly equal terms, so sums are compensated (Kahan 1965).
+// Heavy tails add hundreds of nearly equal terms, so sums are compensated (Kahan 1965). `table`: position of node 0.
 void build_masking_table(ShapeNode shape, uint table) {
   real tau1 = masking_node_tau(shape, kMaskingNodes - 1u);
   real4 tails = masking_table_end(shape, tau1);

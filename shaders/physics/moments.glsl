@@ -1,6 +1,6 @@
-// The moments of a row of entries. Each piece of the slope axis has a Gauss rule over the slopes, with sums over the
-// azimuths at each slope. Rules of two orders compute every sum. The finer sum is the result; its difference from the
-// coarser sum bounds the error (host/compute/plan/error_bounds.cpp).
+// Computes the moments of a row of entries (row.glsl) on one piece of the slope axis: a Gauss rule over the slopes,
+// with a sum over the azimuths at each slope. A finer and a coarser rule compute each moment. The finer rule gives the
+// result; the difference between both gives the error bound (host/compute/plan/error_bounds.cpp).
 
 CONST real kNearRoot = real(0.2);
 
@@ -25,7 +25,7 @@ Piece make_piece(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task 
   piece.root_at_a = task.root_at_start;
   bool ends_before_cut = b < shape.cut;
   piece.root_at_b = ends_before_cut && task.root_at_end;
-  // A square root outside the piece counts as a root at an end if it is nearer than a small part of the piece's length.
+  // A square root in a neighbouring piece counts as a root at an end, if it is nearer than kNearRoot times the length.
   real end = piece.start + piece.extent;
   real before = asinh_real(task.before / shape.scale);
   bool is_near_a = piece.start - before < kNearRoot * piece.extent;
@@ -82,7 +82,7 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
   for (int g = 0; g < DOLP_WIDTH; ++g) mass[g] = real(0.0);
   int fewer = min(coarse_order(piece.order), largest_order());
   int order = is_coarse ? fewer : piece.order;
-  if (task.start >= shape.cut) order = 0;  // the piece lies beyond the cut of the row
+  if (task.start >= shape.cut) order = 0;  // the piece lies beyond the cut
   real all = weight_of_shape(theta, shape);
   int first_node = rule_offset(kSectionGauss, order);
   for (int i = 0; i < order; ++i) {
@@ -122,7 +122,7 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
     }
     sums.evaluations += azimuths.evaluations;
   }
-  // The share of facets on the piece is known exactly. Scaling the sums to it cancels the rule's error in the density.
+  // The exact share of facets on the piece, divided by the share that the rule gives, corrects the sums.
   for (int g = 0; g < DOLP_WIDTH; ++g) {
     real ratio = choose(mass[g] > real(0.0), piece.mass[g] / mass[g], real(1.0));
     sums.member[g] *= ratio;
@@ -137,7 +137,7 @@ struct RowMoments {
   MomentsNode member[DOLP_WIDTH];
 };
 
-// The deficit of the first piece also contains the facets that are steeper than the last slope.
+// The deficit of the first piece also contains the light on facets that are steeper than the end of the last piece.
 RowMoments piece_moments(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task task) {
   real cut = row.shape[0].cut;
   Piece piece = make_piece(rule, theta, row, index, task);

@@ -1,13 +1,10 @@
 // The specular Mueller pBRDF of one geometry (README.md beside this file, sections 1 and 2, eqs. 4, 7 and 15).
-//
-// The Jones matrix turns s and p by eta_i into the frame of the facet, reflects, and turns back by eta_r into the frame
-// of the reflected beam. The s vector of the facet is cos(eta) s + sin(eta) p. With s = k x z and p = k x s, sin(eta)
-// has the sign of sin(dphi); in eq. 4 as printed it has the opposite sign. For Stokes vectors (I, Q, U, V), with U = 2
-// Re(E_s* E_p) and V = 2 Im(E_s* E_p), the three steps are
+// For Stokes vectors (I, Q, U, V) with U = 2 Re(E_s* E_p) and V = 2 Im(E_s* E_p), the matrix M is a product of three:
 //   turn by eta_i:  Q' = cos(2 eta_i) Q + sin(2 eta_i) U,  U' = -sin(2 eta_i) Q + cos(2 eta_i) U
 //   reflection:     [A B 0 0; B A 0 0; 0 0 C -S; 0 0 S C] with A, B = (R_s +- R_p)/2 and C + i S = r_s* r_p
 //   turn by -eta_r
-// The host computes A, B, C and S (host/compute/plan/beam.cpp).
+// A turn by eta makes cos(eta) s + sin(eta) p the s vector of the facet. sin(eta) has the sign of sin(dphi), in eq. 4
+// as printed the opposite sign. The host computes A, B, C and S (host/compute/plan/beam.cpp).
 
 real attenuation(GeometryNode g, ShapeNode shape) {
   if (kMasking == DOLP_MASKING_NONE) return real(1.0);
@@ -23,7 +20,7 @@ real attenuation(GeometryNode g, ShapeNode shape) {
   return real(1.0) - in_plane_shadowed(shape, lower_cos, lower_sin, g.slope);
 }
 
-// The pBRDF times cos(theta_i) cos(theta_r) for k_s = 1, row by row, divided by the power of two in BeamNode::density.
+// The pBRDF for k_s = 1 times cos(theta_i) cos(theta_r), row by row; divided by a power of two, like BeamNode::density.
 MuellerNode mueller(BeamNode beam) {
   GeometryNode g = beam.g;
   real scale = beam.density * attenuation(g, beam.shape);

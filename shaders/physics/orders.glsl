@@ -1,19 +1,18 @@
-// The number of nodes for a piece of the slope axis or an arc of azimuths. It affects only accuracy and work.
-// Let y0 be the singularity of the integrand that is nearest to [0, 1]. A Gauss rule of n nodes has an error of about
-// e^(-2 n mu), with cosh(mu) = |y0| + |y0 - 1| (Trefethen 2013, chapter 19). So a decimal digit costs ln(10) / (2 mu)
-// nodes. The fitted numbers of RuleNode scale this law.
+// Chooses the number of nodes of each Gauss rule, over a piece of the slope axis or an arc of azimuths.
+// Map the piece or arc to [0, 1], and let y0 be the singularity of the integrand, in the complex plane, that is nearest
+// to [0, 1]. A rule of n nodes has an error of about e^(-2 n mu), with cosh(mu) = |y0| + |y0 - 1| (Trefethen 2013,
+// chapter 19). So each decimal digit costs ln(10) / (2 mu) nodes. RuleNode adds fitted numbers of nodes and digits.
 
 CONST real kHalfLn10 = real(1.15129254649702284);
 CONST real kLn10 = real(2.30258509299404568402);
 CONST real kInverseLn10 = real(0.43429448190325182765);
-// If the square root beside an arc is smoothed over a larger Arc::resolution than this, it gets no cluster of nodes.
+// At the beginning of total reflection, an arc clusters its nodes only if its Arc::resolution is at most this.
 CONST real kWideResolution = real(0.1);
 CONST real kSharpResolution = real(1e-6);
-CONST real kMoreDigits = real(0.3);  // digits added on the slope axis for each required digit beyond kPlainDigits
+CONST real kMoreDigits = real(0.3);  // slope axis: a digit beyond kPlainDigits counts as 1 + kMoreDigits
 CONST real kPlainDigits = real(7.0);
-CONST real kLeastWeight = real(1e-20);  // least weight of a slope; gives all slopes equal weight at 90 degrees
+CONST real kLeastWeight = real(1e-20);  // replaces the weights that are 0 at 90 degrees
 
-// acosh(1 + gap), without cancellation.
 real acosh_above_1(real gap) { return log1p_real(gap + sqrt(gap) * sqrt(gap + real(2.0))); }
 
 // |y| + |y - 1| - 1 for y = a + i b. It is 0 on [0, 1], and constant on each ellipse with the foci 0 and 1.
@@ -35,7 +34,7 @@ real arc_cosine(real u) {
   return choose(u < real(0.0), kPi - angle, angle);
 }
 
-// The complex azimuth with cos(phi) = a + i b, from the distances of a + i b to +-1 (Hull, Fairgrieve and Tang 1997).
+// The complex azimuth phi with cos(phi) = a + i b, from the distances of a + i b to 1 and -1 (Hull et al. 1997).
 Singularity singularity_at(real a, real b) {
   real to_minus_1 = sqrt((a + real(1.0)) * (a + real(1.0)) + b * b);
   real to_1 = sqrt((a - real(1.0)) * (a - real(1.0)) + b * b);
@@ -62,7 +61,7 @@ real weight_of_slope(ThetaNode theta, real t) {
   return kMasking == DOLP_MASKING_V_CAVITY ? min(bare, max(real(2.0) * theta.c, kLeastWeight)) : bare;
 }
 
-// Estimated contribution of all facets to the albedo. Facets up to slope t1 reflect all light up, up to t2 half of it.
+// Estimate of the light that all facets reflect upward: all light up to slope t1, half of it up to t2, none beyond.
 real weight_of_shape(ThetaNode theta, ShapeNode shape) {
   real t1 = theta.c / (real(1.0) + theta.s);
   real t2 = (real(1.0) + theta.s) / max(theta.c, real(1e-15));
@@ -85,14 +84,14 @@ real digits_of_piece(RuleNode rule, ThetaNode theta, ShapeNode shape, real a, re
   return digits_of_share(rule, mass * typical / weight_of_shape(theta, shape));
 }
 
-// Digits that the sum over the azimuths at slope t needs. This slope stands for the share `mass` of the facets, on a
-// piece with `order` slopes that needs `digits`. `all` is weight_of_shape().
+// Digits that the sum over the azimuths needs at slope t. This slope is a node of a rule with `order` nodes, and stands
+// for the share `mass` of the facets. `digits`: digits that the whole piece needs; `all`: weight_of_shape().
 real digits_of_slope(RuleNode rule, ThetaNode theta, real all, real digits, int order, real t, real mass) {
   return min(digits_of_share(rule, real(order) * mass * weight_of_slope(theta, t) / all), digits);
 }
 
-// Nodes per digit on a piece because of a singularity at X = re + i im. With a square root at one end of the piece, the
-// abscissa of the rule is the square root of the distance from that end.
+// Nodes per digit on a piece because of a singularity at X = re + i im. If the integrand behaves like a square root at
+// an end of the piece, the variable of the rule is the square root of the distance from this end.
 real piece_cost(Piece piece, real re, real im) {
   real2 z = real2((re - piece.start) / piece.extent, im / piece.extent);
   bool is_nearer_to_a = z.x < real(0.5);
@@ -103,17 +102,18 @@ real piece_cost(Piece piece, real re, real im) {
   return nodes_per_digit(acosh_above_1(gap_beside_unit(y.x, y.y)));
 }
 
-// Nodes for a singularity exp(-1/x^2) at an end: a quarter of the square of the digits that it affects.
+// Nodes because the integrand contains exp(-1/x^2), where x is the distance from an end. This term affects only the
+// digits beyond the first kInverseLn10 / m^2. The number of nodes is a quarter of the square of these digits.
 real essential_nodes(ShapeNode shape, real digits) {
   real wanted = max(digits - kInverseLn10 / (shape.m * shape.m), real(0.0));
   return real(0.25) * wanted * wanted;
 }
 
-// acosh(y) for y >= 1, otherwise 0: the real part of asinh(i y). For y >= 1 the imaginary part is pi/2.
+// Real part of asinh(i y): acosh(y) for y >= 1, else 0. The imaginary part is pi/2 for y >= 1.
 real real_part_of_asinh(real y) { return acosh_above_1(max(y - real(1.0), real(0.0))); }
 
-// Nodes per digit on a piece because of a singularity of Fresnel's coefficients at cos(beta) = re + i im. In the plane
-// of incidence it lies at the slope t = (cos(beta) - c) / s, if this slope is small.
+// Nodes per digit on a piece because Fresnel's coefficients are singular at cos(beta) = re + i im. For small slopes in
+// the plane of incidence cos(beta) is about c + s t, so the singularity lies at t = (re + i im - c) / s.
 real fresnel_piece_cost(ThetaNode theta, ShapeNode shape, Piece piece, real re, real im) {
   real unit = max(theta.s, real(1e-6)) * shape.scale;
   real x = (re - theta.c) / unit;
@@ -121,19 +121,20 @@ real fresnel_piece_cost(ThetaNode theta, ShapeNode shape, Piece piece, real re, 
   return piece_cost(piece, choose(x < real(0.0), -bent, bent), im / (unit * max(abs(x), real(1.0))));
 }
 
-// Nodes per digit on a piece because of the branch point cos(beta) = b of Fresnel's coefficients, where it meets a line
-// at which arcs end: the horizon (`ratio` is 2) or theta_r = theta (`ratio` is 1). There sec(alpha) = ratio * b / c.
+// Nodes per digit on a piece because Fresnel's coefficients have a branch point at a complex cos(beta) = b. The branch
+// point counts where it meets a line at which arcs end, at the slope with sec(alpha) = ratio * b / c. The line is the
+// horizon if `ratio` is 2, and theta_r = theta if `ratio` is 1.
 real line_piece_cost(ThetaNode theta, ShapeNode shape, IndexNode index, Piece piece, real ratio) {
   real stretch = ratio / max(theta.c, real(1e-12));
   real2 sec = real2(stretch * index.branch_re, stretch * index.branch_im);
   real2 t = sqrt_upper(sec.x * sec.x - sec.y * sec.y - real(1.0), real(2.0) * sec.x * sec.y);
-  // Re asinh(z) = Im arccos(i z), Im asinh(z) = Re arccos(i z) - pi/2, for z = (t.x + i t.y) / scale.
+  // The slope z = (t.x + i t.y) / scale lies at X = asinh(z). If cos(x) = i z, then X = x.im + i (x.re - pi/2).
   Singularity x = singularity_at(-t.y / shape.scale, t.x / shape.scale);
   return piece_cost(piece, x.im, x.re - real(0.5) * kPi);
 }
 
-// Nodes of a piece beside smith's cusp if q is just above 3/2. There G falls steeply, as if it had a pole at the
-// distance tan(theta) + pi (2q - 3) / m from the cusp.
+// Nodes of a piece that ends at the cusp of smith masking, if q is just above 3/2. G falls steeply at the cusp, as if G
+// had a pole beyond the cusp, at half the distance tan(theta) + pi (2q - 3) / m along the slope axis.
 real diverging_nodes(ThetaNode theta, ShapeNode shape, Piece piece) {
   real t = theta.s / (real(1.0) + theta.c);
   real cusp = asinh_real(t / shape.scale);
@@ -144,9 +145,9 @@ real diverging_nodes(ThetaNode theta, ShapeNode shape, Piece piece) {
   return max(piece.digits + kInverseLn10 * log_unit(min(beside / piece.extent, real(1.0))), real(0.0)) * cost;
 }
 
-// Nodes of a piece. They depend on the singularities of the integrand: of the density (t = i m), of the factors 1 + t^2
-// (t = i), of Fresnel's coefficients, and square roots beyond the ends. Further nodes resolve the fall of the density
-// over the piece. A square root at an end needs one node more.
+// Nodes of a piece. The nearest singularity of the integrand decides how many nodes a digit costs. Singularities are
+// t = i m (density), t = i (factors 1 + t^2), those of Fresnel's coefficients, and square roots beyond the ends of the
+// piece. The fall of the density over the piece needs further nodes, and each end with a square root needs one.
 real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, bool has_split_line, Piece piece) {
   real cost = piece_cost(piece, real_part_of_asinh(real(1.0) / shape.scale), real(0.5) * kPi);
   if (kDistribution == DOLP_CAUCHY) {
@@ -161,17 +162,17 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
   cost = max(cost, choose(piece.root_before < piece.start, before, real(0.0)));
   real after = piece_cost(piece, piece.root_after, real(0.0));
   cost = max(cost, choose(piece.root_after > piece.start + piece.extent, after, real(0.0)));
-  // The map y = v^2 (3 - 2v) for two square roots also takes v = 3/2 to y = 0 and v = -1/2 to y = 1, where they remain.
+  // For two square roots the map is y = v^2 (3 - 2v). At v = 3/2 (y = 0) and v = -1/2 (y = 1) it does not remove them.
   bool has_two_roots = piece.root_at_a && piece.root_at_b;
   cost = max(cost, choose(has_two_roots, nodes_per_digit(acosh_above_1(real(1.0))), real(0.0)));
   real roots = (piece.root_at_a ? real(1.0) : real(0.0)) + (piece.root_at_b ? real(1.0) : real(0.0));
-  // In X the Gaussian falls faster and faster; most of the fall lies in the last unit of X.
+  // The Gaussian falls ever more steeply as X grows. Most of its fall lies where X is within 1 of the end of the piece.
   real steepest = (kDistribution == DOLP_GAUSSIAN) ? max(piece.extent, real(1.0)) : real(1.0);
   real resolved = min(piece.fall, piece.digits * kLn10) * steepest;
-  // If many digits are required, the order of the poles and weaker singularities matter, too.
+  // If many digits are required, weaker singularities and poles of higher order cost further nodes.
   real digits = piece.digits + kMoreDigits * max(piece.digits - kPlainDigits, real(0.0));
   real nodes = rule.t_nodes + roots + rule.t_fall * resolved + (digits + rule.t_digits) * cost;
-  // At the cusp of smith, where pieces end, the Gaussian's Lambda has an essential singularity, as in line_nodes().
+  // Pieces end at the cusp of smith masking. There Lambda of the Gaussian contains exp(-1/distance^2).
   if (kMasking == DOLP_MASKING_SMITH && kDistribution == DOLP_GAUSSIAN) {
     nodes = max(nodes, choose(has_split_line, rule.t_nodes + essential_nodes(shape, piece.digits), real(0.0)));
   }
@@ -184,20 +185,20 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
 
 // ---- Azimuth -------------------------------------------------------------------------------------------------------
 
-// Nodes per digit on an arc because of a singularity at the azimuth `at`. Rules of section `half` converge like Gauss
-// rules in the square of their abscissa, rules of section `cluster` like Gauss rules in its square root.
+// Nodes per digit on an arc because of a singularity at the azimuth `at`. Rules of section `half` (quadrature.glsl)
+// converge like Gauss rules in the squared abscissa, rules of section `cluster` in the square root of the abscissa.
 real arc_cost(Arc arc, Singularity at) {
   real re = abs(at.re - arc.origin) / arc.span;
   real im = at.im / arc.span;
-  re = choose((at.re - arc.origin) * arc.extent < real(0.0), -re, re);  // if they lie on different sides of the origin
+  re = choose((at.re - arc.origin) * arc.extent < real(0.0), -re, re);  // beyond the origin, seen from the arc
   real2 y = choose(arc.section == kSectionHalf, real2(re * re - im * im, real(2.0) * re * im), real2(re, im));
   y = choose(arc.section == kSectionCluster, sqrt_upper(re, im), y);
   real mu = acosh_above_1(gap_beside_unit(y.x, y.y));
   return nodes_per_digit(choose(arc.section == kSectionCircle, at.im, mu));
 }
 
-// Nodes per digit on an arc because of the pole of R_p and the branch point of w (fresnel.glsl). `facet` is (cos, sin)
-// of the facet's angle from the vertical, so cos(beta) = c facet.y + s x facet.x.
+// Nodes per digit on an arc because of two singularities in fresnel.glsl: the pole of R_p and the branch point of w.
+// `facet` is (cos, sin) of the angle between the facet and the vertical, so cos(beta) = c facet.y + s cos(phi) facet.x.
 real bounce_cost(ThetaNode theta, IndexNode index, real2 facet, Arc arc) {
   real slant = theta.s * facet.x;
   real size = max(abs(slant), real(1e-15));
@@ -208,8 +209,8 @@ real bounce_cost(ThetaNode theta, IndexNode index, real2 facet, Arc arc) {
   return max(arc_cost(arc, pole), arc_cost(arc, branch));
 }
 
-// Nodes per digit on an arc that ends at the critical line, where total reflection begins. In the abscissa of section
-// `cluster` (quadrature.glsl), which is 0 at this line, R_p has a pole at the distance v from the line.
+// Nodes per digit on an arc that ends at the critical line, where total reflection begins. The abscissa of its rule
+// (section `cluster` of quadrature.glsl) is 0 at this line. R_p has a pole at the distance v from the abscissa 0.
 real critical_cost(ThetaNode theta, IndexNode index, real t, Arc arc) {
   real sec = sqrt(real(1.0) + t * t);
   real2 end = choose(arc.extent < real(0.0), arc.from, arc.to);
@@ -241,8 +242,8 @@ real fresnel_cost(RuleNode rule, ThetaNode theta, IndexNode index, real t, Arc a
   return kTotalReflection ? choose(arc.is_critical, critical_cost(theta, index, t, arc), cost) : cost;
 }
 
-// Nodes per digit on an arc because of the masking of the reflected ray. The density of in-plane slopes is singular at
-// cot(theta_r) = +- i m, and `integral` masking has a pole at cot(theta_r) = -t.
+// Nodes per digit on an arc because of singularities of the masking toward the reflected ray: the density of in-plane
+// slopes at cot(theta_r) = +- i m, and with `integral` masking kappa (masking.glsl) at cot(theta_r) = -t.
 real masking_cost(ThetaNode theta, ShapeNode shape, real t, Arc arc, int zone) {
   if (kMasking != DOLP_MASKING_SMITH && kMasking != DOLP_MASKING_INTEGRAL) return real(0.0);
   real sec2 = real(1.0) + t * t;
@@ -263,9 +264,9 @@ real masking_cost(ThetaNode theta, ShapeNode shape, real t, Arc arc, int zone) {
   return cost;
 }
 
-// Nodes of an arc because of the cusp of smith masking at theta_r = 0. The facet with t = tan(theta/2) and phi = 0
-// reflects there. Near the cusp Lambda behaves like |theta_r|^(2q - 2). On the arc that begins at phi = 0, the cusp
-// lies at an imaginary azimuth i y with cosh(y) = 1 + `rise`. For the gaussian, `beside` moves it farther away.
+// Nodes of an arc because smith masking has a cusp at theta_r = 0, where Lambda behaves like |theta_r|^(2q - 2). Only
+// the facet with t = tan(theta/2) and phi = 0 reflects to theta_r = 0. At another slope t the cusp lies at an imaginary
+// azimuth i y, with cosh(y) = 1 + `rise`. For the gaussian, `beside` increases the distance y.
 real cusp_nodes(ThetaNode theta, ShapeNode shape, real t, real digits, Arc arc) {
   if (kMasking != DOLP_MASKING_SMITH) return real(0.0);
   real away = t - theta.s / (real(1.0) + theta.c);
@@ -290,7 +291,7 @@ Arc masked_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_l
     return with_root(arc, false, has_root && is_cusp);
   }
   if (kMasking == DOLP_MASKING_INTEGRAL && kDistribution == DOLP_CAUCHY) {
-    // Beside the line where the limit b is pi/2, G has a part proportional to the distance to the power 2q - 1.
+    // G is not smooth at the line b = pi/2 (arcs.glsl): a part of G is the distance from the line to the power 2q - 1.
     bool is_rough = shape.q_minus_1 + real(1.0) < rule.cluster_below_q;
     bool is_line = zone == 2 && is_rough;
     return with_root(arc, false, has_root && is_line);
@@ -298,9 +299,9 @@ Arc masked_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_l
   return arc;
 }
 
-// Clusters nodes at one end of the arc if total reflection begins there, so that w^2 = cos^2(beta) - critical_cos^2 + i
-// Im N^2 is 0 or small. The resolution is |w^2| at this end, divided by the range of w^2 on the arc. If it is large,
-// the arc is ordinary. If it is negligible, the square root counts as sharp.
+// Clusters nodes at one end of the arc if total reflection begins there. Near this end the integrand contains the root
+// w of w^2 = cos^2(beta) - critical_cos^2 + i Im N^2. The resolution is |w^2| at this end, divided by the range of w^2
+// on the arc. If the resolution is large, nodes are not clustered. If it is negligible, it is set to 0.
 Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, Arc arc, bool at_end, bool is_beside) {
   real level = index.critical_cos * index.critical_cos;
   real r2 = real(1.0) / (real(1.0) + t * t);
@@ -321,16 +322,15 @@ Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, Arc arc,
   return arc;
 }
 
-// Nodes for an arc that begins at the line b = pi/2 (single_lines() in arcs.glsl), where G is like exp(-1/distance^2).
+// Nodes of an arc that begins at the line b = pi/2 (single_lines() in arcs.glsl): G contains exp(-1/distance^2).
 real line_nodes(ShapeNode shape, bool has_split_line, real digits, int zone) {
   if (kMasking != DOLP_MASKING_INTEGRAL || kDistribution != DOLP_GAUSSIAN) return real(0.0);
   bool is_line = has_split_line && zone == 2;
   return choose(is_line, essential_nodes(shape, digits), real(0.0));
 }
 
-// Nodes because of a square root that absorption smooths. In the abscissa of section `cluster`, moved by
-// place_on_arc(), the root has singularities at (0.76 +- 0.57 i) / a. They matter for about resolution^(3/2) of the
-// integral.
+// Nodes because of a square root that absorption smooths. In the variable v of place_on_arc(), the integrand has
+// singularities at (0.76 +- 0.57 i) / a. They affect about the share resolution^(3/2) of the integral.
 real resolution_nodes(real digits, real resolution) {
   real wanted = max(digits + real(1.5) * kInverseLn10 * log_unit(resolution), real(0.0));
   real a = asinh_real(real(1.0) / sqrt(resolution));
@@ -338,15 +338,15 @@ real resolution_nodes(real digits, real resolution) {
   return choose(resolution <= real(0.0), real(0.0), nodes);
 }
 
-// The number of nodes of an arc. With fewer than two nodes on the whole half circle, cos(2 phi) would not average out.
+// The number of nodes of an arc. An arc from 0 to pi gets at least two: with one node, cos(2 phi) does not average out.
 real arc_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, bool has_split_line, real t, real digits,
                Arc arc, int zone) {
-  real map = nodes_per_digit(asinh_real(real(1.0) / max(abs(arc.extent), real(1e-9))));  // dphi = 4 dtau / (1 + tau^2)
+  real map = nodes_per_digit(asinh_real(real(1.0) / max(abs(arc.extent), real(1e-9))));  // dphi/dtau: poles at +-i
   map = choose(arc.section == kSectionHalf, real(0.5) * map, map);
   map = choose(arc.section == kSectionCircle, real(0.0), map);
   real cost = max(max(map, fresnel_cost(rule, theta, index, t, arc)), masking_cost(theta, shape, t, arc, zone));
-  // To converge, a rule must resolve cos(phi), cos(2 phi) and cos(3 phi) over the length of the arc. A cluster needs
-  // half a node more, and nodes that place_on_arc() moves need `spread` more.
+  // A rule must resolve cos(phi), cos(2 phi) and cos(3 phi) over the length of the arc. A rule of the section `cluster`
+  // needs half a node more. If place_on_arc() moves the nodes, the rule needs `spread` nodes more.
   real base = rule.phi_nodes * arc.span + choose(arc.section == kSectionCluster, real(1.0), real(0.5));
   if (kTotalReflection) {
     real spread = real(0.5) * asinh_real(real(1.0) / sqrt(arc.resolution));

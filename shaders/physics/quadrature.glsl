@@ -1,14 +1,13 @@
-// The nodes of the Gauss rules: one buffer of pairs (abscissa, weight), filled by host/compute/plan/rule.cpp. In each
-// of its five sections the rule of order n begins at position n (n - 1) / 2.
-//   gauss: Gauss-Legendre on [0, 1]
-//   centre: Gauss-Legendre on [-1, 1], for an arc of azimuths between two split lines
-//   half: positive nodes of the Gauss-Legendre rule of order 2n on [-1, 1], for an arc that begins or ends at phi = 0
-//     or pi, about which the integrand is even
-//   circle: tan(psi/4) at the midpoints of n equal parts of [0, pi], for all azimuths as one arc; converges
-//     geometrically, because the integrand is periodic
+// The nodes of the quadrature rules. host/compute/plan/rule.cpp fills one buffer with pairs (abscissa, weight). The
+// buffer has five sections. In each section the rule of order n begins at position n (n - 1) / 2.
+//   gauss: Gauss-Legendre on [0, 1], for pieces of the slope axis
+// The other sections are for arcs of azimuths. Let psi be the azimuth measured from the centre of the arc, tau =
+// tan(psi/4) and T = Arc::extent. The abscissa is tau / T, so dpsi = 4 T / (1 + tau^2) d(tau/T).
+//   centre: Gauss-Legendre on [-1, 1], for an arc between two split lines
+//   half: positive nodes of the Gauss-Legendre rule of order 2n on [-1, 1], for an arc that begins at 0 or ends at pi;
+//     the integrand is symmetric about 0 and pi
+//   circle: tan(psi/4) at the midpoints of n equal parts of [0, pi], for an arc from 0 to pi
 //   cluster: Gauss-Legendre on [0, 1] in sqrt(tau / T), for an arc with a cusp or square root at its centre
-// The abscissae of the last four sections are tau / T. Here psi is the azimuth measured from the centre of the arc,
-// tau = tan(psi/4) and T = Arc::extent, so dpsi = 4 T / (1 + tau^2) d(tau/T).
 
 CONST int kSectionGauss = 0;
 CONST int kSectionCentre = 1;

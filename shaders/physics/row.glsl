@@ -1,9 +1,9 @@
 // Entries that one invocation computes together. They differ only in q, so they share the facets and the reflection.
 
-// In ascending order of q. All entries have the scale, cut, table_scale and cusp_digits of the most demanding one.
+// In ascending order of q. All entries get the most demanding scale, cut, table_scale and cusp_digits of any of them.
 struct Row {
   ShapeNode shape[DOLP_WIDTH];
-  uint table[DOLP_WIDTH];  // first node of each shape's masking table
+  uint table[DOLP_WIDTH];  // position of the first node of each entry's masking table
 };
 
 // A dummy row, for maskings that do not depend on the slope distribution.
@@ -17,7 +17,7 @@ Row no_row() {
   return row;
 }
 
-// Masking toward one direction, for each entry of a row. For smith it is Lambda, for `integral` 1 - G1 at one slope t.
+// Masking toward one direction, for each entry of a row: Lambda for smith, 1 - G1 at one slope t for `integral`.
 struct MaskingTerms {
   real value[DOLP_WIDTH];
 };
@@ -28,8 +28,8 @@ MaskingTerms unmasked() {
   return masked;
 }
 
-// The part of the masking that does not depend on the slope t: for smith Lambda, for `integral` l(cot(theta)), see
-// masking.glsl. At 90 degrees Lambda is so large that G is 0.
+// The terms of masking.glsl that do not depend on the slope t: Lambda for smith, l(cot(theta)) for `integral`. At 90
+// degrees Lambda is so large that G is 0.
 MaskingTerms masking_of_direction(Row row, real cos_theta, real sin_theta) {
   MaskingTerms heights = unmasked();
   if (kMasking == DOLP_MASKING_SMITH) {
@@ -45,7 +45,7 @@ MaskingTerms masking_of_direction(Row row, real cos_theta, real sin_theta) {
   return heights;
 }
 
-// 1 - G1 of `integral`. `limited` is computed even if it is not used: in lockstep all invocations wait for it anyway.
+// 1 - G1 of `integral`. `limited` is computed even if it is unused: in lockstep, a branch saves no time.
 MaskingTerms shadows(Row row, MaskingTerms heights, real cos_theta, real sin_theta, real t) {
   ShadowRange range = shadow_range(row.shape[0], cos_theta, sin_theta, t);
   TableCell cell = table_cell(row.shape[0], range.far);
@@ -58,7 +58,7 @@ MaskingTerms shadows(Row row, MaskingTerms heights, real cos_theta, real sin_the
   return masked;
 }
 
-// In zone 0 `integral` uses only the masking toward theta, see project().
+// Masking toward the reflected ray. In zone 0, project() does not need this masking for `integral`.
 MaskingTerms masking_of_ray(Row row, real cos_r, real sin_r, real t, int zone) {
   if (kMasking == DOLP_MASKING_SMITH) return masking_of_direction(row, cos_r, sin_r);
   MaskingTerms masked = unmasked();
@@ -71,8 +71,8 @@ MaskingTerms masking_of_ray(Row row, real cos_r, real sin_r, real t, int zone) {
 // Share of a facet's direct emission that smith masking leaves; 1 for other maskings. `masking_in` is Lambda(theta).
 real smith_g1(real masking_in) { return (kMasking == DOLP_MASKING_SMITH) ? real(1.0) / (real(1.0) + masking_in) : real(1.0); }
 
-// A facet's projection, masked toward theta and toward the reflected ray. `zone` counts the intervals between split
-// lines from phi = 0. In zone 0 theta_r < theta, so `integral` takes the masking of theta.
+// A facet's projection, masked toward theta and toward the reflected ray. `zone` is the number of the interval between
+// two split lines, counted from phi = 0. In zone 0 theta_r < theta, so `integral` masking depends only on theta.
 Projection project(ThetaNode theta, Facet f, int zone, real masking_in, real masking_out) {
   if (kMasking == DOLP_MASKING_NONE) return Projection(f.e, real(0.0));
   if (kMasking == DOLP_MASKING_V_CAVITY) {

@@ -10,8 +10,8 @@ real slope_tail_exponent(ShapeNode shape, real t) { return exponent_factor(shape
 
 real slope_tail(ShapeNode shape, real t) { return exp_real(-slope_tail_exponent(shape, t)); }
 
-// P(t) t m. Times dt / m it is the share of facets between t and t + dt, per radian of azimuth. `exponent` is
-// common_exponent(u). The formula has neither m^2 nor t^2, so no roughness overflows.
+// P(t) t m: the share of facets per radian of azimuth and per du. `exponent` is common_exponent(u). The formula has
+// neither m^2 nor t^2, so it does not overflow.
 real slope_density(ShapeNode shape, real u, real exponent) {
   real shape_factor = (kDistribution == DOLP_CAUCHY) ? shape.q_minus_1 / (u + real(1.0) / u) : u;
   return shape_factor * exp_real(-exponent_factor(shape) * exponent) / kPi;
@@ -24,7 +24,7 @@ real marginal_density(ShapeNode shape, real tau) {
   return shape.marginal_norm * exp_real(-exponent);
 }
 
-CONST real kDivergingSlope = real(0.2);  // largest 2q - 3 for which the mean slope is about to diverge
+CONST real kDivergingSlope = real(0.2);  // for 2q - 3 below this, the mean slope is very large
 bool is_diverging(ShapeNode shape) {
   return kMasking == DOLP_MASKING_SMITH && kDistribution == DOLP_CAUCHY && shape.two_q_minus_3 < kDivergingSlope;
 }

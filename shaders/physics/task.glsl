@@ -4,15 +4,15 @@ struct Task {
   int piece;
   bool root_at_start;
   bool root_at_end;
-  bool root_before_start;  // square root at the start of the preceding piece
-  bool root_after_end;     // square root at the end of the next piece
+  bool root_before_start;  // the integrand has a square root at the start of the preceding piece
+  bool root_after_end;     // the integrand has a square root at the end of the next piece
   bool has_split_line;
   int most_azimuths;
-  real before;  // five slopes: start of the preceding piece, start, end, end of the next piece, last end of all
+  real before;  // slope at the start of the preceding piece
   real start;
   real end;
-  real after;
-  real last;
+  real after;   // slope at the end of the next piece
+  real last;    // slope at the end of the last piece
 };
 
 bool has_bit(uint word, uint bit) { return ((word >> bit) & 1u) == 1u; }
@@ -30,7 +30,7 @@ Task task_of(uint word) {
   return task;
 }
 
-// moments.comp reads the slopes one by one instead: a copy of all slopes costs a driver half a second of compilation.
+// moments.comp reads the slopes one by one instead: to compile a copy of the ThetaNode takes a driver half a second.
 Task with_slopes(Task task, ThetaNode theta) {
   task.before = theta.end[max(task.piece - 1, 0)];
   task.start = theta.end[task.piece];
@@ -40,17 +40,18 @@ Task with_slopes(Task task, ThetaNode theta) {
   return task;
 }
 
-// A piece [a, b] of the slope axis. X = asinh(t/scale) is linear in y, from 0 to 1. The map y(v) from the abscissa v of
-// a rule removes square roots: y = v^2 for a root at a, 1 - (1-v)^2 at b, v^2 (3 - 2v) at both ends.
+// A piece of the slope axis from t = a to t = b. On the piece, X = asinh(t/scale) is a linear function of y in [0, 1].
+// A Gauss rule has its nodes in v, and a map y(v) removes square roots of the integrand at the ends: y = v^2 for a root
+// at a, y = 1 - (1-v)^2 for a root at b, y = v^2 (3 - 2v) for roots at both, else y = v.
 struct Piece {
   real start;   // X at a
   real extent;  // in X
   bool root_at_a;
   bool root_at_b;
-  real root_before;       // X of a square root at the start of the preceding piece, unless it is near a; else X at a
-  real root_after;        // X of a square root at the end of the next piece, unless it is near b; else X at b
+  real root_before;       // X of a square root at the start of the preceding piece; X at a if that is near, or none
+  real root_after;        // X of a square root at the end of the next piece; X at b if that is near, or none
   real mass[DOLP_WIDTH];  // share of the facets on the piece, for each entry of a row
-  real fall;              // logarithm of the share of facets steeper than a divided by the share steeper than b
+  real fall;              // ln(share of facets steeper than a / share of facets steeper than b), the largest of a row
   real digits;            // digits that the most demanding entry of a row requires
   int order;
 };

@@ -44,7 +44,7 @@ class Breaks {
   std::vector<double> points_;
 };
 
-/// 21-point Kronrod rule. Its error is pessimistic: the difference from the 10-point Gauss rule, plus rounding.
+/// 21-point Kronrod rule. The error is pessimistic: the difference from the 10-point Gauss rule, plus rounding.
 template <std::size_t N, class Integrand>
 Integral<N> kronrod_panel(const Integrand& integrand, double low, double high) {
   using Kronrod = boost::math::quadrature::gauss_kronrod<double, 21>;
@@ -76,7 +76,7 @@ Integral<N> kronrod_panel(const Integrand& integrand, double low, double high) {
   return result;
 }
 
-/// Maps s in [0, 1] to an interval by s^2 (3 - 2 s), which makes roots and 3/2 powers at both ends smooth.
+/// Maps s in [0, 1] to an interval by s^2 (3 - 2 s). Square roots and 3/2 powers at the ends are smooth functions of s.
 struct Stretch {
   double low;
   double high;
@@ -128,7 +128,7 @@ double scaled_error(const Values<N>& error, const Values<N>& scale) {
   return worst;
 }
 
-/// Halves the worst panel until all errors are within `goal.relative` times their scales, or at `goal.max_panels`.
+/// Halves the worst panel until all errors are at most `goal.relative` times their scales, or up to `goal.max_panels`.
 template <std::size_t N, class Integrand, class Scale>
 Integral<N> integrate(const Integrand& integrand, const Breaks& breaks, const Goal& goal, const Scale& scale) {
   const std::vector<double> points = breaks.sorted();

@@ -18,12 +18,12 @@ struct FresnelCoefficients {
 /// beta is the angle of incidence on the facet. At normal incidence r_p = -r_s.
 FresnelCoefficients fresnel(const FacetOptics& optics, double cos_beta);
 
-/// Reflection amplitudes of a medium under films, from the characteristic matrices of the films, in any number type.
-/// Equation: the tangential fields (E, H) above a film are [cos d, -i sin d / y; -i y sin d, cos d] times the fields
-/// below it. Here q = sqrt(N^2 - sin^2 beta), d = 2 pi q thickness, and y is q for s and q / N^2 for p. In the medium
-/// the fields are (1, y). Above all films r = (y_0 E - H) / (y_0 E + H). Each matrix is scaled with e^(i d), which
-/// cancels in r and keeps the matrices of thick absorbing films finite.
-/// Source: Born and Wolf, Principles of Optics, section 1.6.2.
+/// Reflection amplitudes of a medium under films. Source: Born and Wolf, Principles of Optics, section 1.6.2.
+/// Equation: a layer of index N has q = sqrt(N^2 - sin^2(beta)) and the admittance y, which is q for s and q / N^2 for
+/// p. The tangential fields begin as (E, H) = (1, y) in the medium. Each film, from the lowest to the highest,
+/// multiplies (E, H) by [cos(d), -i sin(d) / y; -i y sin(d), cos(d)], where d = 2 pi q thickness, thickness in
+/// wavelengths. A factor e^(i d) keeps thick absorbing films finite, and cancels in r. Above the films r = (y_0 E - H)
+/// / (y_0 E + H), where y_0 = cos(beta) is the admittance of the air.
 template <class Number, class Real>
 Amplitudes<Number> stack_amplitudes(const FacetOptics& optics, const Real& cos_beta, const Real& sin2_beta) {
   using std::exp;

@@ -1,6 +1,6 @@
-// A beam in a symmetric V-groove, followed from facet to facet and cut at the rims.
-// Axes: u across the groove, v along it, z upward, from the middle of the aperture. Both facets have length 1: facet A
-// from the rim at u = -cos(alpha) to the apex at u = 0, z = -sin(alpha), facet B from the rim at u = +cos(alpha).
+// Follows a beam in a symmetric V-groove from facet to facet, without the light that passes a rim.
+// Axes: u across the groove, v along it, z upward, from the middle of the aperture. Both facets have length 1 and meet
+// at the apex, u = 0 and z = -sin(alpha). The rim of facet A is at u = -cos(alpha), the rim of B at u = cos(alpha).
 #pragma once
 
 #include <algorithm>
@@ -17,16 +17,16 @@ struct Groove {
 
 enum class Facet { kA, kB };
 
-/// The part of a parallel beam that enters through the whole aperture and meets facet `first` first. On a facet the
-/// beam covers an interval of the length flux / cos(beta). The end of this interval nearer to the apex is the edge of
-/// the beam, which is followed as a ray. Light beyond the rim of a facet leaves the groove.
+/// A beam of parallel rays: all rays through the aperture that meet facet `first` first. The beam covers a stretch of
+/// the facet, of length flux / cos(beta). The end of the stretch that is nearer to the apex is the edge of the beam;
+/// the edge is followed as a ray. Rays that miss the next facet leave the groove above its rim.
 template <class Real>
 class GrooveBeam {
  public:
   /// `omega`: unit vector toward the source, omega[2] > 0.
   GrooveBeam(const Groove<Real>& groove, const Vector<Real>& omega, Facet first)
       : groove_(groove), side_(first == Facet::kA ? Real(-1) : Real(1)), k_(scaled(Real(-1), omega)) {
-    // The ray that hits the apex crosses the aperture at u = to_apex. Rays nearer to the rim of A meet A first.
+    // The ray to the apex crosses the aperture at u = to_apex. Rays with a smaller u meet facet A first.
     const Real to_apex = groove.sin_alpha * omega[0] / omega[2];
     const Real inside = std::clamp<Real>(to_apex, -groove.cos_alpha, groove.cos_alpha);
     meets_apex_ = inside == to_apex;
@@ -52,7 +52,7 @@ class GrooveBeam {
   }
 
  private:
-  // Follows the beam's edge to the facet on `side_`. Returns the largest flux that fits between this edge and the rim.
+  // Follows the edge of the beam to the facet on `side_`. Returns the flux of a beam that reaches from it to the rim.
   Real land() {
     const Vector<Real> n = normal();
     const Real cos_beta = -dot(k_, n);

@@ -16,70 +16,71 @@ struct Refinement {
   int subdivisions = 1;              ///< panels between two break points of a quadrature at first
 };
 
-/// A function of the zenith of the reflected ray, and the zeniths of its kinks, for ColumnMoments.
+/// A function of the zenith of the reflected ray, and the zeniths at which the function has kinks.
 struct SkyFunction {
   std::function<double(double zenith_deg)> value;
   std::vector<double> corners_deg;
 };
 
-/// Curves are functions of cos(beta), |curve| <= 1, that replace (R_s + R_p) / 2 and (R_s - R_p) / (2 sin^2(beta)).
+/// Functions of cos(beta), from -1 to 1, in the place of (R_s + R_p) / 2 and (R_s - R_p) / (2 sin^2(beta)).
 inline constexpr std::size_t kCurves = 24;
 using Curves = std::function<std::array<double, kCurves>(double cos_beta)>;
 
 Zenith zenith_from_deg(double theta_deg);
 
-/// The moments of a rough surface (sigma > 0) with k_s = 1; with `sky`, also those with this function of the sky.
+/// The moments of a rough surface (sigma > 0) with k_s = 1. If `sky` is given, Moments::columns contains the moments
+/// with this function as a factor.
 /// Equation: r = cos(theta) int f cos(theta_r) sin(theta_r) dtheta_r dDelta_phi, eqs. (7), (15), (16) of Wang, Li, Wang
-/// 2025. The outer integral is over theta_r, the inner one over delta = pi - Delta_phi.
-/// Domain: theta in [0, 90] degrees. At 90: zero for v-cavity and smith; else finite, but infinite for cauchy q <= 3/2.
+/// 2025. The outer integral is over theta_r, the inner integral over delta = pi - Delta_phi.
+/// Domain: theta in [0, 90] degrees. At 90 degrees the moments are 0 with v-cavity and smith masking. With other
+/// maskings they are infinite for the cauchy with q <= 3/2, else finite.
 Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants,
                            const Refinement& refinement, const SkyFunction* sky = nullptr);
 
-/// r_i and r_q with `curves` instead of the reflectances. Errors are relative to the albedo. `bend`: cosine of the
-/// angle of incidence at which the curves bend sharply.
+/// r_i and r_q with each of the `curves` instead of the reflectances. The errors are relative to the albedo. `bend`:
+/// cosine of the angle of incidence at which the curves bend sharply.
 std::vector<ColumnMoments> hemisphere_responses(const Slopes& slopes, Masking masking, double theta_deg,
                                                 const Curves& curves, double bend, const Refinement& refinement);
 
 Moments mirror_moments(double theta_deg, const FacetOptics& constants);
 
 /// The moments of a surface of symmetric V-grooves (sigma > 0) with all bounces, for k_s = 1.
-/// Equation: r = int P t dt dphi sum_k w_k |E_k|^2 over the facets that the light meets first. P is the density of the
-/// slopes t. w_k is the flux that leaves a groove after k bounces, divided by half the groove's width. |E_k|^2 is the
-/// intensity after k bounces, averaged over s and p light.
+/// Equation: r_i = int P(t) t dt dphi sum_k w_k |E_k|^2. The integral runs over the slope t and the azimuth phi of the
+/// facet that the light meets first; P is the density of slopes. w_k is the flux that leaves a groove after k bounces,
+/// divided by half the groove's width. |E_k|^2 is the intensity after k bounces, averaged over s and p light.
 /// Domain: theta in [0, 90] degrees; at 90 degrees all moments are 0, which is the limit.
-/// Accuracy: the returned errors. They exceed `refinement` if many steep grooves reflect much: 1e-8 to 1e-4 of r_i for
-/// metals.
+/// Accuracy: the returned errors. For metals with many steep grooves they exceed `refinement`: 1e-8 to 1e-4 of r_i.
 Moments groove_moments(const Slopes& slopes, double theta_deg, const FacetOptics& constants,
                        const Refinement& refinement, const SkyFunction* sky = nullptr);
 
-/// Where the light goes that enters one groove, per width of its aperture, summed over both facets that it may meet
-/// first.
+/// What becomes of the light that enters one groove: fluxes divided by the width of the groove's aperture.
 struct GrooveLight {
   double albedo = 0.0;     ///< flux that leaves if the facets absorb nothing
   double reflected = 0.0;  ///< I that leaves if unpolarised light enters
-  double polarised = 0.0;  ///< Q: half of the difference between what leaves if s light enters and if p light enters
+  double polarised = 0.0;  ///< Q: half the intensity that leaves if s light enters, less half of that if p light enters
   double absorbed = 0.0;   ///< absorbed by all bounces
   double lost = 0.0;       ///< I after the last followed bounce, neither in `reflected` nor in `absorbed`
   double once_reflected = 0.0;  ///< I that leaves after one bounce
   double once_absorbed = 0.0;   ///< absorbed by the first bounce
-  double sky_reflected = 0.0;   ///< `reflected`, times the function of the sky
-  double sky_polarised = 0.0;   ///< `polarised`, times the function of the sky
+  double sky_reflected = 0.0;   ///< like `reflected`, but each ray is multiplied by the function of the sky
+  double sky_polarised = 0.0;   ///< like `polarised`, but each ray is multiplied by the function of the sky
   double bounces = 0.0;         ///< number of followed bounces
 };
 
-/// chi is 90 degrees minus the azimuth phi of the facets; sin_chi = cos(phi). Domain: slope t > 0; cos(theta) > 0.
+/// Domain: slope t > 0; cos(theta) > 0. chi is 90 degrees minus the azimuth phi of the facets, so sin_chi = cos(phi).
 GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zenith& view, const FacetOptics& constants,
                             const SkyFunction* sky = nullptr);
 
-/// The direct emission of a rough surface (sigma > 0): direct_i, direct_q and their errors. All other moments are 0.
-/// Equation: cos(theta) eps = int P t dt dphi e G_1 (1 - |r|^2) over the facets of slope t and azimuth phi with e =
-/// cos(theta) + sin(theta) t cos(phi) > 0. G_1 is the masking of the view, P the slope density. Domain: masking smith
-/// or v-cavity; theta in [0, 90] degrees. At 90 degrees both moments are 0.
+/// The direct emission of a rough surface (sigma > 0): direct_i, direct_q and their errors.
+/// Equation: cos(theta) eps = int P(t) t dt dphi e G_1 (1 - |r|^2), with the slope density P, the masking G_1 toward
+/// the viewer and the reflection amplitude r. The integral is over all facets (slope t, azimuth phi) with a projected
+/// area e = cos(theta) + sin(theta) t cos(phi) > 0.
+/// Domain: masking smith or v-cavity; theta in [0, 90] degrees. At 90 degrees both moments are 0.
 Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants,
                         const Refinement& refinement);
 
-/// The direct emission with `curve` instead of 1 - (R_s + R_p) / 2 and (R_p - R_s) / (2 sin^2). Errors are relative to
-/// cos(theta). `bend`: cosine of the angle of incidence at which the curve bends sharply.
+/// The direct emission with `curve` instead of 1 - (R_s + R_p) / 2 and of (R_p - R_s) / (2 sin^2(beta)). Its errors are
+/// relative to cos(theta). `bend`: cosine of the angle of incidence at which the curve bends sharply.
 Moments direct_response(const Slopes& slopes, Masking masking, double theta_deg,
                         const std::function<double(double cos_beta)>& curve, double bend, const Refinement& refinement);
 

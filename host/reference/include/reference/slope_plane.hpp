@@ -1,6 +1,6 @@
-// Integrals over the slopes of the facets. A slope has the length t. Its angle chi is measured from the normal of the
-// plane of incidence, so chi is 90 degrees minus the azimuth phi. An integrand covers two facets: A at phi, B at phi +
-// 180 degrees. By symmetry chi runs only from 0 to pi/2. Integrals are split where the integrand bends sharply.
+// Integrals over the slope t and the azimuth phi of the facets, split where the integrand bends sharply. The variable
+// chi = 90 degrees - phi replaces phi. Each integrand covers two facets: A at phi, B at phi + 180 degrees. So, by
+// symmetry, chi runs only from 0 to pi/2.
 #pragma once
 
 #include <algorithm>
@@ -33,12 +33,12 @@ inline SlopePoint slope_point(double t, double chi_rad) { return {t, std::sin(ch
 
 using Electric = std::array<std::complex<double>, 3>;
 
-/// The view in the axes of a groove: u across it, at the azimuth phi from the plane of incidence, v along it, z up.
+/// Unit vector toward the viewer in the axes of a groove: u across the groove (azimuth phi), v along the groove, z up.
 inline Vector<double> toward_view(const SlopePoint& point, const Zenith& view) {
   return {view.sin * point.sin_chi, -view.sin * point.cos_chi, view.cos};
 }
 
-/// Electric vectors of an s and a p wave of unit amplitude along k, with s = k x z (at theta = 0 the limit), p = k x s.
+/// Electric vectors of an s wave and a p wave of amplitude 1 along k. s is the unit vector along k x z, and p = k x s.
 struct UnitLight {
   Electric from_s;
   Electric from_p;
@@ -64,7 +64,7 @@ class SpecialAngles {
       : brewster_(1.0 / std::hypot(1.0, constants.index.n, constants.index.k)),
         critical_(constants.index.n < 1.0 ? std::sqrt(1.0 - constants.index.n * constants.index.n) : 0.0) {}
 
-  /// Number, 0 to 3, of the interval between the special angles in which beta lies.
+  /// A number that tells on which side of each special angle beta lies.
   std::uint64_t side(double cos_beta) const {
     return (cos_beta < brewster_ ? 1U : 0U) + (cos_beta < critical_ ? 2U : 0U);
   }
@@ -74,14 +74,14 @@ class SpecialAngles {
   double critical_;
 };
 
-/// A number that changes where the integrand bends: slopes on different sides of a bend have different numbers.
+/// Maps a slope to a number. Slopes on different sides of a bend of the integrand have different numbers.
 using Regime = std::function<std::uint64_t(const SlopePoint&)>;
 
-/// Steps of a scan of chi that are added to a dozen equal steps.
+/// A scan of chi has a dozen equal steps, and these steps in addition.
 struct ScanSteps {
-  /// Further steps have the size gamma / per_gamma in psi (slope_plane.cpp). gamma: half-angle of the groove.
+  /// Steps of gamma / per_gamma in the angle psi of slope_plane.cpp, where gamma is the half-angle of the groove.
   double per_gamma = 0.0;
-  int halvings = 0;  ///< steps toward chi = 0, each half as long as the previous one
+  int halvings = 0;  ///< number of steps toward chi = 0, each half as long as the previous one
 };
 
 /// Finds the bends of the integrand for one view. Computes the regime at many slopes, then bisects where it changes.
@@ -89,9 +89,10 @@ class RegimeScan {
  public:
   RegimeScan(const Zenith& view, double theta_rad, const ScanSteps& steps, Regime regime)
       : view_(view), theta_rad_(theta_rad), steps_(steps), regime_(std::move(regime)) {}
-  /// Break points of chi in (0, pi/2) at slope t. If there are too many, only those for a thin layer next to chi = 0.
+  /// Values of chi in (0, pi/2) at which the integral at slope t is split: bends (unless there are too many), and at
+  /// grazing zeniths small values of chi.
   std::vector<double> chi_breaks(double t) const;
-  /// Break points of t up to `end`: slopes at which a bend begins or ends at chi = 0 or pi/2.
+  /// Slopes up to `end` at which the integral over t is split: those with a bend at chi = 0 or pi/2, and small slopes.
   std::vector<double> t_breaks(double width, double end) const;
 
  private:
@@ -107,15 +108,14 @@ struct SlopeTask {
   std::function<Values<N>(const Values<N>&)> scales;  ///< scales of the errors, see Goal::relative
   double steepest;                                    ///< upper end of the integral over t
   double bends_end;                                   ///< bends are searched up to this t, which is at most `steepest`
-  /// At slopes with a smaller weight than this, the integral over chi may have a larger error, up to the same weighted
-  /// error.
+  /// At slopes with a smaller weight, the integral over chi may have an error that is larger by thin_weight / weight.
   double thin_weight = 0.0;
   std::function<double()> work = [] { return 0.0; };  ///< work done so far, in any unit
   double most_work = 1.0;                             ///< after this much work no integral is refined
 };
 
-/// Integrals of N functions, with the slope density P: int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} dchi. After the N
-/// integrals come N others: the integrated errors of the integrals over chi. `expected`: rough values of the first N.
+/// Integrals of N functions: int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} dchi, with the slope density P. The result
+/// holds these N integrals, then N integrals of the errors of the inner integrals. `expected`: rough values of the N.
 template <std::size_t N>
 Integral<2 * N> integrate_slopes_of(const SlopeTask<N>& task, const Slopes& slopes, const RegimeScan& scan,
                                     const Refinement& refinement, const Values<N>& expected) {

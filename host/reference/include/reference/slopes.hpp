@@ -18,7 +18,7 @@ class Slopes {
   /// p(t), the density of the slopes t = tan(gamma) in one vertical plane.
   double in_plane_density(double slope) const;
 
-  /// Share of the slopes in one vertical plane above `slope`. Domain: slope >= 1e8 m(), where p follows a power law.
+  /// Share of the slopes in one vertical plane that exceed `slope`. Domain: slope >= 1e8 m(), where p is a power law.
   double in_plane_tail(double slope) const;
 
   /// Share of all facets that are steeper than t, at any azimuth.
@@ -26,10 +26,10 @@ class Slopes {
 
   double quantile(double share) const;
 
-  /// int 2 pi P t^2 dt above t, with the slope density P. Domain: cauchy q > 3/2; t >= 1e8 m(), where P is a power law.
+  /// Contribution of slopes above t to the mean slope. Domain: cauchy q > 3/2; t >= 1e8 m(), where P is a power law.
   double length_above(double t) const;
 
-  /// Integrals over slopes t run over v: t = width() sinh(v) is at(v). density_at(v) is 2 pi P t dt/dv.
+  /// Integrals over slopes use the variable v, with t = at(v) = width() sinh(v). density_at(v) is 2 pi P t dt/dv.
   double at(double v) const { return width_ * std::sinh(v); }
   double coordinate_of(double t) const { return std::asinh(t / width_); }
   double density_at(double v) const;
@@ -58,9 +58,9 @@ struct Zenith {
 /// Lambda of Smith's height-correlated masking, in closed form. Domain: cos(zenith) > 0; cauchy q > 3/2.
 double smith_lambda(const Slopes& slopes, const Zenith& zenith);
 
-/// G_1 of the masking `integral`, by direct numerical integration over the tilt gamma in one vertical plane.
-/// Equation: G_1 = P(gamma < a) + int_a^b p (1 + cos(theta + gamma)/cos(theta - alpha)), a = pi/2 - theta, b =
-/// min(pi/2, pi - 2 theta + alpha). Source: Wang, Li, Wang 2025, eqs. (9)-(12). Accuracy: `tolerance`, absolute.
+/// G_1 of the masking `integral` for a facet of tilt alpha. Accuracy: `tolerance`, absolute.
+/// Equation: G_1 = P(gamma < a) + int_a^b p (1 + cos(theta + gamma)/cos(theta - alpha)) over tilts gamma in one plane;
+/// a = pi/2 - theta and b = min(pi/2, pi - 2 theta + alpha). Source: Wang, Li, Wang 2025, eqs. (9)-(12).
 class IntegralMasking {
  public:
   IntegralMasking(const Slopes& slopes, const Zenith& zenith, double tolerance);
@@ -81,7 +81,7 @@ class Attenuation {
 
  private:
   Masking masking_;
-  double v_cavity_;  ///< (cos a + cos b) min(cos a, cos b); G is this / cos^2 beta, at most 1
+  double v_cavity_;  ///< (cos a + cos b) min(cos a, cos b); G is v_cavity_ / cos^2(beta), but at most 1
   double smith_ = 1.0;
   std::optional<IntegralMasking> integral_;
 };

@@ -69,7 +69,7 @@ Amplitudes<Complex> components(const Bounce<Real>& b, const std::array<Complex, 
   return {b.s[0] * e[0] + b.s[1] * e[1] + b.s[2] * e[2], b.p_in[0] * e[0] + b.p_in[1] * e[1] + b.p_in[2] * e[2]};
 }
 
-/// The electric vector after reflection. `incident`: its components before; `r`: reflection amplitudes.
+/// The electric vector after reflection. `incident`: s and p component before reflection; `r`: reflection amplitudes.
 template <class Real, class Complex>
 std::array<Complex, 3> reflected(const Bounce<Real>& b, const Amplitudes<Complex>& incident,
                                  const Amplitudes<Complex>& r) {

@@ -225,8 +225,7 @@ std::vector<SceneKey> surface_keys() {
       choice("surface.distribution", Surface().distribution, "slope distribution D",
              [](auto& s) { return &s.surface.distribution; }),
       with_set(number("surface.sigma", "1", kSigmaRange, "required",
-                      "slope width sigma, with m^2 = 2 sigma^2; the first value of grid.sigma replaces an absent "
-                      "surface.sigma",
+                      "slope width sigma, with m^2 = 2 sigma^2; if absent, the first value of grid.sigma",
                       [](auto& s) { return &s.surface.sigma; }),
                set_sigma),
       with_set(
@@ -277,9 +276,11 @@ std::vector<SceneKey> radiation_keys() {
                     Source::Kind::kRelative, &Source::relative_irradiance),
       key_at(
           described("source.preset", Type::kWord, "", {}, "",
-                    "E0 of the sun at the top of the atmosphere, instead of irradiance", {"sun"}),
+                    "irradiance E0 of the sun at the top of the atmosphere; use it instead of source.irradiance",
+                    {"sun"}),
           [](auto& s) { return &s.names.source_preset; }, always),
-      text("source.file", "CSV file with your own E0 (columns wavelength_um, irradiance), instead of irradiance",
+      text("source.file",
+           "CSV file with your own E0 (columns wavelength_um, irradiance); use it instead of source.irradiance",
            [](auto& s) { return &s.names.source_file; }),
       number("source.scale", "1", kNonNegativeRange, "1", "factor that multiplies E0, however E0 is given",
              [](auto& s) { return s.source ? &s.source->scale : nullptr; }),
@@ -301,10 +302,11 @@ std::vector<SceneKey> radiation_keys() {
                  &SkyAir::temperature_K),
       number("path.transmittance", "1", kFractionRange, "1", "transmittance tau of the path to the sensor",
              [](auto& s) { return s.path ? &s.path->transmittance : nullptr; }),
-      number("path.temperature_K", "K", kBackgroundTemperatureRange, "",
-             "temperature T of the path, which then has the radiance (1 - tau) B(T); a path without temperature_K and "
-             "radiance has none",
-             [](auto& s) { return s.path ? &s.path->temperature_K : nullptr; }),
+      number(
+          "path.temperature_K", "K", kBackgroundTemperatureRange, "",
+          "temperature T of the path, which then has the radiance (1 - tau) B(T); without this key and path.radiance "
+          "the path emits nothing",
+          [](auto& s) { return s.path ? &s.path->temperature_K : nullptr; }),
       number("path.radiance", "W m-2 sr-1 um-1", kNonNegativeRange, "",
              "radiance L_path of the path, instead of path.temperature_K",
              [](auto& s) { return s.path ? &s.path->radiance : nullptr; }),
@@ -327,8 +329,8 @@ std::vector<SceneKey> geometry_keys() {
          return KeyValue{.numbers = {s.spectrum.min_um, s.spectrum.max_um}};
        }},
       choice("geometry.mode", Geometry().mode,
-             "hemispherical: exitances, in which emission, surroundings and a source at zenith theta all use "
-             "rho(theta); bistatic: radiances toward a fixed view, with a source at zenith theta",
+             "hemispherical: the results are exitances, and rho(theta) weights the surroundings and a source at zenith "
+             "theta; bistatic: the results are radiances toward a fixed view, and the source is at zenith theta",
              [](auto& s) { return &s.geometry.mode; }),
       number("geometry.view_zenith_deg", "degree", kZenithDegRange, "60", "view zenith theta_v in bistatic mode",
              [](auto& s) { return &s.geometry.view_zenith_deg; }),
@@ -353,14 +355,15 @@ std::vector<SceneKey> geometry_keys() {
          return value_at(&ends);
        }},
       grid_axis(Axis::kTemperature, "",
-                "temperatures of the surface in the table; the first one replaces an absent emission.temperature_K"),
+                "temperatures of the surface in the table; the first one is used if emission.temperature_K is absent"),
       grid_axis(Axis::kQ, "surface.q", "tail exponents q of the table"),
-      grid_axis(Axis::kWavelength, "",
-                "wavelengths of the table, instead of a band; the first one replaces an absent spectrum.wavelength_um"),
+      grid_axis(
+          Axis::kWavelength, "",
+          "wavelengths of the table, instead of a band; the first one is used if spectrum.wavelength_um is absent"),
       grid_axis(Axis::kN, "",
-                "values of n in the table, instead of a material; the first one replaces an absent surface.n"),
+                "values of n in the table, instead of a material; the first one is used if surface.n is absent"),
       grid_axis(Axis::kK, "",
-                "values of k in the table, instead of a material; the first one replaces an absent surface.k"),
+                "values of k in the table, instead of a material; the first one is used if surface.k is absent"),
       number("accuracy.tolerance", "1", kToleranceRange, "1e-4",
              "largest error of rho relative to rho_I, and largest absolute error of DOLP",
              [](auto& s) { return &s.accuracy.tolerance; }),
@@ -368,8 +371,8 @@ std::vector<SceneKey> geometry_keys() {
              "arithmetic of the kernels; auto takes float, and double for what float cannot compute to the tolerance",
              [](auto& s) { return &s.accuracy.precision; }),
       {described("accuracy.interpolation", Type::kWord, "", {}, "auto",
-                 "auto: the program may interpolate between slope distributions of a dense grid and combine many "
-                 "indices from responses, within the tolerance; off: it integrates every entry",
+                 "auto: the program may interpolate between slope distributions of a dense grid and compute many "
+                 "indices in one pass, within the tolerance; off: it integrates every entry",
                  {"auto", "off"}),
        [](SceneValues& s, const KeyValue& v) { s.accuracy.may_interpolate = v.word == 0; },
        [](const SceneValues& s) -> std::optional<KeyValue> {

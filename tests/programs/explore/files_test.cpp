@@ -198,6 +198,7 @@ TEST(ExplorePlots, Json_HasTheVisibleCurvesAndTheMap) {
   EXPECT_EQ(curve["low"][100], 100.0 * points[100][Quantity::kDolpLow]);
   EXPECT_TRUE(plots["curves"][0]["low"][100].is_null());
   const MapField field = driver.session.map().field(Plotted::kDolp);
+  EXPECT_EQ(field.count, 128U);
   EXPECT_EQ(plots["map"]["rows"].size(), field.count);
   EXPECT_EQ(plots["map"]["rows"][2][5], 100.0 * field.values[2 * field.count + 5]);
   EXPECT_TRUE(plots["map"]["colours"].is_null() && !plots["map"]["is_signed"]);

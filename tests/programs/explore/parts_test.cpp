@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <filesystem>
-#include <fstream>
 #include <functional>
 
 #include "base/text.hpp"
@@ -15,8 +13,6 @@
 
 namespace dolp::explore {
 namespace {
-
-const std::string kHostDir = DOLP_HOST_DIR;
 
 std::string sixteen_films() {
   std::string films;
@@ -216,33 +212,6 @@ TEST(Conflicts, EveryChoiceInEveryScene_IsTakenWithTheLeastThatItNeeds) {
       }
     }
   }
-}
-
-TEST(SceneToml, ShippedScenesWithChanges_ReadBackAsTheSameScene) {
-  for (const auto& file : std::filesystem::directory_iterator(kHostDir + "/scenes")) {
-    SCOPED_TRACE(file.path().string());
-    const Scene scene =
-        Scene::from_file(file.path(), {{"title", "a \"quoted\" title"}, {"surface.sigma", 0.1234567890123}});
-    const Scene again = Scene::from_text(scene.toml(kHostDir), {}, kHostDir + "/again.toml");
-    EXPECT_EQ(again.title(), "a \"quoted\" title");
-    for (const char* axis : {"grid.theta_deg", "grid.sigma", "grid.q"}) {
-      EXPECT_EQ(again.numbers(axis), scene.numbers(axis));
-    }
-    EXPECT_EQ(again.number("surface.sigma"), 0.1234567890123);
-    expect_same(truth(scene, points_at(scene, {0.0, 35.0, 70.0})), truth(again, points_at(again, {0.0, 35.0, 70.0})));
-  }
-}
-
-TEST(SceneToml, NamedFiles_AreFoundFromTheNewFolder) {
-  const TemporaryFolder temporary;
-  const std::filesystem::path& folder = temporary.path();
-  std::filesystem::create_directories(folder / "scenes");
-  std::filesystem::create_directories(folder / "saved");
-  std::ofstream(folder / "scenes" / "paint.csv") << "wavelength_um,n,k\n8,1.5,0.1\n14,1.6,0.2\n";
-  const std::string path = (folder / "scenes" / "paint.toml").string();
-  const Scene scene = Scene::from_text(kPaint, {{"surface.material_file", "paint.csv"}}, path);
-  const Scene again = Scene::from_text(scene.toml(folder / "saved"), {}, (folder / "saved" / "s.toml").string());
-  EXPECT_EQ(again.refractive_index(10.0), scene.refractive_index(10.0));
 }
 
 constexpr auto kMoment = std::chrono::milliseconds(1);

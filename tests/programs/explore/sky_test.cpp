@@ -2,8 +2,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "base/text.hpp"
-#include "explore/files.hpp"
 #include "explore/scene_edits.hpp"
 #include "explore_support.hpp"
 #include "temporary_file.hpp"
@@ -34,25 +32,6 @@ TEST(SkyPair, SceneOfTheWindow_HasTheResultsOfItsCsv) {
   expect_same(driver.session.curve().points(), truth(scene, driver.session.curve().points()));
   driver.session.undo();
   EXPECT_EQ(driver.session.scene().number("surroundings.temperature_K"), 240.0);
-}
-
-TEST(SkyPair, SavedScene_HasItsSkyBesideIt_AndReadsBackWithIt) {
-  const TemporaryFolder folder;
-  std::filesystem::create_directories(folder.path() / "scenes");
-  std::filesystem::create_directories(folder.path() / "saved");
-  const std::string opened = (folder.path() / "scenes" / "paint.toml").string();
-  const std::string saved = (folder.path() / "saved" / "dusk.toml").string();
-  Session session(SceneEdits(Scene::from_text(kPaint, {}, opened)));
-  session.set("surroundings.profile", session.skies().path(kDusk));
-  EXPECT_TRUE(session.has_unsaved_sky());
-  save_scene(session, saved);
-  EXPECT_FALSE(session.has_unsaved_sky() || session.edits().is_changed());
-  EXPECT_EQ(read_file(folder.path() / "saved" / "dusk_sky.csv"), kDusk.csv());
-  EXPECT_NE(read_file(saved).find("profile = 'dusk_sky.csv'"), std::string::npos) << read_file(saved);
-  const Scene again = Scene::from_file(saved);
-  EXPECT_EQ(read_sky_pair(sky_file(again)), kDusk);
-  const PointList list = points_at(again, {0.0, 40.0, 75.0});
-  expect_same(truth(again, list), truth(session.scene(), list));
 }
 
 }  // namespace

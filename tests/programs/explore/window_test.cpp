@@ -59,19 +59,6 @@ TEST_F(Window, Slider_Dragged_PlottedValuesChangeAndEqualEval_AndTheDragIsTakenB
   EXPECT_FALSE(session().edits().is_changed());
 }
 
-TEST_F(Window, BracketBox_GivesTheCurveABand_AndAnotherMaskingSwitchesItOff) {
-  click_control("emission.bracket");
-  settle();
-  EXPECT_TRUE(session().curve().points()[120].has_bracket());
-  EXPECT_EQ(session().edits().changes(), (std::vector<Setting>{{"emission.bracket", true}}));
-  click_control("surface.masking");
-  click(app_->control_area("surface.masking").at(0.5F, 1.6F));  // "none" is the first word of the list
-  settle();
-  EXPECT_EQ(word("surface.masking"), "none");
-  EXPECT_EQ(word("emission.bracket"), "false");
-  EXPECT_NE(session().message().text.find("also sets emission.bracket = false"), std::string::npos);
-}
-
 TEST_F(Window, Curve_WheelAndRightButton_ZoomAndShift_ADoubleClickShowsAll) {
   const CurveView& view = app_->curve_view();
   const Scale x = view.x(), y = view.y();

@@ -1,4 +1,4 @@
-// Axes whose ends a user types, logarithmic axes, and the colours of the map.
+// The axes of the plots: ends that a user types, logarithmic axes, and the colours of the map.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -158,7 +158,7 @@ class Axes : public Window {
   void type_ends(ImVec2 numbers, const std::string& from, const std::string& to) {
     double_click(numbers);
     if (!from.empty()) type(from);
-    xdotool({"key", "Tab"});  // not keys(): it holds the key so long that it would skip a field
+    xdotool({"key", "Tab"});  // not keys(), which holds a key long enough to move on by two fields
     frames();
     if (!to.empty()) type(to);
     keys("Return");
@@ -193,7 +193,7 @@ TEST_F(Axes, NumbersDoubleClicked_TakeTypedEnds_AndCloseAfterARefusedEndIsTakenB
 
 TEST_F(Axes, RangeOfTheMap_IsComputedAnew_AndARefusedEndGoesWithTheOther) {
   double_click(beside(app_->map_view().area()));
-  type("2.5");  // above the upper end, so refused until the upper end changes too
+  type("2.5");  // the window refuses this lower end, because it is above the upper end
   xdotool({"key", "Tab"});
   frames();
   EXPECT_NE(session().map().y().scale.from, 2.5);

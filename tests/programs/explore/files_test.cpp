@@ -35,14 +35,14 @@ class ExploreFiles : public testing::Test {
   TemporaryFolder folder_;
 };
 
-/// Gives a session at least one of each thing that a session file stores.
+/// Gives a session measured data, a fit range, pins, a snapshot and a view: all that a session file stores.
 void fill(Session& session, const std::string& measured) {
   session.load_measured(measured);
   session.mark("surface.n", true);
   EXPECT_EQ(session.set_fit_range("surface.k", "0.01", "2"), "");
   session.pin();
   session.pin();
-  session.pins().pop_front();  // the colour of the other pin must not change
+  session.pins().pop_front();  // the pin that remains must keep its colour
   session.pins()[0].name = "as opened";
   session.set({{"surface.sigma", 0.3}, {"surface.masking", "smith"}, {"surroundings", Value()}});
   session.take_snapshot();
@@ -57,7 +57,7 @@ void fill(Session& session, const std::string& measured) {
             .panel = Panel::kSlopes,
             .mueller_row = 1,
             .mueller_column = 3};
-  session.set_view(view);  // resets all ranges, so it precedes view.ranges
+  session.set_view(view);  // a new quantity resets all ranges, so the test sets the ranges afterwards
   view.ranges = {{View::kZeniths, {20.0, 70.0}},
                  {View::kValues, {0.01, 0.4, true}},
                  {View::kColours, {0.0, 0.3}},
@@ -101,7 +101,7 @@ TEST_F(ExploreFiles, Session_SavedAndOpened_IsTheSame) {
   EXPECT_EQ(b.marked().at("surface.k")->high, 2.0);
   EXPECT_EQ(b.view(), a.view());
   EXPECT_EQ(b.theta_deg(), 42.5);
-  // The file must not contain a path of this machine. If the window opens and saves it again, its text stays the same.
+  // The file must not contain a path of this machine. A session that is opened and saved again gives the same text.
   const std::string text = read_file(at("all.toml"));
   EXPECT_EQ(text.find(at("")), std::string::npos) << text;
   save_session(opened.session, at("again.toml"));
@@ -202,7 +202,7 @@ TEST(ExplorePlots, Json_HasTheVisibleCurvesAndTheMap) {
   EXPECT_EQ(plots["map"]["rows"].size(), field.count);
   EXPECT_EQ(plots["map"]["rows"][2][5], 100.0 * field.values[2 * field.count + 5]);
   EXPECT_TRUE(plots["map"]["colours"].is_null() && !plots["map"]["is_signed"]);
-  // The surface of the pin is now also that of the curve. So the window names the pin after its temperature.
+  // Pin and curve now have the same surface. So the name of the pin tells its temperature.
   driver.session.pins()[0].name = "";
   driver.session.set({{"surface.sigma", 0.15}, {"emission.temperature_K", 310.0}});
   driver.settle();

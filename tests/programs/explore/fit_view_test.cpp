@@ -1,4 +1,4 @@
-// Fits in the window: the minimum on display, the other minima, and their texts.
+// Fits in the window: which minimum the window shows, how a user visits the other minima, and the texts about them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -93,7 +93,7 @@ using namespace dolp::explore_test;
 
 class FitWindow : public Window {
  protected:
-  /// Computes the DOLP of the scene with another setting, and loads it as measured data.
+  /// Computes the DOLP of the scene with one changed setting, and loads the results as measured data.
   void measure(const std::string& setting) {
     put("points.csv", "theta_deg\n20\n30\n40\n50\n60\n70\n80\n");
     std::string csv = "theta_deg,dolp,uncertainty\n";
@@ -114,7 +114,7 @@ class FitWindow : public Window {
 TEST_F(FitWindow, MarkedSliders_MoveToTheTruth_AndTheResultIsSaidUntilTheSceneChanges) {
   measure("surface.sigma=0.3");
   EXPECT_FALSE(session().fit_job());
-  for (const char* key : {"surface.sigma", "surface.n", "surface.k", "surface.k"})  // k is marked and unmarked
+  for (const char* key : {"surface.sigma", "surface.n", "surface.k", "surface.k"})  // the second click on k unmarks it
     click_control(std::string("vary ") + key);
   fit();
   for (const auto& [key, truth, tolerance] : {std::tuple{"surface.sigma", 0.3, 2e-3}, {"surface.n", 1.5, 0.01}}) {
@@ -139,7 +139,7 @@ TEST_F(FitWindow, RangeTypedBelowASlider_BoundsTheFit) {
     keys("Return");
   }
   fit();
-  EXPECT_EQ(number("surface.n"), 1.6);  // the true value, 1.7, is outside the range
+  EXPECT_EQ(number("surface.n"), 1.6);  // the end of the range next to the true value 1.7
 }
 
 TEST_F(FitWindow, NearestMinimum_IsChosen_AndAClickVisitsTheLowest) {

@@ -1,4 +1,4 @@
-// What the window uses: edits of the scene, choices that exclude each other, the worker, measured points.
+// Parts of the window without a display: controls, edits of the scene, the worker, measured points, exports.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ std::string sixteen_films() {
   return "surface.coating=[" + films + "]";
 }
 
-/// A setting without which a scene does not accept this key.
+/// A setting that a scene needs before it accepts this key.
 std::string needed_by(const Key& key) {
   for (const auto& [begin, setting] : {std::pair{"source.scale", "source.irradiance=1"},
                                        {"surface.wind_m_s", "surface.distribution=gaussian"},
@@ -69,8 +69,9 @@ std::string value_of(const Scene& scene, const std::string& key) {
 }
 
 struct EditCase {
-  std::vector<std::string> opened;    ///< settings with which the window opens
-  std::vector<std::string> steps;     ///< each one sets keys (several with ;), or is "reset KEY" or "reset"
+  std::vector<std::string> opened;  ///< settings with which the window opens
+  std::vector<std::string>
+      steps;  ///< "KEY=VALUE", several of them separated by ";", "reset KEY", or "reset" for all keys
   std::vector<std::string> expected;  ///< settings of the scene afterwards
   std::string message = "";           ///< text that the last message contains; empty: no message
   bool is_error = false;
@@ -97,7 +98,7 @@ const std::vector<EditCase> kEditCases = {
     {{"emission.bracket=true", "emission.temperature_K=310"},
      {"emission=none", "reset emission"},
      {"emission.temperature_K=310", "emission.bracket=true"}},
-    // If a choice excludes other settings, these settings change, too.
+    // A choice also changes the settings that it excludes.
     {{"surface.masking=smith", "emission.bracket=true"},
      {"surface.scattering=multiple"},
      {"surface.masking=v-cavity", "emission.bracket=false"},
@@ -216,7 +217,7 @@ TEST(Conflicts, EveryChoiceInEveryScene_IsTakenWithTheLeastThatItNeeds) {
 
 constexpr auto kMoment = std::chrono::milliseconds(1);
 
-/// An evaluator whose calls do not return before open().
+/// An evaluator whose calls wait until is_open is true.
 struct SlowEvaluator {
   Evaluate evaluate() {
     return [this](const Scene& scene, const PointList& list, const RunOptions& options) {

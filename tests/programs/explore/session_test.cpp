@@ -53,7 +53,7 @@ TEST(ExploreSession, Results_AreStaleUntilTheSceneIsComputed_AndKeepTheirParamet
   EXPECT_NE(cursor_text(session).find("σ = 0.4:"), std::string::npos) << cursor_text(session);
 }
 
-/// Checks a point on display against accurate results for curve.shown_scene().
+/// Compares one point of a curve with an accurate result for the scene that the curve shows.
 void expect_point_of(const Curve& curve, std::size_t position) {
   if (curve.points().empty()) return;
   const Point& shown = curve.points()[position % curve.points().size()];
@@ -64,7 +64,7 @@ void expect_point_of(const Curve& curve, std::size_t position) {
       << surface_name(curve.shown_scene()) << " at " << shown.theta_deg;
 }
 
-/// Does one random thing that a user may do.
+/// Does one random action of a user.
 void act(Session& session, std::mt19937_64& random) {
   const double share = std::generate_canonical<double, 53>(random);
   const bool is_even = share < 0.5;
@@ -83,7 +83,7 @@ void act(Session& session, std::mt19937_64& random) {
   acts[random() % std::size(acts)]();
 }
 
-// 960 frames are a minute of use with 16 frames per second.
+// At 16 frames per second, 960 frames are a minute of use.
 TEST(ExploreSession, RandomUse_NamesAndCurvesAgreeInEveryFrame) {
   constexpr int kFrames = 960;
   std::mt19937_64 random(20261124);
@@ -119,7 +119,7 @@ TEST(ExploreSession, Drag_GetsCoarseResultsInTurn_AndSaysSoOnce) {
     EXPECT_TRUE(curve_name(session).ends_with(", coarse"));
     EXPECT_NE(std::exchange(maps, session.map().version()), session.map().version());
   }
-  // After a result of the curve it is the turn of the overlay and the map, even if the curve has changed again.
+  // When the curve has got a result, the overlay and the map come next, even if the curve has changed again.
   session.set("surface.sigma", 0.4);
   std::vector<Job> jobs = session.wanted();
   ASSERT_EQ(jobs.size(), 3U);
@@ -131,7 +131,7 @@ TEST(ExploreSession, Drag_GetsCoarseResultsInTurn_AndSaysSoOnce) {
   driver.settle();
   EXPECT_TRUE(session.curve().is_finished());
   EXPECT_FALSE(curve_name(session).ends_with(", coarse"));
-  session.take({done(curve)});  // late, and of an earlier scene
+  session.take({done(curve)});  // a late result for an earlier scene, which must not appear
   EXPECT_EQ(session.curve().shown_scene().number("surface.sigma"), 0.41);
 }
 
@@ -255,7 +255,7 @@ TEST(ExploreSession, AllBounces_PeakIsComparedWithSingleScattering) {
   const auto named = [&](const std::string& name) {
     return std::ranges::find(peak.without(), name, &WithoutEffect::effect);
   };
-  // no point without this masking, because multiple bounces need it
+  // The scene cannot be computed without its masking, because multiple scattering needs v-cavity.
   EXPECT_EQ(named("masking"), peak.without().end());
   ASSERT_NE(named("scattering"), peak.without().end());
   const Point& result = named("scattering")->result.value();
@@ -282,7 +282,7 @@ TEST(ExploreSession, Peak_IsTheLargestOfTheCurve_IsDrawn_AndItsCausesAddUp) {
   const Point at = peak.answer()->at;
   double sum = 0.0;
   for (const WithoutEffect& part : peak.without()) sum += part.radiates ? peak.contribution(part) : 0.0;
-  // each contribution is a difference of two runs with a tolerance of 1e-3
+  // Each contribution is the difference of two results, which may each be wrong by 1e-3.
   EXPECT_NEAR(sum, at[Quantity::kQOverI], 2e-3);
   for (const Point& result : session.curve().points()) {
     if (!result.is_good()) continue;

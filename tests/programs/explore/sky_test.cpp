@@ -1,4 +1,4 @@
-// Skies that the window makes from two temperatures: their files, saved scenes with them, and their editor.
+// Skies that a user makes in the window from two temperatures: their files and their editor.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -43,9 +43,9 @@ using namespace dolp;
 using namespace dolp::explore;
 using namespace dolp::explore_test;
 
-/// `entry`: distance of a sky from the top of the closed list, divided by the height of the closed list.
 class Skies : public Window {
  protected:
+  /// Chooses a sky from a list. `entry` is the distance of the sky from the top of the list, in heights of one line.
   void choose(float entry) {
     click_control("sky");
     click(app_->control_area("sky").at(0.5F, entry));
@@ -88,7 +88,7 @@ TEST_F(Skies, List_OffersUniformAndBuiltInSkies_AndTheFileOfTheSceneAsOpened) {
     choose(entry);
     EXPECT_EQ(word("surroundings.profile").value_or(""), name);
   }
-  EXPECT_EQ(number("surroundings.temperature_K"), 240.0);  // as in the opened scene
+  EXPECT_EQ(number("surroundings.temperature_K"), 240.0);  // the value of the scene as opened
   put("sky.csv", "zenith_deg,temperature_K\n0,220\n70,240\n90,285\n");
   open({{"surroundings.profile", "sky.csv"}});
   for (const auto& [entry, name] : {std::pair{3.4F, "overcast"}, {5.2F, "sky.csv"}}) {

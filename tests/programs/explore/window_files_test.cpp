@@ -29,7 +29,7 @@ class WindowFiles : public Window {
     keys("Return");
     settle();
   }
-  /// Opens a file from the list of the dialog. The first click selects the file, the second one opens it.
+  /// Opens a file from the list of the dialog: the first click selects the file, the second click opens it.
   void open_listed(const std::string& folder, const std::string& file) {
     keys("ctrl+o");
     frames();

@@ -47,7 +47,7 @@ TEST_F(WindowLook, MarkOfAMaximumAtTheEnd_IsWhole) {
   const auto column = [&](float right) {
     return pixels({{plot().max.x + right, plot().min.y}, {plot().max.x + right + 1.0F, plot().max.y}});
   };
-  EXPECT_TRUE(column(3.0F) != column(7.0F));  // the mark of the maximum ends between these columns
+  EXPECT_TRUE(column(3.0F) != column(7.0F));  // the mark of the maximum covers the left column, but not the right one
 }
 
 TEST_F(WindowLook, Lines_BreakAtSpacesAlone) {
@@ -99,7 +99,7 @@ TEST_F(WindowLook, LeastSize_ShowsOneThingAtATime) {
 TEST_F(WindowLook, Note_WaitsForTheMouseToRest_AndLeavesTheNextValueInSight) {
   const Area slider = app_->control_area("surface.sigma");
   Area next = app_->control_area("surface.q");
-  next.max = next.at(0.6F, 1.0F);  // without the part that the mouse pointer covers
+  next.max = next.at(0.6F, 1.0F);  // leaves out the part under the mouse pointer
   const Area note{{slider.max.x + 150.0F, slider.min.y}, {slider.max.x + 300.0F, slider.max.y + 40.0F}};
   const std::string without = pixels(note);
   const double moved_s = ImGui::GetTime();

@@ -68,7 +68,7 @@ TEST_F(Window, Curve_WheelAndRightButton_ZoomAndShift_ADoubleClickShowsAll) {
   frames();
   EXPECT_LT(view.x().to - view.x().from, 0.9 * (x.to - x.from));
   EXPECT_LT(view.y().to - view.y().from, 0.9 * (y.to - y.from));
-  EXPECT_NEAR(view.x().value(0.4), 36.0, 0.3);  // zooming keeps the value at the mouse
+  EXPECT_NEAR(view.x().value(0.4), 36.0, 0.3);  // the zoom keeps the zenith under the mouse at its place
   const Scale zoomed = view.x();
   xdotool({"mousedown", "3"});
   frames();
@@ -191,7 +191,7 @@ TEST_F(Window, EventsBetweenTwoFrames_AllCount) {
   xdotool({"key", "--delay", "12", "ctrl+p", "ctrl+p"});
   frames();
   EXPECT_EQ(session().pins().size(), 2U);
-  // A click works at the place where it was made, even if the mouse moves away before the next frame.
+  // A click acts where the mouse was at that moment, even if the mouse moves away before the next frame.
   const ImVec2 box = app_->control_area("emission.bracket").at(0.5F, 0.5F);
   xdotool({"mousemove", "--window", window_, std::to_string(std::lround(box.x)), std::to_string(std::lround(box.y)),
            "click", "1", "mousemove", "--window", window_, "700", "300"});
@@ -232,7 +232,7 @@ TEST_F(Window, TypedNumber_IsTakenWhereverTypingEnds_AndStaysWhereItIsRefused) {
 TEST_F(Window, EndsOfABand_OfWhichOneWasRefused_AreTakenTogether) {
   click_control("field spectrum.band_um 0");
   xdotool({"type", "15"});
-  xdotool({"key", "Tab"});  // not keys(): it holds the key so long that it would skip a field
+  xdotool({"key", "Tab"});  // not keys(), which holds a key long enough to move on by two fields
   EXPECT_TRUE(is_marked("field spectrum.band_um 0"));
   xdotool({"type", "20"});
   keys("Return");
@@ -240,7 +240,7 @@ TEST_F(Window, EndsOfABand_OfWhichOneWasRefused_AreTakenTogether) {
   EXPECT_FALSE(is_marked("field spectrum.band_um 0"));
 }
 
-/// The area of the curve in a window on a display with this size and resolution.
+/// The plot area of the curve, in a window on a display with the given size and resolution.
 Area plot_on(const std::string& size, const std::string& dots_per_inch) {
   const VirtualDisplay display(size);
   EXPECT_EQ(run({.arguments = {"xprop", "-root", "-f", "RESOURCE_MANAGER", "8s", "-set", "RESOURCE_MANAGER",

@@ -1,4 +1,4 @@
-// The views beside the map, and the window while the user drags a slider.
+// The views that a user can show instead of the map, and controls of films and wind.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -32,7 +32,8 @@ double projected(const Scene& scene) {
 }
 
 TEST(ExplorePanels, SlopeDensity_IsNormalised_AndTheOtherOneHasTheSameD0) {
-  constexpr double kRule = 1e-6;  // error of the midpoint rule; with twice as many points the integral changes less
+  constexpr double kRule =
+      1e-6;  // bound of the error of the midpoint rule: twice as many points change the integral by less
   for (const char* distribution : {"cauchy", "gaussian"}) {
     for (const double sigma : {0.05, 0.3, 1.0}) {
       const Scene scene = paint().scene().with({{"surface.distribution", distribution}, {"surface.sigma", sigma}});
@@ -57,7 +58,7 @@ TEST(ExplorePanels, MaterialCurve_HasTheScenesIndex_FromEndToEnd) {
   EXPECT_EQ(material_curve(paint().scene(), 5).n, std::vector<double>(5, 1.5));
 }
 
-/// Takes the results of a sweep over one axis, as a view does.
+/// Computes the points that a sweep asks for, gives them to the sweep, and returns them.
 std::vector<Point> swept(Sweep& sweep) {
   sweep.take(done(sweep.wanted().value()));
   EXPECT_TRUE(sweep.is_finished());
@@ -75,8 +76,8 @@ TEST(ExplorePanels, SmoothSurface_HasFresnelsReflectances_AndAQuarterWaveFilmRef
   EXPECT_NEAR(reflectance(kS, bare[0]), 0.04, 1e-12);
   EXPECT_NEAR(reflectance(kP, bare[1]), 0.0, 1e-12);
   EXPECT_NEAR(reflectance(kS, bare[1]), std::pow((1.0 - 2.25) / (1.0 + 2.25), 2), 1e-12);
-  // A film of index sqrt(n) reflects nothing at normal incidence if it is 1/4 or 3/4 of a wavelength thick, and has no
-  // effect at 1/2. Here the wavelength is the one in the film.
+  // At normal incidence a film of index sqrt(n) reflects nothing if its thickness is 1/4 or 3/4 of the wavelength in
+  // the film. A film with 1/2 of this wavelength has no effect.
   const double n = std::sqrt(1.5);
   const Scene coated = glass.with({coating_of({{{"n", n}, {"thickness_um", 2.0}}})});
   PointList list = points_at(coated, {0.0, 0.0, 0.0});
@@ -102,7 +103,7 @@ TEST(ExplorePanels, Spectrum_IsTheCurveOverWavelengthAtTheCursor_AndIsComputedWh
   session.set_theta(70.0);
   driver.settle();
   ASSERT_TRUE(session.spectrum().is_finished());
-  // from 4 um (half of 8 um, where the band begins) to the last wavelength of the material
+  // The axis begins at half of the lower end of the band, 4 um. It ends at the last wavelength of the material.
   EXPECT_EQ(session.wavelengths().scale, (Scale{4.0, 20.0}));
   const std::size_t at = 40;
   const Scene scene = session.spectral_scene().with("spectrum.wavelength_um", session.spectrum().at()[at]);
@@ -187,7 +188,7 @@ TEST_F(Window, Panels_ClickedOneByOne_AreDrawn_AndTheMapIsComputedWhileItIsShown
 
 TEST_F(Window, Films_AreAddedOutside_ChangedAndRemoved) {
   const auto films = [&] { return films_of(session().scene()); };
-  session().set_view(&View::panel, Panel::kSlopes);  // a map of coated surfaces would take long
+  session().set_view(&View::panel, Panel::kSlopes);  // a view without a map, because maps of coated surfaces take long
   session().set({coating_of({{{"material", "PMMA acrylic"}, {"thickness_um", 2.0}}})});
   settle();
   click_control("add film");

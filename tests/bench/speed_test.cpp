@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "methods/arithmetic_peak.hpp"
 #include "methods/method.hpp"
 #include "methods/operations.hpp"
 #include "methods/truth.hpp"

@@ -12,6 +12,7 @@
 #include "model/angles.hpp"
 #include "model/sky_basis.hpp"
 #include "plan/constants.hpp"
+#include "plan/kernel_data.hpp"
 
 namespace dolp {
 namespace {

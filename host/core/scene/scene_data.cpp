@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <dolp/errors.hpp>
+#include <filesystem>
 #include <utility>
 
 #include "base/text.hpp"

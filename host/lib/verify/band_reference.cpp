@@ -4,6 +4,7 @@
 #include <array>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
+#include <numeric>
 
 #include "model/angles.hpp"
 #include "run/scene_run.hpp"

@@ -10,6 +10,7 @@
 #include "base/stopwatch.hpp"
 #include "device/context.hpp"
 #include "device/result.hpp"
+#include "evaluate/kernel/slope_samples.hpp"
 #include "evaluate/vulkan/tiled_run.hpp"
 
 namespace dolp {

@@ -204,8 +204,8 @@ class DOLP_EXPORT Evaluator {
   void table_parts(const Scene& scene, const std::function<void(const Table&)>& take, const RunOptions& options = {});
   /// Writes the table to a file (.nc, .csv or .npy) part by part, so that memory does not grow with the table. A
   /// cancelled or killed call leaves its finished parts beside the file. A later call with `resume` uses these parts.
-  /// With `shard`, writes only this shard, to a file with "N-of-M" before its suffix. Computes nothing if a complete
-  /// .nc file of the shard exists, from the same program, scene, evaluator and keep_all. Errors: InputError, IoError.
+  /// With `shard`, writes only this shard, to a file with "N-of-M" before its suffix. Keeps a complete .nc shard of the
+  /// same program, scene, n, k, irradiance E0, evaluator and keep_all, without computing. Errors: InputError, IoError.
   Report write_table(const Scene& scene, const std::filesystem::path& path, const RunOptions& options = {},
                      const Shard& shard = {});
   /// Computes a response table (see response.hpp) and the albedo over the scene's theta, sigma and q. First applies

@@ -136,7 +136,7 @@ struct FitMinimum {
 struct FitNumbers {
   std::vector<FitParameter> parameters = {};  ///< in the order of FitOptions::vary
   double chi_square = 0.0;                    ///< sum of the losses of all residuals; the loss kSquares is the square
-  std::size_t degrees_of_freedom = 0;         ///< points minus parameters; for ModelError::kBracket, points
+  std::size_t degrees_of_freedom = 0;         ///< points minus parameters, but all points with ModelError::kBracket
   std::optional<double> p_value = {};         ///< empty without uncertainties, and for losses except kSquares
   std::string fit_quality = {};         ///< "good", "doubtful" (p < 0.05), "bad" (p < 0.001); empty without p_value
   std::vector<FitMinimum> minima = {};  ///< all minima that the fit found, the best first

@@ -36,9 +36,9 @@ struct FitResult : FitNumbers {
 
 std::string fit_quality(const std::optional<double>& p_value);
 
-/// Finds the minima of the objective and the intervals of the parameters. If the fit is doubtful or bad and its AIC is
-/// at most `most_aic`, also computes FitParameter::scaled_68 and scaled_95. Returns nullopt if no descent converged.
-/// Errors: errors of the evaluator; Cancelled.
+/// Finds the minima of the objective and the intervals of the parameters. If the fit is doubtful or bad, also computes
+/// the intervals scaled_68 and scaled_95. Omits them if the AIC is above `most_aic`, because then another model is
+/// better. Returns nullopt if no descent converged. Errors: errors of the evaluator; Cancelled.
 std::optional<FitResult> fit(const Model& model, ModelEvaluator& evaluator, const FitOptions& options,
                              double most_aic = std::numeric_limits<double>::infinity());
 

@@ -23,11 +23,11 @@ inline constexpr std::array<Axis, kAxisCount> kAllAxes = enumerators<Axis, kAxis
 
 struct AxisDescription {
   const char* name;    ///< name of the coordinate in table files and in xarray Datasets
-  const char* column;  ///< name in points, in .csv and .npy files, as a key of [grid], and as a Python keyword
+  const char* column;  ///< name in CSV files of points, in .csv and .npy tables, in [grid] and in Python calls
   const char* units;
   const char* long_name;
   NumberRange range;
-  bool is_required;         ///< true: every table has the axis; false: a table may lack it and hold for one value
+  bool is_required;         ///< true: every table has the axis; false: a table without it has one value for all entries
   bool has_labels = false;  ///< the values are positions (from 0) in a list of labels: names of materials or bands
 };
 
@@ -47,19 +47,19 @@ static_assert(kAxes.back().name != nullptr, "each axis has a row");
 
 constexpr const AxisDescription& description_of(Axis axis) { return kAxes[static_cast<std::size_t>(axis)]; }
 
-/// Description of wind speeds, which are not an axis. In [grid] and in points, wind speeds can replace values of sigma.
-/// A table then has its wind speeds as a second coordinate along the axis sigma.
+/// Description of the wind speed, which determines sigma. It is not an axis: wind speeds replace values of sigma in
+/// [grid] or in points. A table computed from wind speeds has them as a second coordinate along its axis sigma.
 inline constexpr AxisDescription kWind = {
     "wind_m_s", "wind_m_s", "m s-1", "wind speed that gives sigma (Cox and Munk 1954)", kWindRange, false};
 
-/// The axes in the order in which error messages list the columns that points can have.
+/// The order in which error messages list the columns of points.
 inline constexpr std::array<Axis, kAxisCount> kColumnOrder = {Axis::kTheta,    Axis::kSigma,       Axis::kQ,
                                                               Axis::kN,        Axis::kK,           Axis::kWavelength,
                                                               Axis::kMaterial, Axis::kTemperature, Axis::kBand};
 
 /// The values of each axis, in any order and without repetition. A grid has at least one value of each required axis.
 using Axes = AxisArray<std::vector<double>>;
-/// The labels of axes with labels: names of materials, and bands such as "8-14". Empty for other axes.
+/// The names on the axis material, and the bands on the axis band, such as "8-14". Empty for all other axes.
 using AxisLabels = AxisArray<std::vector<std::string>>;
 /// One integer per axis, such as a position along the axis or its number of values.
 using PerAxis = AxisArray<std::size_t>;

@@ -51,18 +51,17 @@
 
 namespace dolp {
 
-/// "0.2.0".
 DOLP_EXPORT std::string version();
 /// The git commit from which the library was built; "unknown" if it was built outside a repository.
 DOLP_EXPORT std::string commit();
 /// How to cite the program and the model, in the Citation File Format.
 DOLP_EXPORT std::string citation();
 
-/// The report about a call: results, and the problems that it found.
+/// The report that a call returns: what the call did, its results, and any problems.
 struct Report {
   std::string text;              ///< report as readable lines
   std::string json;              ///< all values as JSON, as the option --json of the program prints them
-  bool is_good = true;           ///< false if the result of an entry misses its tolerance or a check fails
+  bool is_good = true;           ///< false if a result misses its tolerance, a check fails or a fit finds no minimum
   std::filesystem::path output;  ///< the file that the call wrote; empty if it wrote none
   /// The lines of `text` with a label, such as "entries    5 x 1 x 1". A pair has the label and the rest of the line.
   std::vector<std::pair<std::string, std::string>> rows = {};
@@ -75,7 +74,7 @@ class DOLP_EXPORT Scene {
   /// Reads a scene file (TOML); "-" is stdin. Applies the settings in their order.
   /// Errors: InputError with file, line, key, value and allowed range.
   static Scene from_file(const std::filesystem::path& path, const std::vector<Setting>& settings = {});
-  /// Reads a scene from text. Error messages begin with `name`. Paths in the text are relative to the folder of `name`.
+  /// Reads a scene from text, as if from a file with the path `name`: paths in the text are relative to its folder.
   static Scene from_text(const std::string& text, const std::vector<Setting>& settings = {},
                          const std::string& name = "scene");
   /// A copy in which a key has another value, for example with("surface.sigma", 0.2). Errors: InputError.
@@ -96,15 +95,15 @@ class DOLP_EXPORT Scene {
   /// The given or default value of a key, in the unit of the key. Empty if the scene does not use the key: a surface
   /// with a material does not use surface.n. Errors: InputError if the key is unknown or its value is not a number.
   std::optional<double> number(std::string_view key) const;
-  /// The value of a key as text: a word, a text, "true" or "false". Empty as in number(), or if the text is empty.
+  /// The word or text of a key; "true" or "false" for a flag. Empty if the scene does not use the key or has no text.
   std::optional<std::string> word(std::string_view key) const;
   /// The values of a key whose value is an axis or a pair of numbers. Empty if the scene lacks the key.
   std::vector<double> numbers(std::string_view key) const;
-  /// The names of the materials and bands in [grid]. In points, a material or a band is a position in its list.
+  /// The materials and bands in [grid]. In points, the columns material and band_um contain positions in these lists.
   const AxisLabels& labels() const;
   /// One line for each suspicious value (nm instead of um) and for each assumption (k = 0, if a file lacks k).
   std::vector<std::string> remarks() const;
-  /// n and k of the surface at a wavelength. Errors: InputError if the material has no values there.
+  /// n and k of the surface at a wavelength. Errors: InputError if n or k is unknown at this wavelength.
   std::pair<double, double> refractive_index(double wavelength_um) const;
 
   Scene(const Scene&) = default;
@@ -119,8 +118,8 @@ class DOLP_EXPORT Scene {
   std::shared_ptr<const Impl> impl_;
 };
 
-/// Settings that adapt a scene to response tables. They remove what does not influence such a table, such as material
-/// and radiation, and set arbitrary values for keys that every scene must have.
+/// Settings that prepare a scene for a response table (see response.hpp). They remove keys that do not influence the
+/// table, such as material and radiation. They set arbitrary values for keys that every scene must have.
 DOLP_EXPORT std::vector<Setting> surface_settings();
 
 /// The text of an example scene: bare stainless steel at 10.6 um.
@@ -128,17 +127,18 @@ DOLP_EXPORT std::string example_scene();
 
 struct BuiltInMaterial {
   std::string name;      ///< name of the material, as a value of the key surface.material
-  double from_um = 0.0;  ///< n and k are known at the wavelengths from from_um to to_um
-  double to_um = 0.0;
+  double from_um = 0.0;  ///< shortest wavelength at which n and k are known
+  double to_um = 0.0;    ///< longest wavelength at which n and k are known
   std::string source;
 };
 DOLP_EXPORT std::vector<BuiltInMaterial> materials();
-/// The built-in material with this name, or the only one whose name begins so. Ignores case. Errors: InputError.
+/// The built-in material with this full name; else the only one whose name begins with these words; else the only one
+/// whose name contains these words. Ignores case. Errors: InputError.
 DOLP_EXPORT BuiltInMaterial material(const std::string& name);
 
 /// Results at points, in the order of the points: computed, or interpolated in a table.
 struct Results : ResultColumns {
-  Quantities given;          ///< the quantities that `columns` contains; unknown values are NaN
+  Quantities given;          ///< quantities that have a column in these results; a value that is unknown is NaN
   std::string stokes_units;  ///< unit of the Stokes parameters for UDUNITS, such as "W m-2 um-1"
   /// The global attributes that a table file would have: device, precision, effects, rule, ...
   std::vector<Attribute> attributes;
@@ -153,21 +153,21 @@ class DOLP_EXPORT Table {
  public:
   /// Reads a table that dolp wrote as .nc. Errors: InputError.
   static Table read(const std::filesystem::path& path);
-  /// Makes a table, for example from a part of the values() of another table, with its file_attributes() as attributes.
-  /// Error messages begin with `name`. Errors: InputError if an axis, an attribute or the size of a column is wrong.
+  /// Makes a table, for example from a part of another table. Then `values.attributes` may be the file_attributes()
+  /// of the other table. Error messages begin with `name`. Errors: InputError if an axis, attribute or column is wrong.
   static Table of(TableValues values, const std::string& name = "table");
 
   const TableValues& values() const;
-  /// The attributes of a file of the table: conventions, values().attributes, n, k and E0, and a hash of the values.
+  /// The attributes in a file of this table: values().attributes and further ones, such as a hash of the values.
   std::vector<Attribute> file_attributes() const;
 
   Table(const Table&) = default;
   Table& operator=(const Table&) = default;
   ~Table() = default;
 
-  /// Interpolates in the table at points. A missing column takes the only value of its axis, or else the scene's value.
-  /// The error estimates include the error of the interpolation. Errors: InputError for a point outside the axes, and
-  /// for a table without the attribute `scene`, without a required quantity or without an axis of its scene's [grid].
+  /// Interpolates in the table at points. An axis without a column in `points` gets its only value or, if it has
+  /// several, the value in the table's scene. Error estimates include the interpolation error. Errors: InputError for a
+  /// point outside the axes, and for a table that lacks the attribute `scene`, an axis or a quantity that lookup needs.
   Results lookup(const std::vector<Column>& points, const Progress& progress = {}) const;
 
   /// Writes the table as .nc, .csv or .npy, by the suffix. The file is complete or absent. Errors: InputError, IoError.
@@ -203,18 +203,18 @@ class DOLP_EXPORT Evaluator {
   /// whose axes have only some of the values. An exception from `take` ends the call.
   void table_parts(const Scene& scene, const std::function<void(const Table&)>& take, const RunOptions& options = {});
   /// Writes the table to a file (.nc, .csv or .npy) part by part, so that memory does not grow with the table. A
-  /// cancelled or killed call leaves its finished parts beside the file, and a call with `resume` uses these parts.
-  /// If `shard` is given, writes only this shard, to a file with "N-of-M" before its suffix. Computes nothing if that
-  /// file is complete and has the same scene, n, k, E0, evaluator and options. Errors: InputError, IoError.
+  /// cancelled or killed call leaves its finished parts beside the file. A later call with `resume` uses these parts.
+  /// With `shard`, writes only this shard, to a file with "N-of-M" before its suffix. Keeps a complete .nc shard of the
+  /// same program, scene, n, k, irradiance E0, evaluator and keep_all, without computing. Errors: InputError, IoError.
   Report write_table(const Scene& scene, const std::filesystem::path& path, const RunOptions& options = {},
                      const Shard& shard = {});
-  /// Computes the response table over the scene's theta, sigma and q: TableValues::responses and the albedo. Material,
-  /// wavelength and radiation do not influence the table; its attributes describe the scene with surface_settings().
-  /// Each response_error is at most the tolerance times the albedo. Errors: InputError for scattering "multiple".
+  /// Computes a response table (see response.hpp) and the albedo over the scene's theta, sigma and q. First applies
+  /// surface_settings() to the scene, because material, wavelength and radiation do not influence the table. The
+  /// tolerance applies to response_error / albedo. Errors: InputError if the scattering is "multiple".
   Table response(const Scene& scene, const RunOptions& options = {});
   /// Writes the response table to a .nc file part by part. Errors: InputError, IoError.
   Report write_response(const Scene& scene, const std::filesystem::path& path, const RunOptions& options = {});
-  /// Computes at scattered points the quantities that a table has. Missing columns take the scene's values.
+  /// Computes the same quantities as table(), at points. A variable without a column has the scene's value.
   Results evaluate(const Scene& scene, const std::vector<Column>& points, const RunOptions& options = {});
   /// Computes results for a CSV of points. Writes a CSV: columns of the points, then results. "-" is stdin or stdout.
   Report write_points(const Scene& scene, const std::filesystem::path& points, const std::filesystem::path& path,
@@ -226,7 +226,7 @@ class DOLP_EXPORT Evaluator {
   /// Computes Mueller matrices for the pairs of directions in a CSV. Writes a CSV, as write_points does.
   Report write_mueller(const Scene& scene, const std::filesystem::path& points, const std::filesystem::path& path,
                        const RunOptions& options = {});
-  /// Fits numbers of the scene to measured data and computes profile-likelihood intervals. This call may throw IoError.
+  /// Fits numbers of the scene to data, with profile-likelihood intervals. Errors: IoError if a file cannot be written.
   Fit fit(const Scene& scene, const std::vector<MeasuredData>& data, const FitOptions& options);
 
  private:
@@ -244,10 +244,10 @@ DOLP_EXPORT Report write_lookup(const std::filesystem::path& table, const std::f
 DOLP_EXPORT Report merge(const std::vector<std::filesystem::path>& shards, const std::filesystem::path& path,
                          const std::string& history = {});
 
-/// All effects of the scene, and what a run at these points does with each. Computes Effect::influence only to 1e-3.
+/// All effects of the scene, and what a run at these points does with them. Effect::influence has the tolerance 1e-3.
 DOLP_EXPORT std::vector<Effect> effects(const Scene& scene, const std::vector<Column>& points, bool keep_all = false);
 
-/// The effects that a table over the scene's grid keeps or drops, with reasons, and the cost as estimated on the CPU.
+/// The plan for a table over the scene's [grid]: kept and dropped effects, reasons, memory, and estimated CPU time.
 DOLP_EXPORT Report plan(const Scene& scene, const std::string& device = {}, bool keep_all = false);
 
 /// Checks a table file: computes some of its entries again by adaptive quadrature, which shares no formula with the
@@ -257,7 +257,7 @@ DOLP_EXPORT Report verify(const std::filesystem::path& table, const TableCheckOp
 /// Computes cases that are numerically hard and compares them with stored references. Errors: InputError, DeviceError.
 DOLP_EXPORT Report verify_device(const DeviceCheckOptions& options = {});
 
-/// The limits of all devices, and their accuracy in a few ordinary cases. `is_good`: at least one device is usable.
+/// The limits of all devices, and their accuracy in a few ordinary cases. Report::is_good: true if a device is usable.
 DOLP_EXPORT Report device_report();
 
 }  // namespace dolp

@@ -10,7 +10,7 @@ enum class EffectState : std::uint8_t {
   kAbsent,     ///< the scene does not have the effect
   kKept,       ///< computed
   kDropped,    ///< the run leaves the effect out, because a bound shows that the result hardly changes
-  kNotNeeded,  ///< a choice of the model, such as the masking, that no kept effect uses
+  kNotNeeded,  ///< a choice of the model on which no kept effect depends, such as the masking without a specular part
 };
 
 constexpr const char* name_of(EffectState state) {
@@ -37,7 +37,7 @@ struct Effect {
   std::string reason = {};
   std::string needs = {};  ///< what the run must compute for the effect, in words; empty if the effect is not kept
   std::optional<Part> part = {};  ///< contribution that the effect adds; empty for choices of the model
-  /// For a dropped effect: bound of the change of (Q/I, U/I) that dropping it causes, at the worst entry.
+  /// For a dropped effect: upper bound, over all entries, of the change of (Q/I, U/I) that dropping it causes.
   std::optional<double> bound = {};
   /// For a kept effect: the largest change of (Q/I, U/I) that dropping it would cause at a few examined entries.
   std::optional<double> influence = {};

@@ -37,9 +37,9 @@ struct DOLP_EXPORT MeasuredData {
   std::vector<Measurement> measurements = {};
   std::vector<std::string> remarks = {};  ///< one line for each suspicious unit, such as percent or nm
 
-  /// Reads a CSV. It must have a zenith column (theta_deg or theta_i_deg) and a measured quantity: dolp (not negative),
-  /// q_over_i (signed), emissivity_s, emissivity_p or both emissivities. It may have uncertainty and wavelength_um.
-  /// Values are fractions. Lines that begin with # are comments. Errors: InputError with file, line, column and value.
+  /// Reads a CSV with a zenith column, theta_deg or theta_i_deg, and a measured quantity: dolp (not negative), q_over_i
+  /// (signed), emissivity_s, emissivity_p or both emissivities. The columns uncertainty and wavelength_um are optional.
+  /// Measured values are fractions. Comment lines begin with #. Errors: InputError with file, line, column and value.
   static MeasuredData from_csv(const std::string& csv, const std::string& name = "data",
                                std::vector<Setting> settings = {});
   /// Reads the CSV and the settings of "FILE" or "FILE:KEY=VALUE,KEY=VALUE". FILE "-" is stdin. Errors: InputError.
@@ -73,7 +73,7 @@ struct DOLP_EXPORT Comparison {
 };
 
 /// A fit minimises the objective, the sum of the losses of all residuals. The loss of a residual r is r^2 for kSquares.
-/// The other losses are smaller than r^2 if |r| is above about one uncertainty, so that outliers count less.
+/// The other losses need data with uncertainties. For large |r| they are below r^2, so that outliers count less.
 enum class Loss { kSquares, kHuber, kSoftL1, kCauchy, kTukey };
 
 /// "squares", "huber", "soft-l1", "cauchy", "tukey", in the order of Loss.
@@ -82,9 +82,9 @@ DOLP_EXPORT const std::vector<std::string>& loss_names();
 /// The systematic error that a fit assumes in the model.
 enum class ModelError {
   kNone,
-  /// At each point the truth may lie anywhere between the two ends of the model's bracket (emission.bracket). A
-  /// residual is the distance of the measured value from the bracket. The 95 % interval of a parameter contains all
-  /// values with chi^2 below the 95 % quantile of the chi^2 distribution, with one degree of freedom per point.
+  /// The true value at a point may lie anywhere in the bracket: the range that is possible with all bounces of light
+  /// (key emission.bracket). A residual is the distance of the measured value from the bracket. The 95 % interval of a
+  /// parameter contains all values with chi^2 below the 95 % quantile for one degree of freedom per point.
   kBracket,
 };
 
@@ -120,7 +120,7 @@ struct FitParameter {
   std::string key;
   double value = 0.0;
   std::optional<double> standard_error;  ///< from the covariance matrix, as if parameters at a bound were fixed
-  /// Intervals at 68.27 % and 95 %. All ends are empty if there are neither uncertainties nor degrees of freedom.
+  /// 68.27 % and 95 % intervals. Without uncertainties they need more points than parameters; else all ends are empty.
   FitInterval interval_68, interval_95;
   /// The intervals with all uncertainties multiplied by sqrt(reduced chi^2). Empty unless the fit is doubtful or bad.
   std::optional<FitInterval> scaled_68 = {}, scaled_95 = {};
@@ -136,7 +136,7 @@ struct FitMinimum {
 struct FitNumbers {
   std::vector<FitParameter> parameters = {};  ///< in the order of FitOptions::vary
   double chi_square = 0.0;                    ///< sum of the losses of all residuals; the loss kSquares is the square
-  std::size_t degrees_of_freedom = 0;         ///< points minus parameters; for ModelError::kBracket, points
+  std::size_t degrees_of_freedom = 0;         ///< points minus parameters, but all points with ModelError::kBracket
   std::optional<double> p_value = {};         ///< empty without uncertainties, and for losses except kSquares
   std::string fit_quality = {};         ///< "good", "doubtful" (p < 0.05), "bad" (p < 0.001); empty without p_value
   std::vector<FitMinimum> minima = {};  ///< all minima that the fit found, the best first

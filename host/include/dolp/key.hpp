@@ -31,7 +31,7 @@ struct DOLP_EXPORT Key {
   std::vector<std::string> words;        ///< allowed words
   std::string fallback;                  ///< default value, "required" (scenes must have the key), or "" (optional key)
   std::string meaning;                   ///< meaning of the key in one line, with the symbol of its quantity
-  std::vector<std::string> rivals = {};  ///< alternative keys; a scene has at most one of them
+  std::vector<std::string> rivals = {};  ///< keys that exclude this key: a scene that has this key has none of them
   /// Number of the film that the key describes, such as 1 for "surface.coating.1.n"; 0 for keys that describe no film.
   std::size_t layer = 0;
 

@@ -35,7 +35,7 @@ struct RunOptions {
   bool resume = false;       ///< for write_table: continue a cancelled or killed call for the same scene
 };
 
-/// One of `count` parts of a table, of about equal size. Each of several processes can compute one. Default: no parts.
+/// A part of a table, for one of several processes. The `count` parts have about the same size. Default: whole table.
 struct Shard {
   std::size_t number = 0;  ///< number of this part, from 1 to count
   std::size_t count = 0;

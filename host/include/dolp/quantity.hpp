@@ -20,7 +20,7 @@ namespace dolp {
 /// weight is the emission pi B(T). Without emission it is the incident radiation; without both, it is constant.
 enum class Quantity : std::uint8_t {
   kDolp,    ///< sqrt(Q^2 + U^2) / I; negative if I is negative, NaN if I is 0
-  kQOverI,  ///< Q / I, signed: it crosses zero where contributions cancel
+  kQOverI,  ///< Q / I, signed: positive if s-polarised radiation prevails
   kStokesI,
   kStokesQ,
   kStokesU,
@@ -28,7 +28,7 @@ enum class Quantity : std::uint8_t {
   kRhoI,         ///< (rho_s + rho_p) / 2, including the specular weight k_s and the diffuse part
   kRhoQ,         ///< (rho_s - rho_p) / 2, including k_s and the diffuse part
   kAlbedo,       ///< A(theta): specular reflectance if all facets reflect perfectly, without the weight k_s
-  kEmissivityS,  ///< emissivity in the emission model; over a band, a mean with the weight pi B(T)
+  kEmissivityS,  ///< emissivity by the emission model of the scene; over a band, its mean with the weight pi B(T)
   kEmissivityP,
   kDolpLow,  ///< kDolpLow and kDolpHigh bound the DOLP that all bounces of light would give
   kDolpHigh,
@@ -45,7 +45,7 @@ inline constexpr std::array<Quantity, kQuantityCount> kAllQuantities = enumerato
 /// Some of the quantities, in the order of the enumeration.
 using Quantities = std::vector<Quantity>;
 
-/// Results have a quantity only if the run computes rho or the moments, or if the scene has emission or a bracket.
+/// What a quantity needs: nothing, a run that computes rho or the moments, or a scene with emission or a bracket.
 enum class QuantityNeeds : std::uint8_t { kNothing, kReflectance, kMoments, kEmission, kBracket };
 
 struct QuantityDescription {

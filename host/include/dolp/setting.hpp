@@ -63,10 +63,9 @@ class DOLP_EXPORT Value {
   Content content_;
 };
 
-/// A dotted key of a scene ("surface.sigma") and its value. A setting adds the TOML table of its key if the scene lacks
-/// it. A setting also removes keys that exclude its key: a scene has one of surface.n, .material and .material_file;
-/// one of source.irradiance, .relative_irradiance, .preset and .file; one of path.temperature_K and .radiance; and one
-/// of spectrum.wavelength_um and .band_um.
+/// A dotted key of a scene ("surface.sigma") and its value. If the scene lacks the TOML table of the key, the setting
+/// adds the table. A setting also removes the keys that exclude its key, which Key::rivals lists. For example, a
+/// setting of surface.n removes surface.material, because a scene cannot have both.
 struct DOLP_EXPORT Setting {
   std::string key;
   Value value;

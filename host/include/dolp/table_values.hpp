@@ -21,7 +21,7 @@ struct Attribute {
 /// Largest size of a text attribute in a file. Longer texts become variables: netCDF limits attributes to 64 KiB.
 inline constexpr std::size_t kMostAttributeBytes = 64'000;
 
-/// n, k or E0 of a scene as a function of the wavelength. A constant has one element.
+/// n, k or the irradiance E0 of a scene as a function of the wavelength. A constant has one wavelength and one value.
 struct Curve {
   std::vector<double> wavelength_um;
   std::vector<double> values;
@@ -37,10 +37,10 @@ struct TableHead {
   AxisLabels labels;             ///< names of all materials and bands of the scene, even in a part of a table
   std::vector<double> wind_m_s;  ///< wind speeds from which sigma follows; empty if the scene gives sigma
   std::vector<double> beta_deg;  ///< local angles of incidence of a response table, ascending
-  Curve index_n;                 ///< n, k and E0 with which the table was computed; empty curves if the table has none
+  Curve index_n;                 ///< refractive index n if all entries share this curve; else empty
   Curve index_k;
-  Curve irradiance;                         ///< E0 before multiplication by source.scale
-  std::string stokes_units = "W m-2 um-1";  ///< for UDUNITS; "W m-2" over a band, with " sr-1" if bistatic
+  Curve irradiance;                         ///< irradiance E0 of the source before multiplication by source.scale
+  std::string stokes_units = "W m-2 um-1";  ///< in UDUNITS syntax; "W m-2" over a band, with " sr-1" if bistatic
   /// Attributes in the order of the file. A file has a few more, which Table::file_attributes() adds to these.
   std::vector<Attribute> attributes;
 
@@ -59,7 +59,7 @@ struct TableHead {
   std::size_t width_of(ResponseVariable variable) const {
     return description_of(variable).has_beta ? beta_deg.size() : 1;
   }
-  /// Position of an entry in its columns. The entry has these indices on theta, sigma and q, and 0 on the other axes.
+  /// Position of an entry in its columns. The arguments are its indices on theta, sigma and q. Its other indices are 0.
   std::size_t position(std::size_t theta, std::size_t sigma_index, std::size_t q_index) const {
     return (theta * axes[Axis::kSigma].size() + sigma_index) * axes[Axis::kQ].size() + q_index;
   }
@@ -72,7 +72,7 @@ struct TableValues : TableHead, ResultColumns {
   ResponseArray<std::vector<double>> responses;
 };
 
-/// The description of a curve in files, and the member of TableHead that contains the curve.
+/// How files name and describe a curve, and the member of TableHead that contains the curve.
 struct TableCurve {
   const char* name;
   const char* long_name;

@@ -66,7 +66,7 @@ std::unique_ptr<ModelEvaluator> make_evaluator(const EvaluatorOptions& wanted, b
   VulkanOptions options;
   options.device = wanted.device;
   options.needs_double = needs_double;
-  if (wanted.is_interactive) options.max_tile_invocations = 2'048;  // then a dispatch takes a few ms on two CPU cores
+  if (wanted.is_interactive) options.max_tile_invocations = 2'048;  // a dispatch takes a few ms, even on two CPU cores
   return std::make_unique<VulkanEvaluator>(options);
 }
 
@@ -87,7 +87,7 @@ Evaluator::Evaluator(Evaluator&&) noexcept = default;
 Evaluator& Evaluator::operator=(Evaluator&&) noexcept = default;
 
 Evaluator::~Evaluator() {
-  // Destroys no device in a forked process: the destructor would wait forever for driver threads, which a fork lacks.
+  // A forked process must not destroy the device: this would wait forever for the driver's threads, which it lacks.
   if (impl_ && impl_->owner != getpid()) static_cast<void>(impl_.release());
 }
 

@@ -85,7 +85,7 @@ std::vector<std::string> files_of(const SceneValues& scene) {
 
 void check_output_is_no_input(const std::filesystem::path& output, const std::vector<std::string>& inputs) {
   for (const std::string& input : inputs) {
-    std::error_code missing;  // set if a file does not exist; the files are then different
+    std::error_code missing;  // set if a file does not exist; equivalent() then returns false
     if (std::filesystem::equivalent(output, input, missing)) {
       throw InputError(output.string() + ": the output would overwrite an input");
     }

@@ -60,7 +60,7 @@ void check_comparison(const Comparison& comparison, const FitOptions& options) {
   }
 }
 
-/// All combinations of the words in FitOptions::compare, each as a list of settings. No comparison: one empty list.
+/// Every combination of the words to compare, as a list of settings. If nothing is compared, returns one empty list.
 std::vector<Settings> combinations(const FitOptions& options) {
   std::vector<Settings> all = {{}};
   for (const Comparison& comparison : options.compare) {
@@ -125,12 +125,12 @@ std::vector<double> fine_zeniths(const MeasuredData& data) {
   return zeniths;
 }
 
-/// The values of the fitted model at the measurements. If `error` is kBracket, the values in the bracket that are
-/// nearest to the measured values. Empty if the scene does not allow a Model of the data set, for example no bracket.
+/// The values of the fitted model at the measurements. If `error` is kBracket, these are the values in the
+/// bracket that are nearest to the measured values. Empty if Model refuses the scene, for example without a bracket.
 std::vector<double> model_values(const Best& best, MeasuredData data, const FitOptions& options, ModelError error,
                                  ModelEvaluator& evaluator) {
   const std::size_t count = data.measurements.size();
-  // A Model needs at least as many measurements as parameters. So adds copies of the first, and ignores their values.
+  // Model needs at least as many measurements as parameters. So copies of the first are added; their values are unused.
   data.measurements.resize(std::max(count, options.vary.size()), data.measurements.front());
   try {
     const fit::Model model(best.scene, {data}, options.vary, error);
@@ -147,8 +147,8 @@ struct Bracketed {
   double model, low, high;
 };
 
-/// The value and the bracket of the fitted model at each zenith angle. Empty if the scene has no bracket, or if the
-/// data are emissivities or have wavelengths.
+/// At each zenith angle, the value of the fitted model and its bracket. This range contains the value with all
+/// bounces of light. Empty if the scene has no bracket, or if the data contain emissivities or wavelengths.
 std::vector<Bracketed> bracketed(const Best& best, MeasuredData data, const std::vector<double>& theta_deg,
                                  const FitOptions& options, ModelEvaluator& evaluator) {
   const Measurement first = data.measurements.front();
@@ -228,7 +228,7 @@ void add_model_gap(ReportBuilder& report, const Best& best, const FitOptions& op
 }
 
 /// Fits the scene with each combination of compared settings. Adds all results to `models`, the best first. Calls
-/// `begin` once, to get the evaluator. Errors: InputError if the scene refuses all combinations.
+/// `begin` at most once, to get the evaluator. Errors: InputError if with_settings() or Model refuses all combinations.
 Best best_of(std::vector<ComparedModel>& models, const SceneValues& scene, const std::vector<MeasuredData>& data,
              const FitOptions& options, const std::function<ModelEvaluator*(const SceneValues&)>& begin) {
   ModelEvaluator* evaluator = nullptr;

@@ -48,7 +48,7 @@ std::vector<std::string> files_of(const SceneValues& scene);
 /// Refuses an output file that would overwrite an input file; "-" (stdin, stdout) is no file. Errors: InputError.
 void check_output_is_no_input(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
-/// Results at points. Takes the units and attributes from `head`, the head of a table that has the same scene.
+/// The results at points of a scene. Their units and attributes come from `head`, the head of a table of this scene.
 Results results_of(const std::vector<PointResult>& points, const Quantities& quantities, const TableHead& head);
 
 /// Makes points from columns. A column with one value applies it to all points. Errors: InputError for a wrong column.
@@ -58,8 +58,8 @@ Points points_of_columns(const std::vector<Column>& columns, PointsKind kind);
 /// driver, so calls of Vulkan would wait forever.
 void check_no_fork();
 
-/// Makes an evaluator, on a device with double precision if `needs_double`. Errors: InputError for an unknown name, and
-/// if a device is named for the evaluator cpu or reference. DeviceError for vulkan if no device is usable.
+/// Makes an evaluator, on a device with double precision if `needs_double`. Errors: InputError if no evaluator has the
+/// wanted name, or if cpu or reference gets the name of a device. DeviceError if vulkan finds no usable device.
 std::unique_ptr<ModelEvaluator> make_evaluator(const EvaluatorOptions& wanted, bool needs_double);
 
 struct Evaluator::Impl {

@@ -3,7 +3,7 @@
 // with the constant, and with twice the constant. Each number is a mean over the 20 problems of `dolp-bench fit
 // --first-set 900 --entries 20`. With all these values the fits find all global minima. For a constant without numbers,
 // half and double change no result. The objective is chi^2, or the sum of another loss. The scale is the rise of the
-// objective one standard deviation from a minimum. The growth is (objective - its minimum) / scale.
+// objective at one standard deviation from a minimum. The growth is (objective - its minimum) / scale.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ inline constexpr double kAssumedUncertainty = 1e-3;
 
 /// A parameter counts as at its bound if its coordinate (0 to 1 over its range) is closer than this to 0 or 1.
 inline constexpr double kAtBound = 1e-6;
-/// A report names a parameter of an undetermined combination if its component exceeds this share of the largest one.
+/// A report omits a component of an undetermined combination if it is below this share of the largest component.
 inline constexpr double kInDirection = 0.1;
 inline constexpr double kDoubtfulBelow = 0.05;  ///< a fit is doubtful if its p-value is below this
 inline constexpr double kBadBelow = 0.001;      ///< a fit is bad if its p-value is below this
@@ -29,27 +29,27 @@ inline constexpr double kBadBelow = 0.001;      ///< a fit is bad if its p-value
 inline constexpr double kFirstStep = 0.01;  // 1354, 1421, 1425
 inline constexpr double kLeastStep = 1e-6;
 inline constexpr double kMostStep = 0.05;  // 1363, 1421, 1354
-/// A step of finite differences should change the model's values by at most kSeenShare uncertainties or, if that is
-/// more, by kErrorsOfAChange times the numerical error of the values.
+/// Two limits for the change of the model's values in a step of finite differences: kSeenShare times the smallest
+/// uncertainty, and kErrorsOfAChange times the numerical error of the values. The larger limit counts.
 inline constexpr double kSeenShare = 0.2;          // 1398, 1421, 1425
 inline constexpr double kErrorsOfAChange = 100.0;  // 1416, 1421, 1379
 /// Largest factor between the steps of finite differences in one linearisation and in the next.
 inline constexpr double kMostChangeOfStep = 10.0;  // 1414, 1421, 1415
 
-/// Limits for the ratio of the true decrease of the objective in a step to the decrease that the derivatives predict. A
-/// descent accepts steps above kLeastRatio. Above kPredictedRatio it may use Broyden's update of the derivatives.
+/// Limits for the ratio of the true to the predicted decrease of the objective. A descent accepts a step with a ratio
+/// above kLeastRatio. Broyden's update of the derivatives needs a ratio from kPredictedRatio to 1 / kPredictedRatio.
 inline constexpr double kLeastRatio = 1e-3;         // 1421, 1421, 1421
 inline constexpr double kPredictedRatio = 0.5;      // 1402, 1421, 1505
 inline constexpr double kRadiusOfNeighbours = 1.0;  // 1400, 1421, 1412
 /// A path is straight if derivatives at its start predict the residuals at its end: the squared error of the prediction
-/// is below this share of the squared change of the residuals.
+/// is below this share of (squared change of the residuals + scale).
 inline constexpr double kBent = 0.05;  // 1458, 1421, 1381
 
 /// Number of points of the Sobol sequence for each start of a descent.
 inline constexpr std::size_t kPointsOfAStart = 8;  // 1324, 1421, 1593
 inline constexpr int kStepsOfARound = 3;           // 1334, 1421, 1573
 inline constexpr int kMostRounds = 15;             // 1417, 1421, 1421
-/// A descent of the search ends when derivatives predict a decrease of the objective below this times the scale.
+/// The search ends a descent if derivatives predict that a step lowers the objective by less than kCoarseGain * scale.
 inline constexpr double kCoarseGain = 0.1;  // 1358, 1421, 1416
 /// The search does not refine minima that are higher than the lowest one by more than this times the scale.
 inline constexpr double kFarAbove = 30.0;  // 1413, 1421, 1428
@@ -57,29 +57,29 @@ inline constexpr int kPointsOfALine = 8;   // 1386, 1421, 1489
 
 /// Tolerance for the ends of intervals: largest relative error of sqrt(growth).
 inline constexpr double kRootTolerance = 5e-3;  // 1435, 1421, 1404
-/// A descent of a profile ends when derivatives predict a decrease of the objective below this times the scale.
+/// A profile ends a descent if derivatives predict that a step lowers the objective by less than kProfileGain * scale.
 inline constexpr double kProfileGain = 1e-3;  // 1442, 1421, 1401
 /// Largest number of points that are computed to find one end of an interval. The first kProfileSecants steps follow
 /// secants. The later steps are bisections, because secants fail where a profile jumps.
 inline constexpr int kMostProfilePoints = 25;  // 1415, 1421, 1421
 inline constexpr int kProfileSecants = 8;      // 1415, 1421, 1416
-/// If the points on both sides of an end are closer than this share of their distance to the minimum, a profile jumps.
+/// A profile jumps if the points beside an end are closer together than this share of their distance to the minimum.
 inline constexpr double kLeastGap = 1e-3;  // 1422, 1421, 1418
 /// Each point of a profile is at most this many times as far from the minimum as the point before.
 inline constexpr double kMostGrowth = 3.0;  // 1414, 1421, 1427
-/// A descent of a profile may end with updated derivatives where the growth is below this share of its 68 % limit.
+/// A descent of a profile need not compute derivatives at its end if its growth is below this share of the 68 % limit.
 inline constexpr double kTrustedShare = 0.8;  // 1424, 1421, 1329
 inline constexpr double kFirstProbe = 0.01;   // 1411, 1421, 1415
-/// A valley may have more branches. The search for them begins at this share of the interval's width beyond an end.
+/// The search for other branches of a valley begins this far beyond an end, in widths of the interval.
 inline constexpr double kBeyond = 0.02;  // 1425, 1421, 1410
-/// A point beyond an end of an interval lies on another branch if its growth is below this share of the limit. Proved:
-/// at the end itself, kRootTolerance ensures a growth of at least 0.99 of the limit.
+/// A point beyond an end of an interval lies on another branch if its growth is below this share of the growth limit.
+/// Proved: the end itself cannot be taken for such a point, because kRootTolerance gives it at least 0.99 of the limit.
 inline constexpr double kClearlyLower = 0.97;  // 1421, 1421, 1793
 
-/// A descent to a grid point of the contours ends when derivatives predict a decrease below this times the scale.
+/// For contours, descents end if derivatives predict that a step lowers the objective by less than kNodeGain * scale.
 inline constexpr double kNodeGain = 1e-2;
-/// Step of the first grid of contours along each principal axis, in standard deviations. A deviation below
-/// kLeastDeviation or above kMostDeviation (shares of the range) is replaced by this limit.
+/// Step of the first grid of contours along each principal axis, in standard deviations along this axis. A standard
+/// deviation counts as at least kLeastDeviation and at most kMostDeviation, in coordinates (0 to 1 over the range).
 inline constexpr double kStepOfDeviation = 0.5;
 inline constexpr double kLeastDeviation = 1e-4;
 inline constexpr double kMostDeviation = 1.0 / 12.0;

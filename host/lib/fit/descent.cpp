@@ -43,7 +43,7 @@ bool is_on_bound(double coordinate) {
   return coordinate <= kRounding || coordinate >= 1.0 - kRounding;
 }
 
-/// Keeps the components `held` of `step`. The others minimise the damped sum of squares within the parameters' ranges.
+/// Keeps `step` for the held parameters. For all other parameters, minimises the damped sum of squares in their ranges.
 Eigen::VectorXd bounded_step(const Linearisation& where, Eigen::VectorXd step, const std::vector<Eigen::Index>& held,
                              double damping, const Eigen::VectorXd& weights) {
   std::vector<Eigen::Index> free;
@@ -82,7 +82,7 @@ Linearisation moved(const Linearisation& near, Linearisation to) {
 
 struct Walk {
   Minimum* minimum;
-  bool is_stale;        ///< the derivatives were computed at an earlier point
+  bool is_stale;        ///< the derivatives must be computed at the current point
   bool is_updated;      ///< the derivatives contain Broyden's updates
   double shrink = 2.0;  ///< divisor of the radius if the next step fails
   bool is_done = false;
@@ -95,8 +95,8 @@ struct Walk {
     if (!where.jacobian.allFinite()) minimum->objective = std::numeric_limits<double>::infinity();
     is_done = !std::isfinite(minimum->objective);
     if (is_done) return;
-    // A parameter at its bound stays there until the other parameters are done. At k = 0 the model is an even function
-    // of k: finite differences at this bound predict a decrease that does not exist.
+    // A parameter leaves its bound only if steps of the other parameters do not lower the objective. At k = 0 the model
+    // is an even function of k: finite differences at this bound predict a decrease that does not exist.
     std::vector<Eigen::Index> held = minimum->held;
     for (Eigen::Index j = 0; j < where.at.size(); ++j) {
       if (is_on_bound(where.at[j])) held.push_back(j);
@@ -154,7 +154,7 @@ void refresh(Residuals& residuals, std::vector<Walk>& walks, const DescentOption
   }
 }
 
-/// Computes derivatives for descents that ended with stale or updated ones, if their objective is above secant_below.
+/// Computes the derivatives of descents that ended above secant_below, if their derivatives are stale or updated.
 void finish(Residuals& residuals, std::vector<Walk>& walks, const DescentOptions& options) {
   std::vector<Linearisation*> guessed;
   for (Walk& walk : walks) {

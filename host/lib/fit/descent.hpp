@@ -24,17 +24,17 @@ PrincipalAxes principal_axes(const Eigen::MatrixXd& symmetric);
 /// The sum of the losses of all residuals; with Loss::kSquares it is chi^2. Infinite if a residual is not finite.
 double objective(const Eigen::VectorXd& residuals, Loss loss);
 
-/// The weight of each residual in the normal equations. It is below 1 for residuals that the loss treats as outliers.
+/// The weight of each residual in the normal equations. Only Loss::kSquares gives large residuals the full weight 1.
 Eigen::VectorXd loss_weights(const Eigen::VectorXd& residuals, Loss loss);
 
 struct DescentOptions {
   Loss loss = Loss::kSquares;
-  double scale = 1.0;  ///< rise of the objective one standard deviation from a minimum; may be a guess
+  double scale = 1.0;  ///< rise of the objective at one standard deviation from a minimum; may be a guess
   int most_steps = 40;
-  /// The descent ends when derivatives predict a decrease of the objective below this times `scale`.
+  /// The descent ends if derivatives predict that the next step lowers the objective by less than least_gain * scale.
   double least_gain = 1e-5;
-  /// If set, Broyden's updates may replace computed derivatives as long as the derivatives predict the steps well. A
-  /// descent that ends above this objective computes the derivatives at its end.
+  /// A value of the objective. If set, Broyden's updates may replace computed derivatives as long as the derivatives
+  /// predict the steps well. A descent that ends with a higher objective computes the derivatives at its end.
   std::optional<double> secant_below = {};
 };
 
@@ -51,11 +51,11 @@ struct Minimum {
 /// evaluator for the points to try, and one for the finite differences. Errors: errors of the evaluator; Cancelled.
 void descend(Residuals& residuals, std::vector<Minimum>& all, const DescentOptions& options);
 
-/// A point that follow() finds, starting from the point `near`. `to` gives its coordinates in `held`.
+/// A point that follow() finds, starting from the point `near`. The parameters `held` get their coordinates from `to`.
 struct Neighbour {
   const Minimum* near;
   std::vector<Eigen::Index> held;
-  Eigen::VectorXd to;  ///< coordinates of the new point; only those in `held` matter
+  Eigen::VectorXd to;  ///< a coordinate for each parameter; unused for parameters not in `held`
 };
 
 /// For each neighbour, minimises the objective over the coordinates that are not held. The descent begins where the
@@ -65,7 +65,7 @@ std::vector<Minimum> follow(Residuals& residuals, const std::vector<Neighbour>& 
 /// Predicts a neighbour from the derivatives at the point `near`: its coordinates and its sum of squared residuals.
 std::pair<Eigen::VectorXd, double> predict_step(const Neighbour& neighbour, double scale);
 
-/// True if the derivatives at `from` predict the residuals at `to` well; kBent is the limit.
+/// True if the derivatives at `from` predict the residuals at `to`. kBent limits the error of the prediction.
 bool is_straight(const Linearisation& from, const Linearisation& to, double scale);
 
 }  // namespace dolp::fit

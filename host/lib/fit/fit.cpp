@@ -46,7 +46,7 @@ bool is_at_bound(double coordinate) { return coordinate < kAtBound || coordinate
 /// An undetermined combination of parameters, as a direction in the space of coordinates. Its largest component is +-1.
 struct Direction {
   Eigen::VectorXd along;
-  /// True if no residual changes along the direction. False if residuals change by less than one standard deviation.
+  /// True: no residual changes along the direction. False: residuals change, but by less than one standard deviation.
   bool is_null = false;
 };
 
@@ -189,7 +189,8 @@ class Fit {
     total_ = total;
   }
 
-  /// Degrees of freedom: points minus parameters. With a model error, points, because intervals limit chi^2 itself.
+  /// Degrees of freedom: number of points minus number of parameters. With a model error it is the number of points,
+  /// because then an interval ends at a limit of chi^2 itself, not of the growth of chi^2.
   std::size_t freedom() const {
     return model_.observation_count() - (model_.has_model_error() ? 0 : model_.parameters().size());
   }
@@ -286,7 +287,7 @@ class Fit {
     descend(fine_, bottoms, {options_.loss, result_.scale});
     Minimum& bottom = bottoms.front();
     if (!bottom.has_converged || bottom.objective >= minima_.front().objective) return false;
-    // If the new minimum is lower by less than one standard deviation, it is a more exact value of the best minimum.
+    // If the new objective is lower by less than the scale, the new minimum is the best minimum, found more exactly.
     if (bottom.objective > minima_.front().objective - result_.scale) minima_.erase(minima_.begin());
     minima_.insert(minima_.begin(), std::move(bottom));
     return true;

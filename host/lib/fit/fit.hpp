@@ -20,10 +20,10 @@ namespace dolp::fit {
 struct FitResult : FitNumbers {
   Eigen::MatrixXd correlation;  ///< NaN for parameters at a bound and for parameters that the data do not determine
   std::optional<double> reduced_chi_square;  ///< empty without degrees of freedom
-  /// Rise of chi_square one standard deviation from a minimum: 1 or, without uncertainties, the mean squared residual.
+  /// Rise of chi_square at one standard deviation from a minimum. Without uncertainties, the mean squared residual.
   double scale = 1.0;
   std::size_t determined = 0;          ///< rank of the Jacobian: number of parameters that the data determine
-  double numerical_error = 0.0;        ///< largest error bound of the model's values, divided by the uncertainty
+  double numerical_error = 0.0;        ///< largest ratio of the model's error bound at a point to the uncertainty
   double tolerance = 0.0;              ///< tolerance of the model's values
   std::uint32_t status = 0;            ///< status bits of all points, combined by OR
   Eigen::VectorXd residuals;           ///< (measured - model) / uncertainty; without uncertainties, measured - model
@@ -36,9 +36,9 @@ struct FitResult : FitNumbers {
 
 std::string fit_quality(const std::optional<double>& p_value);
 
-/// Finds the minima of the objective and the intervals of the parameters. If the fit is doubtful or bad and its AIC is
-/// at most `most_aic`, also computes FitParameter::scaled_68 and scaled_95. Returns nullopt if no descent converged.
-/// Errors: errors of the evaluator; Cancelled.
+/// Finds the minima of the objective and the intervals of the parameters. If the fit is doubtful or bad, also computes
+/// the intervals scaled_68 and scaled_95. Omits them if the AIC is above `most_aic`, because then another model is
+/// better. Returns nullopt if no descent converged. Errors: errors of the evaluator; Cancelled.
 std::optional<FitResult> fit(const Model& model, ModelEvaluator& evaluator, const FitOptions& options,
                              double most_aic = std::numeric_limits<double>::infinity());
 

@@ -63,7 +63,8 @@ EmissionModel other_end_of(const SceneValues& scene) {
   return scene.emission->model == EmissionModel::kDirect ? EmissionModel::kMoments : EmissionModel::kDirect;
 }
 
-/// The value between `end` and `other`, the ends of the bracket, that is nearest to the measured value.
+/// The value in the bracket that is nearest to the measured value. The bracket is the range between `end` and `other`.
+/// For DOLP these two are values of Q/I, so the bracket is the range of the absolute value of Q/I between them.
 double nearest_between(const Eigen::RowVector2d& end, const Eigen::RowVector2d& other, const Measurement& measured) {
   if (std::isnan(end[0] + other[0])) return end[0] + other[0];
   const auto [low, high] = std::minmax(end[0], other[0]);

@@ -18,8 +18,8 @@ void check_range(const FitRange& range, const std::string& origin);
 
 struct Prediction {
   /// One row per measurement. The row contains the predicted observable and 0. For DOLP, the row contains Q/I and U/I,
-  /// so that DOLP is its length. With ModelError::kBracket, the first number is instead the value in the bracket that
-  /// is nearest to the measured value, and the second is 0.
+  /// so that DOLP is its length. With ModelError::kBracket, the model predicts a range for each observable, the
+  /// bracket. Then the row contains the value in the bracket that is nearest to the measured value, and 0.
   Eigen::MatrixX2d components;
   Eigen::VectorXd error;     ///< bound of the numerical error of each predicted observable
   std::uint32_t status = 0;  ///< status bits of all points, combined by OR
@@ -54,8 +54,8 @@ class Model {
   struct Group {
     const MeasuredData* data = nullptr;
     Eigen::Index first_row = 0;  ///< row of the first measurement of the data set in Prediction::components
-    SceneValues scene;  ///< scene of the data set, at the shortest wavelength in the data if they have wavelengths
-    std::optional<EmissionModel> other_end;  ///< emission model at the bracket's second end; empty without model error
+    SceneValues scene;  ///< scene of the data set; if the data have wavelengths, points replace the scene's wavelength
+    std::optional<EmissionModel> other_end;  ///< with a model error: emission model for the second end of the bracket
     std::vector<double> wavelength_um;       ///< wavelengths in the data, ascending; empty if the data have none
     std::vector<OpticalConstants> indices;   ///< n and k at these wavelengths, if the material is tabulated
   };

@@ -33,7 +33,7 @@ class Side {
   std::size_t parameter() const { return static_cast<std::size_t>(parameter_); }
   const std::vector<ProfilePoint>& points() const { return points_; }
   const std::optional<Minimum>& lower() const { return lower_; }
-  /// The coordinate where the growth reaches rises[rise], or the last coordinate. Empty if the start lies above it.
+  /// The coordinate at which the side ends for rises[rise]. Empty if the growth at the start is not below this rise.
   const std::optional<double>& end(std::size_t rise) const { return ends_[rise]; }
   const Minimum* last_below(std::size_t rise) const {
     const double most = (1.0 + kRootTolerance) * std::sqrt(options_->rises[rise]);
@@ -91,7 +91,8 @@ class Side {
     for (; !is_done(); ++rise_, tries_ = 0) {
       const PointPosition above = first_above();
       if (above == points_.cbegin()) continue;
-      // The start is no end, even if it lies just below the rise. So an end must be clearly higher than the start.
+      // If the growth at the start is just below the rise, points close to the start would count as the end. So the end
+      // must be clearly higher than the start, or reach the rise.
       const double least = std::min(wanted(), points_.front().root + kRootTolerance * wanted());
       const auto met = std::find_if(points_.cbegin() + 1, points_.cend(), [&](const ProfilePoint& p) {
         return p.root >= least && std::abs(p.root - wanted()) <= kRootTolerance * wanted();
@@ -114,8 +115,8 @@ class Side {
     for (; !is_done(); ++rise_) ends_[rise_] = coordinate(distance);
   }
 
-  /// The distance where a line reaches wanted(). The line goes through the points just below and above wanted() or, if
-  /// no point lies above, through the last two points.
+  /// The next distance to compute: where a line through two points reaches wanted(), the root of the rise. The points
+  /// are the nearest ones below and above it or, if no point lies above it, the last two points.
   double next_distance() const {
     if (points_.size() == 1) return first_distance();
     const PointPosition above = first_above();
@@ -192,8 +193,7 @@ class Profiler {
 
   Profiles run() {
     constexpr int kMostSearches = 4;
-    // Keeps points with a growth up to this times the 95 % rise: contours need points beyond the intervals.
-    constexpr double kKeptRise = 1.6;
+    constexpr double kKeptRise = 1.6;  // contours need points with a growth up to this times the 95 % rise
     complete(0);
     for (int i = 0; i < kMostSearches && !result_.lower && search_other_branches(); ++i) {
     }
@@ -281,8 +281,9 @@ class Profiler {
     return first < sides_.size();
   }
 
-  /// The ways to search beyond an end. One begins at the end of each other side, unless a straight path (is_straight)
-  /// leads from this end to it. Others begin at points of sides that lie beyond the end and clearly below the rise.
+  /// Descents that search for other branches beyond `end`. A descent begins near the last point below the rise of each
+  /// side, unless a straight path (is_straight) leads to this point from the point nearest to `end`. A further descent
+  /// begins at the lowest point of a side beyond `end`, if the growth at this point is clearly below the rise.
   std::vector<Neighbour> ways_beyond(const ProfileEnd& end) const {
     if (result_.stretches.size() == 1) return {};  // the profile of a single parameter has no other branch
     const std::vector<Stretch>& all = result_.stretches[static_cast<std::size_t>(end.parameter)][end.rise];

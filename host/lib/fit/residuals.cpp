@@ -104,7 +104,7 @@ void Residuals::differentiate(Linearisation& point, Eigen::Index j, const Predic
   const Eigen::MatrixX2d& centre = point.components;
   const Eigen::MatrixX2d slopes = derivative(centre, beside, count, offsets_at(point.at[j], point.steps[j]));
   for (Eigen::Index i = 0; i < slopes.rows(); ++i) {
-    // DOLP is the length of (Q, U)/I and has a kink where Q = U = 0. So computes its slope from slopes of Q/I and U/I.
+    // DOLP is the length of (Q/I, U/I), with a kink at 0. So its slope is computed from the slopes of Q/I and U/I.
     const double length = is_length_[static_cast<std::size_t>(i)] ? centre.row(i).norm() : 0.0;
     const double slope = length > 0.0 ? centre.row(i).dot(slopes.row(i)) / length : slopes(i, 0);
     point.jacobian(i, j) = weights_[i] * slope;
@@ -112,9 +112,9 @@ void Residuals::differentiate(Linearisation& point, Eigen::Index j, const Predic
   point.steps[j] = next_step(point.steps[j], point, *beside);
 }
 
-// The error of a central difference with step s has two parts. An error e of the model's values contributes e/s. The
-// third derivative contributes s^2 F/(6 L^3) if the values have the size F and vary over the length L. The sum is
-// smallest if the step changes the values by (3 e F^2)^(1/3). A change by kSeenShare of an uncertainty is enough.
+// The error of a central difference with step s has two parts. An error e of the model's values causes e/s. The third
+// derivative causes s^2 F/(6 L^3) if the values have the size F and vary over the length L. The sum of both is smallest
+// if the step changes the values by (3 e F^2)^(1/3). The next step aims at this change, or at `seen` if it is smaller.
 double Residuals::next_step(double step, const Linearisation& point, const Prediction& beside) const {
   const double change = (beside.components - point.components).cwiseAbs().maxCoeff();
   if (!std::isfinite(change) || change <= 0.0) return step;

@@ -39,7 +39,6 @@ class Residuals {
 
   Eigen::VectorXd values(const Eigen::VectorXd& point) const;
   std::vector<Prediction> predict(const std::vector<Eigen::VectorXd>& points);
-  /// The predicted observables, from Prediction::components.
   Eigen::VectorXd observed(const Eigen::MatrixX2d& components) const;
   const Eigen::VectorXd& weights() const { return weights_; }  ///< 1 / uncertainty; 1 without uncertainties
 
@@ -53,7 +52,7 @@ class Residuals {
   ModelEvaluator& evaluator_;
   Progress progress_;
   Eigen::VectorXd measured_, weights_;
-  std::vector<bool> is_length_;  ///< for each measurement: true for DOLP, which is the length of a row
+  std::vector<bool> is_length_;  ///< for each measurement: true for DOLP, the length of a row of components
   std::size_t evaluations_ = 0;
 };
 

@@ -30,7 +30,8 @@ std::vector<Eigen::VectorXd> sobol_points(std::size_t count, Eigen::Index dimens
   return points;
 }
 
-/// Where descents begin: at the given start, then at points with the lowest objective that are not close to each other.
+/// Where descents begin: at the start that the user gave (if any), then at the points of a Sobol sequence that have the
+/// lowest objective. Leaves out a point that is close to another start.
 std::vector<Minimum> choose_starts(Residuals& residuals, const SearchOptions& options) {
   const std::vector<FitRange>& parameters = residuals.model().parameters();
   const auto dimensions = static_cast<Eigen::Index>(parameters.size());
@@ -69,13 +70,12 @@ double scale_of(const SearchOptions& options, const Minimum& minimum) {
   return minimum.objective / std::max(1.0, freedom);
 }
 
-/// Moves a point perpendicular to `line`, to the smallest sum of squared residuals that the derivatives predict.
+/// Moves a point perpendicular to `line`, to where the derivatives predict the smallest sum of squared residuals.
 Eigen::VectorXd on_floor(const Eigen::VectorXd& point, const Eigen::VectorXd& residuals,
                          const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& line) {
   const Eigen::VectorXd along = line.normalized();
   const Eigen::MatrixXd across = jacobian - jacobian * along * along.transpose();
-  // Principal axes with an eigenvalue below this share of the largest count as flat. Rounding errors are far smaller.
-  constexpr double kFlatShare = 1e-12;
+  constexpr double kFlatShare = 1e-12;  // axes with a smaller share of the largest eigenvalue count as flat
   const PrincipalAxes axes = principal_axes(across.transpose() * across);
   const Eigen::VectorXd moved = point - axes.inverse(kFlatShare) * across.transpose() * residuals;
   return moved.cwiseMax(0.0).cwiseMin(1.0);
@@ -92,7 +92,7 @@ bool falls(double from, std::span<const Linearisation> points, Loss loss, double
   });
 }
 
-/// True if falls() holds on the line from one minimum to another, or on the floor of the valley beside this line.
+/// True if falls() is true for points on the line from one minimum to another, or for these points moved by on_floor().
 bool leads_down(Residuals& residuals, const Minimum& from, const Minimum& to, const SearchOptions& options) {
   const double scale = scale_of(options, to);
   const Eigen::VectorXd line = to.where.at - from.where.at;
@@ -111,7 +111,7 @@ bool leads_down(Residuals& residuals, const Minimum& from, const Minimum& to, co
   return falls(from.objective, residuals.at(points), options.loss, scale);
 }
 
-/// The minima in ascending order, without minima from which a path leads down to a lower minimum.
+/// The minima, the lowest first. Leaves out a minimum if a path leads down from it to a lower minimum.
 std::vector<Minimum> distinct(std::vector<Minimum> all, Residuals& residuals, const SearchOptions& options) {
   std::erase_if(all, [](const Minimum& minimum) { return !std::isfinite(minimum.objective); });
   std::ranges::stable_sort(all, {}, &Minimum::objective);

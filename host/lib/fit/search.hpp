@@ -15,16 +15,16 @@ struct SearchOptions {
   std::size_t starts = 24;  ///< largest number of descents
   std::uint64_t seed = 1;   ///< 1: the Sobol sequence itself; other seeds shift the sequence by a random vector
   Loss loss = Loss::kSquares;
-  bool has_uncertainties = true;  ///< if false, the scale follows from the residuals at a minimum
-  double scale = 1.0;  ///< how much the objective rises one standard deviation from a minimum; may be a guess
-  std::function<void(std::size_t done, std::size_t total)> count = {};  ///< counts finished descents
+  bool has_uncertainties = true;  ///< without them `scale` is a guess, and residuals give the scale at each minimum
+  double scale = 1.0;             ///< rise of the objective one standard deviation from a minimum
+  std::function<void(std::size_t done, std::size_t total)> count = {};  ///< reports the progress in descents
 };
 
 /// Finds the distinct minima of the objective, the lowest first. Descents begin at the parameters' start (if given) and
-/// at the best points of a Sobol sequence. These descents use `coarse`, which has a wider tolerance. Descents with
-/// `fine` then improve the lowest minimum and those at most kFarAbove times the scale above it. Two minima count as one
-/// if the objective rises by at most the scale on a path between them. Empty if no descent converged. Errors: errors of
-/// the evaluator; Cancelled.
+/// at the best points of a Sobol sequence. These descents use `coarse`, which has a wider tolerance. Then descents with
+/// `fine` improve the lowest minimum, and each minimum that is higher by at most kFarAbove * scale. Two minima count as
+/// one if the objective rises by at most the scale on a path between them. The result is empty if no descent converged.
+/// Errors: errors of the evaluator; Cancelled.
 std::vector<Minimum> find_minima(Residuals& coarse, Residuals& fine, const SearchOptions& options);
 
 /// An interval of a coordinate (0 to 1 over the parameter's range) that the data do not exclude.
@@ -38,7 +38,7 @@ struct ProfileOptions {
   double from = 0.0;              ///< lowest objective, or 0 with a model error; growth = (objective - from) / scale
   double scale = 1.0;             ///< rise of the objective one standard deviation from a minimum
   Loss loss = Loss::kSquares;
-  std::function<void(std::size_t done, std::size_t total)> count;  ///< counts the finished sides of all profiles
+  std::function<void(std::size_t done, std::size_t total)> count;  ///< reports the progress in sides of profiles
 };
 
 struct Profiles {
@@ -50,10 +50,11 @@ struct Profiles {
   std::optional<Minimum> lower = {};
 };
 
-/// Computes the profile likelihoods of all parameters around `minima`, the best first. A profile has two sides at each
-/// minimum. Each side follows the valley of the objective until the growth reaches the rise. This is an end. A bent
-/// valley may have other branches beyond the end. So descents beyond the end also start from other sides. If such a
-/// descent ends below the rise, the profile continues there. Errors: errors of the evaluator; Cancelled.
+/// Computes the profile likelihoods of all parameters. `minima` begins with the best minimum. At each minimum a profile
+/// has two sides, towards smaller and larger values of the parameter. A side follows the valley of the objective until
+/// the growth reaches a rise, which gives one end of an interval. A bent valley may have another branch beyond the end.
+/// To find it, descents begin beyond the end, near points of other sides. If such a descent ends below the rise, the
+/// profile continues there. Errors: errors of the evaluator; Cancelled.
 Profiles profiles_of(Residuals& residuals, const std::vector<Minimum>& minima, const ProfileOptions& options);
 
 }  // namespace dolp::fit

@@ -121,7 +121,7 @@ def check_names(what: str, given: Iterable[str], known: list[str]) -> None:
 
 
 def floats(name: str, values: Any) -> np.ndarray:
-    """Converts values to floats. Errors: InputError for masked arrays and dates, whose meaning floats would lose."""
+    """Converts values to floats. Errors: InputError for values that are not numbers, and for masked arrays."""
     if isinstance(values, np.ma.MaskedArray):
         raise InputError(f"{name}: is a masked array, and results have no mask: fill or compress it")
     try:

@@ -81,11 +81,10 @@ struct WithoutEffect {
   std::optional<Point> result = {};  ///< empty until it is computed
 };
 
-/// Searches the peak of a finished curve at zeniths in steps of kStepDeg. Then computes, for each
-/// effect in turn, the scene without this effect at the zenith of the peak.
+/// Searches the peak of a finished curve. Then computes, for each effect, the scene without this effect at the peak.
 class Peak {
  public:
-  static constexpr double kStepDeg = 0.02;
+  static constexpr double kStepDeg = 0.02;  ///< step of the zeniths at which the search computes DOLP
 
   explicit Peak(const Scene& scene) : scene_(scene) {}
 
@@ -102,7 +101,7 @@ class Peak {
            std::ranges::all_of(without_, [](const WithoutEffect& removed) { return removed.result.has_value(); });
   }
 
-  /// The contribution of a radiating effect to Q/I at the peak. Contributions of radiating effects add up.
+  /// The contribution of emission, source or surroundings to Q/I at the peak. The contributions add up to Q/I.
   double contribution(const WithoutEffect& removed) const {
     const Point& at = answer_->at;
     return (at[Quantity::kStokesQ] - (*removed.result)[Quantity::kStokesQ]) / at[Quantity::kStokesI];

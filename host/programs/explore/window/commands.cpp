@@ -32,7 +32,7 @@ Actions::Actions(Session& session, const std::string& device, std::string comman
     preferences_.load(preferences);
     const std::string file = session_.scene().name();
     std::error_code unknown;
-    if (!std::filesystem::exists(file, unknown)) return;  // the scene has no file: it is built in
+    if (!std::filesystem::exists(file, unknown)) return;  // the scene is built in or from standard input
     prefer([&](Preferences& kept) { kept.remember(file); });
   } catch (const std::exception& error) {
     session_.tell(error.what(), true);
@@ -123,7 +123,8 @@ namespace {
 
 using Path = const std::string&;
 
-/// A path for saving: the scene file's name with `ending`, in the folder used last for this file, or in the file's own.
+/// A path for saving: the name of the scene file with `ending`. The folder is the one in which the user last saved
+/// while this scene file was open; at first, the folder of the scene file.
 std::string suggested_path(const Ui& ui, const std::string& ending) {
   const std::filesystem::path file = ui.session.scene().name();
   const std::filesystem::path folder = file == ui.saved.first ? ui.saved.second : file.parent_path();

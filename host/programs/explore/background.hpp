@@ -89,7 +89,7 @@ struct Job {
 struct JobPart {
   std::string key = {};
   std::size_t part = 0;  ///< position in Job::parts
-  Scene scene;           ///< Job::scene, with the tolerance with which the points were computed
+  Scene scene;           ///< Job::scene; its tolerance is the one that was used for `points`
   std::vector<Point> points = {};
   std::string csv = {};  ///< `points` as CSV with the columns of `dolp eval`; only for a job that wants effects
   bool is_last = false;

@@ -61,7 +61,7 @@ std::vector<WithoutEffect> without_each(const Scene& scene, const SceneEdits& ed
   return without;
 }
 
-std::vector<Point>::const_iterator largest_of(const std::vector<Point>& points) {  // by DOLP; end() if no point is good
+std::vector<Point>::const_iterator largest_of(const std::vector<Point>& points) {  // max DOLP of good points, or end()
   const auto rank = [](const Point& point) {
     return std::pair(point.is_good(), point.is_good() ? dolp_of(point) : 0.0);
   };

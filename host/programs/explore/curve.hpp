@@ -24,7 +24,7 @@ class Curve {
 
   std::optional<Job> wanted(Stage stage) const;  ///< job that computes a stage; empty if the stage is done
   bool take(const JobPart& news);  ///< stores results for the current scene; returns false for other results
-  /// Stores coarse points of an earlier scene if the current scene has no points yet. Returns false for other results.
+  /// Shows a coarse curve of an earlier scene until the current scene has points. Returns false for other results.
   bool take_earlier(const JobPart& news);
 
   const Scene& scene() const { return scene_; }
@@ -33,7 +33,7 @@ class Curve {
   bool is_stale() const { return !points().empty() && !is_current(); }  ///< points() belong to an earlier scene
   const Scene& shown_scene() const { return points().empty() ? scene_ : shown_.scene; }  ///< the scene of points()
   const std::vector<Point>& points() const { return shown_.points; }
-  std::vector<Point> drawn() const;  ///< points() and, once it is known, the maximum between them
+  std::vector<Point> drawn() const;  ///< points(), and the point of the maximum as soon as it is known
   void set_peak(const Point& peak) { peak_ = peak; }
   const JobPart& finished() const { return finished_; }  ///< results of the last finished fine curve; empty at first
 
@@ -66,7 +66,7 @@ std::string true_error(const Curve& curve, const Progress& progress);
 /// The peak of a curve: the largest DOLP of its good points (Point::is_good).
 struct PeakAnswer {
   Point at;
-  // From the first to the last zenith around the peak at which DOLP may be largest, within the error bounds.
+  // A range of zeniths around the peak. Within the error bounds, DOLP may be largest anywhere in this range.
   double theta_low_deg = 0.0;
   double theta_high_deg = 0.0;
   std::optional<double> rival_deg;  ///< zenith elsewhere on the curve where DOLP may be higher, within the error bounds
@@ -76,16 +76,15 @@ struct PeakAnswer {
 /// A scene without one of its effects, and the result of this scene at the zenith of the peak.
 struct WithoutEffect {
   std::string effect;  ///< an Effect::name, or "roughness"
-  bool radiates;       ///< true for emission, source and surroundings: their contributions to Q/I add up
+  bool radiates;       ///< true for emission, source and surroundings: effects whose contributions to Q/I add up
   Scene scene;
   std::optional<Point> result = {};  ///< empty until it is computed
 };
 
-/// Searches the peak of a finished curve at zeniths in steps of kStepDeg. Then computes, for each
-/// effect in turn, the scene without this effect at the zenith of the peak.
+/// Searches the peak of a finished curve. Then computes, for each effect, the scene without this effect at the peak.
 class Peak {
  public:
-  static constexpr double kStepDeg = 0.02;
+  static constexpr double kStepDeg = 0.02;  ///< step of the zeniths at which the search computes DOLP
 
   explicit Peak(const Scene& scene) : scene_(scene) {}
 
@@ -102,7 +101,7 @@ class Peak {
            std::ranges::all_of(without_, [](const WithoutEffect& removed) { return removed.result.has_value(); });
   }
 
-  /// The contribution of a radiating effect to Q/I at the peak. Contributions of radiating effects add up.
+  /// The contribution of emission, source or surroundings to Q/I at the peak. The contributions add up to Q/I.
   double contribution(const WithoutEffect& removed) const {
     const Point& at = answer_->at;
     return (at[Quantity::kStokesQ] - (*removed.result)[Quantity::kStokesQ]) / at[Quantity::kStokesI];

@@ -126,7 +126,7 @@ toml::table view_table(const Session& session) {
   return table;
 }
 
-/// The value of `node`. Errors: InputError, beginning with `location`, if the node is missing or has another type.
+/// The value of `node`. Errors: InputError, whose text begins with `location`.
 template <class T>
 T need(Node node, const std::string& location) {
   const std::optional<T> value = node ? node.value<T>() : std::nullopt;

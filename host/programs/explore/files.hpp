@@ -7,12 +7,12 @@
 
 namespace dolp::explore {
 
-/// Writes a session file. Paths in the file are relative to its folder. Copies the temporary sky files,
-/// Session::skies(), to NAME_sky_ZENITH_HORIZON.csv in this folder, where NAME is the stem of `path`. Errors: IoError.
+/// Writes the session to `path` = NAME.toml. Copies each temporary sky file (Session::skies()) into the same folder, as
+/// NAME_sky_ZENITH_HORIZON.csv, where ZENITH and HORIZON are the two temperatures of the sky in K. Errors: IoError.
 void save_session(const Session& session, const std::string& path);
 
-/// Writes the scene as TOML and calls Session::note_saved(). If the scene uses a temporary sky file (Session::skies()),
-/// writes NAME_sky.csv with this sky beside the TOML file, which then names NAME_sky.csv. Errors: IoError.
+/// Writes the scene to `path` = NAME.toml and calls Session::note_saved(). If the scene uses a temporary sky file,
+/// saves this sky as NAME_sky.csv in the same folder, and the scene then uses that file. Errors: IoError.
 void save_scene(Session& session, const std::string& path);
 
 /// Writes the curve as CSV with the columns of `dolp eval`. Errors: InputError if the curve is not finished; IoError.

@@ -18,7 +18,7 @@ struct MapAxis {
     return key.starts_with("surface.coating") ? key : key.substr(key.find('.') + 1);
   }
   /// Of two axes, the one with the smaller rank changes more slowly along the list of points. Rank 0 is the
-  /// temperature, rank 1 a thickness of a film. From rank 2 the axes are those of tables, in the order of tables.
+  /// temperature, rank 1 the thickness of a film. Higher ranks are the axes of tables, in the order of the enum Axis.
   std::size_t rank() const;
   bool is_of_tables() const { return rank() >= 2; }  ///< true if a table of `dolp table` can have this axis
   friend bool operator==(const MapAxis&, const MapAxis&) = default;
@@ -56,9 +56,9 @@ class HeatMap {
   struct Level {
     std::size_t count;  ///< number of rows, and of columns
     double tolerance;   ///< the map has this tolerance or that of the scene, whichever is larger
-    std::size_t batch;  ///< number of values of slower() in a JobPart
+    std::size_t batch;  ///< number of rows, or of columns, in a JobPart
   };
-  // While the user drags a slider, the curve has to wait for the JobPart that is running. So the first parts are small.
+  // While the user drags a slider, the curve waits for the JobPart that is running. So the parts of level 0 are small.
   static constexpr std::array<Level, 3> kLevels = {{{16, 1e-2, 2}, {64, 1e-2, 8}, {128, 0.0, 4}}};
 
   explicit HeatMap(const Scene& scene) : scene_(scene) {}
@@ -103,11 +103,12 @@ class HeatMap {
   bool is_current() const { return shown_key_ == key_; }
   bool is_complete(std::size_t level) const { return points_[level].size() == entries(level); }
   std::string key_of(std::size_t level) const { return "map " + std::to_string(kLevels[level].count) + ' ' + key_; }
-  bool is_turned() const { return x_.rank() < y_.rank(); }  ///< true if x changes more slowly in lists of points
+  bool is_turned() const { return x_.rank() < y_.rank(); }  ///< true if x is slower()
   const MapAxis& slower() const { return is_turned() ? x_ : y_; }
-  const MapAxis& faster() const { return is_turned() ? y_ : x_; }
+  const MapAxis& faster() const { return is_turned() ? y_ : x_; }  ///< changes from each point in a list to the next
   std::size_t batch(std::size_t level) const { return slower().column().empty() ? 1 : kLevels[level].batch; }
-  PointList part(std::size_t level, std::size_t first) const;  ///< batch() values of slower(), from number `first`
+  /// The points for all values of faster() and for batch() values of slower(), beginning with value number `first`.
+  PointList part(std::size_t level, std::size_t first) const;
   const Point& point_at(std::size_t finest, std::size_t row, std::size_t column) const;
 
   std::string key_;
@@ -116,7 +117,7 @@ class HeatMap {
   MapAxis x_, y_{.name = "sigma"};
   double theta_deg_ = 0.0;
   std::string shown_key_;                                  ///< key of the map on display
-  std::array<std::vector<Point>, kLevels.size()> points_;  ///< one list per level; neighbours differ in faster()
+  std::array<std::vector<Point>, kLevels.size()> points_;  ///< one list per level, in the order of part()
   std::string arriving_key_;
   std::vector<Point> arriving_;  ///< points of the first level while it is incomplete
   std::size_t version_ = 0;

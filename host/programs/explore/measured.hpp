@@ -45,7 +45,7 @@ std::optional<double> rms_of(const std::vector<Measurement>& residuals);  ///< r
 using FitMarks = std::map<std::string, std::optional<FitRange>>;
 
 /// The range of a number in fits: the typed range in `marks`, otherwise the range of the slider (range_in), extended to
-/// include `value`. A fit starts at the number in this range that is nearest to `value`.
+/// include `value`, but above 0 for k. A fit starts at the number in this range that is nearest to `value`.
 FitRange fit_range(const FitMarks& marks, const Scene& scene, const Control& control, double value);
 
 struct FitJob {
@@ -58,7 +58,7 @@ struct FitJob {
 Fit run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress,
             const std::function<void(const std::string&)>& phase = {});
 
-/// Position in Fit::minima of the minimum nearest to the start. Each number is scaled to [0, 1] (FitRange::coordinate).
+/// Position in Fit::minima of the minimum nearest to the start. Distances are measured in FitRange::coordinate().
 std::size_t nearest_minimum(const Fit& fit, const FitJob& job);
 
 std::string fit_text(const Fit& fit, std::size_t chosen);  ///< one line about minimum number `chosen`

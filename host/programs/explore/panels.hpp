@@ -9,10 +9,9 @@ namespace dolp::explore {
 
 inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< in radians
 
-/// A view beside the curve. It is computed only while it is shown.
+/// A view beside the curve, computed only while it is shown. kPanelNames has the names of the views in the same order.
 enum class Panel : std::uint8_t { kMap, kSlopes, kMaterial, kSmooth, kSpectrum, kScattering, kShapes, kSky, kFit };
 
-/// The names of the views, in the order of the enum Panel.
 inline constexpr std::array kPanelNames = {"map",   "slopes", "material", "smooth", "spectrum",
                                            "pBRDF", "sphere", "sky",      "fit"};
 
@@ -51,22 +50,23 @@ ScatteringCut scattering_cut(Evaluator& evaluator, const Scene& scene, double th
 
 struct ImagePolarisation {
   double dolp = 0.0;
-  double angle_deg = 0.0;  ///< direction of the electric field from the image's horizontal, counterclockwise, 0 to 180
+  double angle_deg = 0.0;  ///< from the image's horizontal to the electric field, counterclockwise, 0 to 180
 };
 
 /// The polarisation of a surface element in a camera's image. The normal of the element is tilted by `theta_deg` from
-/// the direction to the camera, towards `azimuth_deg` in the image. Interpolates in `curve`; empty if a neighbour of
-/// `theta_deg` is not good. The electric field of p light (Q < 0) has the azimuth; of s light, azimuth + 90°.
+/// the direction to the camera, towards `azimuth_deg` in the image. Interpolates between two points of `curve`; empty
+/// if one of them is missing or not good. The electric field is along `azimuth_deg` if Q < 0 (p), else perpendicular.
 std::optional<ImagePolarisation> polarisation_at(const std::vector<Point>& curve, double theta_deg, double azimuth_deg);
 
-/// DOLP of a bistatic scene for all directions of the source: for each azimuth of the source a curve over its zenith.
+/// DOLP of a bistatic scene for all directions of the source: for each of its azimuths, a curve over its zenith.
 class SourceSky {
  public:
   static constexpr std::size_t kZeniths = 31;   ///< 0 to 90 degrees
   static constexpr std::size_t kAzimuths = 37;  ///< 0 to 180 degrees; the other half of the sky is the mirror image
 
-  void follow(const std::string& key, const Scene& scene);  ///< `key`: content_key() without the azimuth of the source
-  std::vector<Job> wanted() const {                         // one job for each azimuth that is not computed yet
+  /// Switches to `scene`. `key` identifies its sky and is the same for all azimuths of the source.
+  void follow(const std::string& key, const Scene& scene);
+  std::vector<Job> wanted() const {  // one job for each azimuth that is not computed yet
     std::vector<Job> jobs;
     for (const Sweep& ring : rings_) {
       if (const std::optional<Job> job = ring.wanted()) jobs.push_back(*job);

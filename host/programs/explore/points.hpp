@@ -11,10 +11,10 @@
 
 namespace dolp::explore {
 
-/// Points to compute: a grid with axes, or a list with columns. A column has a value for each point, or a single value.
+/// Points to compute: a grid with axes, or a list with columns. A column has one value per point, or one value for all.
 struct PointList {
   std::vector<std::pair<std::string, std::vector<double>>> values;  ///< columns or axes, named as in `dolp eval`
-  /// True: `values` are axes. The points are all combinations of their values, in the order of entries in a table.
+  /// True: `values` are axes. The points are all combinations of their values, in the order that `dolp table` uses.
   bool is_grid = false;
   std::vector<Setting> changes = {};  ///< settings of the scene that hold for all points
 
@@ -56,7 +56,7 @@ struct PlottedDescription {
   const char* name;               ///< name in UTF-8
   const char* meaning;            ///< text in UTF-8, with the equation
   bool in_percent;                ///< true: plots show 100 times the value
-  bool needs_rho;                 ///< true: computed from rho; a run then keeps effects that change only rho
+  bool needs_rho;                 ///< true: computed from rho, so that runs must not drop effects that change only rho
   double (*value)(const Point&);  ///< NaN where the model gives no value
   bool is_signed = false;
 

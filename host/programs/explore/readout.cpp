@@ -23,8 +23,8 @@ struct Part {
   double q_over_i;  ///< contribution of the effect to Q/I at the peak
 };
 
-/// The contributions of emission, source and surroundings to Q/I at the peak. If the scene needs one of them, so that
-/// Peak::without() lacks it, its contribution is the rest of Q/I.
+/// The contributions of emission, source and surroundings to Q/I at the peak. Peak::without() lacks an effect if the
+/// scene is invalid without it. The contribution of this effect is Q/I minus the other contributions.
 std::vector<Part> radiating_parts(const Session& session) {
   const Peak& peak = session.peak();
   double rest = peak.answer()->at[Quantity::kQOverI];
@@ -43,7 +43,7 @@ std::vector<Part> radiating_parts(const Session& session) {
   return parts;
 }
 
-const Point* point_without(const Session& session, const std::string& effect) {  // at the peak
+const Point* point_without(const Session& session, const std::string& effect) {  // result at the peak, or null
   if (!session.peak().answer()) return nullptr;
   const std::vector<WithoutEffect>& all = session.peak().without();
   const auto away = std::ranges::find(all, effect, &WithoutEffect::effect);

@@ -4,18 +4,18 @@
 
 namespace dolp::explore {
 
-/// The suffix of a curve's name: ", the scene before" for points of an earlier scene, ", coarse" for a coarse curve.
+/// A text to add to a curve's name: ", the scene before" if its points are old, ", coarse" if they are few, or "".
 const char* remark(const Session& session, const Curve& curve);
 std::string curve_name(const Session& session);  ///< describes the surface of the curve on display
 std::string overlay_name(const Session& session);
-/// The name that the user typed for a pin. Without one: its material, and how its scene differs from the current scene.
+/// The name of a pin: as typed by the user, otherwise its material and how it differs from the current scene.
 std::string pin_name(const Session& session, const Pin& pin);
 const char* stale_text(bool is_stale);           ///< ", the scene before" or ""
 std::string peak_text(const Session& session);   ///< position of the maximum, and its uncertainty
 std::string cause_text(const Session& session);  ///< the parts of Q/I at the maximum: emission, source, surroundings
 std::string no_residuals_text(const Session& session, const Scale& theta);  ///< why the plot shows no residuals, or ""
 std::string cursor_text(const Session& session);
-/// Q/I in percent at the maximum, with all effects and without `effect`: "-14.36 → -59.59 %". Empty if not known.
+/// Q/I at the maximum, first with all effects, then without `effect`: "-14.36 → -59.59 %". Empty if not known.
 std::string without_text(const Session& session, const std::string& effect);
 /// The numbers of without_text() in a sentence. Empty if without_text() has no numbers.
 std::string without_words(const Session& session, const std::string& effect);

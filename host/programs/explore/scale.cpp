@@ -9,7 +9,7 @@
 namespace dolp::explore {
 namespace {
 
-constexpr double kRounding = 1e-9;  // relative rounding error by which a tick may lie outside the range
+constexpr double kRounding = 1e-9;  // ticks may lie outside the range by this share of the step or of the range's end
 
 std::vector<double> linear_ticks(double low, double high, std::size_t most) {
   const double rough = (high - low) / static_cast<double>(most);
@@ -44,7 +44,7 @@ std::vector<double> log_ticks(double low, double high, std::size_t a_decade) {
 }  // namespace
 
 std::string Scale::refusal() const {
-  constexpr double kLeastSpan = 1e-9;  // least (to - from)/max(|from|, |to|), because of rounding errors
+  constexpr double kLeastSpan = 1e-9;  // least (to - from)/max(|from|, |to|); rounding errors spoil shorter axes
   if (!std::isfinite(to - from)) return "must be finite";
   if (!(from < to)) return "must be from < to";
   if (is_log && from <= 0.0) return "must be above 0 on a logarithmic axis";

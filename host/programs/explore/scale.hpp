@@ -36,12 +36,12 @@ struct Scale {
   Scale including(double value) const {
     return is_log && !(value > 0.0) ? *this : Scale{std::min(from, value), std::max(to, value), is_log};
   }
-  /// This range on a linear or logarithmic scale. If from <= 0, a logarithmic range starts at to/180: 0.5° of 90°.
+  /// This range on a linear or logarithmic scale. If from <= 0, the logarithmic range starts at to / 180.
   Scale with_log(bool wants_log) const;
 
   /// At most `most` (at least 2) round values in the range. A linear range has multiples of 1, 2 or 5 times a power of
-  /// ten. A logarithmic range has powers of ten and, if they are not too many, 2 and 5 times these. If there are fewer
-  /// than three such values, a logarithmic range has the values of a linear range.
+  /// ten. A logarithmic range has 1, 2 and 5 times powers of ten. If these are fewer than three, it has the values of a
+  /// linear range. If they are more than `most`, it has only powers of ten, or every nth power.
   std::vector<double> ticks(std::size_t most) const;
 
   friend bool operator==(const Scale&, const Scale&) = default;

@@ -58,7 +58,7 @@ std::string material_name(const Scene& scene) {
   return name;
 }
 
-/// The numbers and the sky of a scene that differ from another scene's: "T 300 K, clear-sky".
+/// The numbers and the sky of `scene` that differ from those of `other`: "T 300 K, clear-sky".
 std::string different_numbers(const Scene& scene, const Scene& other) {
   std::vector<std::string> words;
   for (const Control& control : controls()) {
@@ -131,8 +131,8 @@ bool replaces(const Setting& change, const std::string& other) {
   return std::ranges::count(described(key).rivals, other) > 0;
 }
 
-/// Settings with which all other choices are possible. Sigma replaces a wind speed, which requires Gaussian slopes. The
-/// temperature and vapour of the air, which require a built-in sky, are removed.
+/// Settings that conflict with no other choice, for change_with_needed(). Sigma replaces a wind speed, because a wind
+/// speed requires Gaussian slopes. Vapour and temperature of the air are removed: they require a built-in sky.
 std::vector<Setting> compatible_words(const Scene& scene) {
   std::vector<Setting> words = {{"surface.masking", "v-cavity"},    {"surface.scattering", "single"},
                                 {"emission.model", "moments"},      {"emission.bracket", false},
@@ -307,7 +307,7 @@ std::vector<Setting> change_with_needed(SceneEdits& edits, const std::function<v
   std::vector<Setting> needed;
   std::optional<SceneEdits> changed = changed_after(needed);
   if (!changed) changed = changed_after(needed = compatible_words(edits.scene()));
-  if (!changed) change(edits);  // throws the reason
+  if (!changed) change(edits);  // fails as before, but throws its InputError
   for (std::size_t i = needed.size(); i-- > 0;) {
     std::vector<Setting> fewer = needed;
     fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));

@@ -52,8 +52,8 @@ class SceneEdits {
   explicit SceneEdits(const Scene& opened) : opened_(opened), scene_(opened), saved_(opened.settings()) {}
   SceneEdits(const Scene& opened, const std::vector<Setting>& changes) : SceneEdits(opened) { become(changes); }
 
-  /// Sets keys. A new key removes its alternatives: `material` removes n and k. A table name with an empty value, such
-  /// as "source", removes the table. Errors: InputError; the scene then stays unchanged.
+  /// Sets keys. A new key removes its alternatives: `material` removes n and k. An empty value for the name of a table,
+  /// such as "source", removes the table. Errors: InputError; the scene then stays unchanged.
   void set(const std::vector<Setting>& changes);
 
   /// Restores a key or a whole table of the opened scene. Errors: the errors of set().
@@ -64,10 +64,10 @@ class SceneEdits {
   const Scene& opened() const { return opened_; }
   bool is_changed() const { return changes() != saved_; }
   void note_saved() { saved_ = changes(); }  ///< makes is_changed() false until the next change
-  /// Takes scene and changes from `other`. Keeps the state of the last note_saved() if both have the same scene file.
+  /// Becomes a copy of `other`. If both have the same scene file, the last note_saved() of this object still counts.
   void go_to(const SceneEdits& other);
   bool is_same_scene(const SceneEdits& other) const { return is_same_file(other) && changes() == other.changes(); }
-  const std::vector<Setting>& changes() const { return scene_.settings(); }  ///< including the settings of opened()
+  const std::vector<Setting>& changes() const { return scene_.settings(); }  ///< at first: opened().settings()
   std::vector<Setting> changes_without(const std::vector<std::string>& keys) const;
 
  private:
@@ -103,7 +103,7 @@ struct SkyPair {
 /// Reads a file that SkyPair::csv() made. Empty if the file has another text or cannot be read.
 std::optional<SkyPair> read_sky_pair(const std::filesystem::path& file);
 
-std::filesystem::path sky_file(const Scene& scene);  ///< empty if the scene has no sky or a built-in one
+std::filesystem::path sky_file(const Scene& scene);  ///< empty if the scene's sky is not from a file
 
 /// Temporary files for skies that the user edits, because a scene reads a sky from a file. The destructor removes them.
 class SkyFiles {

@@ -31,10 +31,9 @@ struct JobList {
   void add(std::vector<Job> more) { std::ranges::move(more, std::back_inserter(jobs)); }
 };
 
-/// Sets axis.scale to the typed range, or to known_part() for wavelengths. Returns false if the range cannot be drawn.
+/// Sets axis.scale to the user's range if the scene accepts it. Otherwise wavelengths get the range with known n and k.
 bool find_range(const Scene& scene, const View& view, MapAxis& axis) {
   const std::optional<Scale> typed = view.range(axis.label);
-  // The scene may have changed since the user typed the range, and may now refuse the range.
   if (typed && refusal(scene, axis, *typed).empty()) {
     axis.scale = *typed;
   } else if (axis.name == "wavelength") {
@@ -45,7 +44,7 @@ bool find_range(const Scene& scene, const View& view, MapAxis& axis) {
 
 constexpr const char* kWavelength = "spectrum.wavelength_um";
 
-/// The map axis called `name`. If the scene lacks it, returns an axis that is not `other`, the map's second axis.
+/// The map axis `name`. If the scene lacks this axis or cannot show it, returns any axis except the axis `other`.
 MapAxis axis_or_another(const Scene& scene, const View& view, const std::string& name, const std::string& other) {
   std::vector<MapAxis> axes = map_axes(scene, view.theta_max_deg);
   const auto named = std::ranges::find(axes, name, &MapAxis::name);
@@ -304,7 +303,7 @@ void Session::follow_overlay(const std::string& content) {
 }
 
 void Session::follow_map() {
-  if (is_dragged() && map_.is_arriving()) return;  // during a drag, a map that has begun is finished
+  if (is_dragged() && map_.is_arriving()) return;  // a drag must not interrupt a map that is being computed
   const MapAxis x = axis_or_another(scene(), state_.view, state_.view.map_x, state_.view.map_y);
   const MapAxis y = axis_or_another(scene(), state_.view, state_.view.map_y, x.name);
   std::string key = content_key(scene(), state_.edits.changes_without({x.key, y.key}), keeps_all());
@@ -316,8 +315,8 @@ void Session::follow_map() {
 
 void Session::follow_sweeps(const std::string& content) {
   constexpr std::size_t kSpectrum = 121;
-  constexpr std::size_t kSmooth = 901;  // enough for the fringes of films; a smooth surface is computed fast
-  constexpr double kWidth = 2.0;        // the axis begins at wavelength / kWidth and ends at kWidth * wavelength
+  constexpr std::size_t kSmooth = 901;  // number of wavelengths, enough to show interference fringes of films
+  constexpr double kWidth = 2.0;        // the range of the axis is [from_um / kWidth, to_um * kWidth]
   const bool is_spectrum = shows(Panel::kSpectrum);
   if (!is_spectrum && !shows(Panel::kSmooth)) return;
   spectral_scene_ = at_one_wavelength(scene());

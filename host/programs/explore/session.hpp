@@ -100,7 +100,7 @@ class Session {
     set_view(view);
   }
   void set_theta(double theta_deg);
-  /// Moves the cursor of the map, and sets the scene's numbers to the values there. `x` and `y` are from 0 to 1.
+  /// Moves the cursor of the map to (x, y), each from 0 to 1, and sets the numbers on the two axes accordingly.
   void set_map_cursor(double x, double y);
   void load_measured(const std::string& path);
   void clear_measured() { residuals_.clear(); }
@@ -154,15 +154,14 @@ class Session {
   std::optional<std::size_t> minimum() const {
     return fit_ && visited_->is_same_scene(state_.edits) ? std::optional(minimum_) : std::nullopt;
   }
-  /// The result of the last fit for the number `key`; null if the user has changed the scene since then.
+  /// The result of the last fit for the number `key`. Null if the fit did not vary it, or after a change of the scene.
   const FitParameter* fitted(const std::string& key) const;
   const Message& message() const { return message_; }
   bool is_dragged() const { return is_held_ && is_in_gesture_; }  ///< the mouse is down and has changed the scene
   /// True if a curve shows an earlier scene. False during a drag, because then every curve lags behind the slider.
   bool is_outdated(const Curve& curve) const { return curve.is_stale() && !is_dragged(); }
-  /// The effects of the last finished curve. Effect::influence of a kept effect is an estimate at the cursor's zenith.
+  /// The effects in the last finished curve. Effect::influence is estimated at one zenith, that of the cursor.
   const std::vector<Effect>& effects() const { return effects_; }
-  /// Where the scene's value lies on an axis of the map, from 0 to 1. For the zenith this is the cursor's value.
   double map_cursor(const MapAxis& axis) const {
     const double value = axis.key.empty() ? state_.theta_deg : scene().number(axis.key).value_or(axis.scale.from);
     return axis.scale.position(axis.scale.clamp(value));
@@ -190,7 +189,7 @@ class Session {
 
   SkyFiles skies_;
   SessionState state_;
-  std::vector<SceneEdits> done_, undone_;  ///< earlier and undone states; the last is the next to restore
+  std::vector<SceneEdits> done_, undone_;  ///< states that undo() and redo() restore, the last element first
   bool is_held_ = false;
   bool is_in_gesture_ = false;
   Curve curve_;
@@ -204,10 +203,10 @@ class Session {
   Residuals residuals_;
   std::optional<Fit> fit_;
   std::optional<SceneEdits> fit_edits_;  ///< the scene that was fitted
-  std::optional<SceneEdits> visited_;    ///< the fitted scene at the minimum that the user visited
+  std::optional<SceneEdits> visited_;    ///< the scene at the minimum of fit_ that was visited last
   std::size_t minimum_ = 0;
   std::vector<Effect> effects_;
-  std::pair<std::string, double> influences_of_;  ///< curve key and zenith for which effects_ were estimated
+  std::pair<std::string, double> influences_of_;  ///< key of the curve, and zenith, to which effects_ belong
   Message message_;
   std::vector<std::string> remarks_;  ///< remarks on the scene that message() has shown before
   bool is_changed_ = true;

@@ -14,11 +14,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kBlink_s = 0.3;  // period in which the text cursor blinks
-// Longest wait of a frame for its curve while a slider is dragged. Tuned: twice this time makes frames of slow scenes
-// too long; after half of it, curves of scenes with a band are not ready.
+// While the user drags a slider, a frame waits at most this time for the curve. Tuned: with twice the time, frames of
+// slow scenes take too long. With half the time, curves averaged over a wavelength band are not ready.
 constexpr double kCatchUp_s = 0.03;
 constexpr std::size_t kFramesAfterEvent = 4;  // ImGui draws some effects, such as an open list, some frames later
-constexpr std::size_t kFramesAfterNews = 2;   // ImGui fits tables to their text one frame later
+constexpr std::size_t kFramesAfterNews = 2;   // without an event: ImGui needs a second frame to fit tables to new texts
 
 std::string times_text(std::vector<double> times_s) {
   if (times_s.empty()) return "none";
@@ -154,7 +154,7 @@ void run_program(const Scene& scene, const ProgramOptions& options) {
   }
   require_device(options.device);
   AppOptions app_options = options;
-  // With `frames` the window makes measurements and pictures for manuals, which must not depend on preferences.
+  // Option --frames measures times or draws pictures for manuals. The user's preferences must not influence these.
   if (options.frames == 0) app_options.preferences = Preferences::default_path();
   App app(SceneEdits(scene), app_options);
   Session& session = app.session();

@@ -7,7 +7,7 @@
 namespace dolp::explore {
 
 struct AppOptions {
-  std::string device;                      ///< position of the device, or a part of its name
+  std::string device;                      ///< number of the device in `dolp devices`, or a part of its name
   std::string command_line;                ///< command line for the attribute "history" of tables
   std::filesystem::path preferences = {};  ///< file of Preferences; empty: no file
 };
@@ -52,7 +52,7 @@ class App {
   Session session_;
   Screen screen_;
   Evaluator evaluator_;
-  std::atomic<bool> is_catching_up_ = false;  ///< true while catch_up() waits, because results then need not wake run()
+  std::atomic<bool> is_catching_up_ = false;  ///< true while catch_up() waits for results; they then do not wake run()
   Worker worker_;
   Actions actions_;
   Input input_;
@@ -66,7 +66,7 @@ struct ProgramOptions : AppOptions {
   std::string screenshot_path;         ///< PNG of the last frame; empty: none
   std::string panel = {};              ///< name of the first panel; empty: the map
   std::string session_path = {};       ///< session file that replaces the scene; empty: none
-  std::vector<Setting> settings = {};  ///< --set: changes of the scene in the session
+  std::vector<Setting> settings = {};  ///< options --set: changes of the scene in `session_path`
 };
 
 /// Shows the window. If `frames` is given, prints the durations of the frames. Errors: those of dolp/errors.hpp.

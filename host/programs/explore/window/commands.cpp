@@ -32,7 +32,7 @@ Actions::Actions(Session& session, const std::string& device, std::string comman
     preferences_.load(preferences);
     const std::string file = session_.scene().name();
     std::error_code unknown;
-    if (!std::filesystem::exists(file, unknown)) return;  // the scene has no file: it is built in
+    if (!std::filesystem::exists(file, unknown)) return;  // the scene is built in or from standard input
     prefer([&](Preferences& kept) { kept.remember(file); });
   } catch (const std::exception& error) {
     session_.tell(error.what(), true);
@@ -123,7 +123,8 @@ namespace {
 
 using Path = const std::string&;
 
-/// A path for saving: the scene file's name with `ending`, in the folder used last for this file, or in the file's own.
+/// A path for saving: the name of the scene file with `ending`. The folder is the one in which the user last saved
+/// while this scene file was open; at first, the folder of the scene file.
 std::string suggested_path(const Ui& ui, const std::string& ending) {
   const std::filesystem::path file = ui.session.scene().name();
   const std::filesystem::path folder = file == ui.saved.first ? ui.saved.second : file.parent_path();
@@ -244,7 +245,7 @@ constexpr Command kCommands[] = {
     {"Help", "Shortcuts and hints", "Ctrl+H", [](Ui& ui) { ui.shows_help = true; }},
 };
 
-/// Names the area of the menu or entry that is drawn next. After an open menu, name_item() would name another item.
+/// Names the area of the next menu or entry. If BeginMenu() opened a menu, name_item() would name another item.
 void name_next(const std::string& name, const char* text) {
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   name_area(name, {corner, {corner.x + ImGui::CalcTextSize(text).x, corner.y + ImGui::GetTextLineHeight()}});

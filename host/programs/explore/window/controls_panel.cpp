@@ -91,7 +91,7 @@ struct Controls {
     return session.message().is_error ? session.message().text : "";
   }
 
-  /// Calls `draw`. If the field `id` no longer has a refused text afterwards, also removes the message about the text.
+  /// Calls `draw`. If this removes the error of the field `id`, also removes the message that shows the same error.
   void draw_fields(const std::string& id, const std::function<void()>& draw) {
     const std::string before = fields.reason(id);
     draw();

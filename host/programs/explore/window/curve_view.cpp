@@ -65,7 +65,7 @@ std::vector<double> values_to_show(const Session& session, const std::vector<Sho
   return values;
 }
 
-/// Fills the area between dolp_low and dolp_high, only for the current curve, because overlapping areas are unreadable.
+/// Fills the area between dolp_low and dolp_high. Only the current curve gets it: overlapping areas are unreadable.
 void draw_bracket(const Plot& plot, const Shown& shown) {
   const std::vector<Point> points = shown.curve->drawn();
   const ImU32 colour = band_colour(shown.style);
@@ -85,7 +85,7 @@ void draw_bracket(const Plot& plot, const Shown& shown) {
   plot.list()->Flags = flags;
 }
 
-/// Draws lines between good points in the curve's style, and lines from or to bad points thin, grey and dashed.
+/// Draws the curve in its style. On both sides of a point at which the model fails, the line is thin, grey and dashed.
 void draw_curve(const Plot& plot, const Shown& shown, Plotted quantity) {
   const std::vector<Point> points = shown.curve->drawn();
   std::vector<ImVec2> good, bad;
@@ -102,7 +102,7 @@ void draw_curve(const Plot& plot, const Shown& shown, Plotted quantity) {
   draw_line(plot.list(), good, shown.style, kCurveWidth);
 }
 
-/// Adds a name to the legend, in a new line if needed. Returns the area beside the name, for a piece of the curve.
+/// Adds a name to the legend, in a new line if needed. Returns the area left of the name, for a sample of the curve.
 Area add_entry(const char* id, const std::string& name, ImU32 colour = kTextColour) {
   const float line = ImGui::GetTextLineHeight();
   const float width = 2.3F * line + ImGui::CalcTextSize(shown(name).c_str()).x;
@@ -254,11 +254,11 @@ void CurveView::edit_axes(View& view, AxisEditor& editor, const Plot& plot, cons
 }
 
 void CurveView::choose_axes(const Session& session, Zoom& zoom, const Scale& zeniths, Scale& values) {
+  // A range that the user chose for a linear axis does not hold for a logarithmic axis, and vice versa.
   const bool has_zeniths = zoom.x && zoom.x->is_log == zeniths.is_log;
   if (has_zeniths) zoom.x = zoom.x->within(zeniths);
   x_ = has_zeniths ? *zoom.x : zeniths;
   const bool is_same = quantity_ == session.view().quantity && y_.is_log == values.is_log;
-  // Applies the range that the user chose only if its scale, linear or logarithmic, is the scale of the axis.
   if (zoom.y && zoom.y->is_log == values.is_log) {
     values = *zoom.y;
   } else if (ImGui::IsMouseDown(ImGuiMouseButton_Left) && is_same) {

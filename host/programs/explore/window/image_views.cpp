@@ -77,7 +77,7 @@ struct Colours {
   }
 };
 
-/// The range of DOLP of the points. It begins at 0, or at the smallest DOLP if `from_least` is true.
+/// The range of DOLP up to `theta_max_deg`. It begins at 0, or at the smallest DOLP if `from_least` is true.
 Scale dolp_range(const std::vector<Point>& points, double theta_max_deg, bool from_least) {
   constexpr double kLeastRange = 1e-6;
   Scale range{1.0, 0.0};

@@ -13,7 +13,7 @@ namespace dolp::explore {
 namespace {
 
 #if IMGUI_VERSION_NUM < 18700
-// Empty, because ImGui's GLFW backend in this version already takes Ctrl, Shift and Alt from the last event.
+// Empty: before version 1.87, ImGui's GLFW backend derives Ctrl, Shift and Alt from the key events that it gets.
 void set_modifiers(int, int, int) {}
 
 void set_mouse(ImVec2 position, const std::array<bool, 5>& buttons) {
@@ -22,7 +22,7 @@ void set_mouse(ImVec2 position, const std::array<bool, 5>& buttons) {
   std::ranges::copy(buttons, io.MouseDown);
 }
 #else
-// Sets Ctrl, Shift and Alt as they were at this event. ImGui's GLFW backend would use their current state.
+// Sets Ctrl, Shift and Alt to their state when the event happened. ImGui's GLFW backend would read their present state.
 void set_modifiers(int key, int action, int modifiers) {
   // On X11 `modifiers` does not contain the key of this event yet.
   if (key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER) {

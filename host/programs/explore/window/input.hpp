@@ -39,7 +39,7 @@ class Input {
   /// True if there were events since the last call of take_news().
   bool take_news() { return std::exchange(has_news_, false); }
   double rest_s() const { return std::chrono::duration<double>(Clock::now() - last_event_).count(); }
-  std::map<std::string, Area>& areas() { return areas_; }  ///< areas named in this frame, for tests
+  std::map<std::string, Area>& areas() { return areas_; }  ///< named areas of this frame, by which tests find controls
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -66,7 +66,7 @@ class Input {
 /// True in the frame in which a key of GLFW goes down. ImGui::IsKeyPressed() has key codes that depend on its version.
 bool is_pressed(int key);
 
-void name_item(const std::string& name);  ///< names the item that was drawn last
+void name_item(const std::string& name);  ///< adds the area of the item drawn last to Input::areas()
 void name_area(const std::string& name, const Area& area);
 
 }  // namespace dolp::explore

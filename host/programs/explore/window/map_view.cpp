@@ -10,7 +10,7 @@
 namespace dolp::explore {
 namespace {
 
-constexpr double kMostContrast = 1e3;  // largest ratio of last to first value on an automatic logarithmic colour scale
+constexpr double kMostContrast = 1e3;  // an automatic logarithmic colour scale spans at most this factor
 constexpr std::size_t kMostLines = 7;
 constexpr ImU32 kLightLine = IM_COL32(255, 255, 255, 190);  // lines on the colours of viridis()
 constexpr ImU32 kDarkLine = IM_COL32(0, 0, 0, 170);         // lines on the colours of diverging()

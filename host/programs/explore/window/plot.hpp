@@ -22,8 +22,8 @@ struct Zoom {
 
 class Plot {
  public:
-  /// Draws background, grid and axes at the cursor of the current ImGui window. `size` contains margins for ticks and
-  /// labels. `right` is the width of a margin for a colour bar.
+  /// Draws background, grid and axes at the cursor of the current ImGui window. `size` includes the margins for
+  /// ticks, labels and a colour bar. `right` is the width of the margin for the colour bar.
   Plot(const char* id, ImVec2 size, PlotAxis x, PlotAxis y, float right = 0.0F, bool has_grid = true);
 
   const Area& area() const { return area_; }
@@ -75,11 +75,11 @@ class Plot {
   bool is_hovered_ = false;
 };
 
-/// A point that makes a gap in a line. draw_line() scales the width and the dashes with the size of the text.
-inline const ImVec2 kGap{std::numeric_limits<float>::quiet_NaN(), 0.0F};
+inline const ImVec2 kGap{std::numeric_limits<float>::quiet_NaN(), 0.0F};  ///< a point that makes a gap in a line
+/// Scales the width and the dashes with the size of the text.
 void draw_line(ImDrawList* list, const std::vector<ImVec2>& points, const CurveStyle& style, float width);
 
-/// Draws text beside the point `at`. With `anchor` (0, 0) the upper left corner is there; with (1, 1), the lower right.
+/// Draws text. `at` is its upper left corner for `anchor` (0, 0), and its centre for `anchor` (0.5, 0.5).
 void draw_text(ImDrawList* list, ImVec2 at, ImVec2 anchor, ImU32 colour, const std::string& text);
 
 /// Draws text as draw_text() does, on a background that hides curves.

@@ -59,7 +59,7 @@ GLFWwindow* open_window() {
   return window;
 }
 
-/// A function of OpenGL. `dolp` is not linked to OpenGL, so that its other commands run without OpenGL.
+/// Looks up a function of OpenGL. `dolp` is not linked to OpenGL, so its commands without a window need no OpenGL.
 template <class Function>
 Function* opengl(const char* name) {
   return reinterpret_cast<Function*>(glfwGetProcAddress(name));

@@ -21,7 +21,7 @@ class Texture {
 
   /// Replaces the image by `count` rows of `count` colours, the lowest row first; a row begins on the left.
   void set(const std::vector<ImU32>& colours, std::size_t count);
-  /// Draws the image so that `min` and `max` are the middles of its corner cells, which are therefore cut.
+  /// Draws the image without the outer halves of its edge cells: `min` and `max` are the middles of the corner cells.
   void draw(ImDrawList* list, ImVec2 min, ImVec2 max) const;
 
  private:
@@ -38,7 +38,7 @@ class Screen {
   ~Screen();
 
   GLFWwindow* window() const { return window_; }
-  void follow(const Preferences& wanted);  ///< applies theme and size of the text; call it between two frames
+  void follow(const Preferences& wanted);  ///< applies the theme and the text size; call it between two frames
   /// Shows ImGui's frame, unless the window has no area. If `wants_picture` is true, returns the frame as a PNG file.
   std::string show(bool wants_picture) const;
 

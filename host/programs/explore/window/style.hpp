@@ -18,7 +18,7 @@ struct Themed {
 };
 
 /// The colour map "viridis" from dark at 0 to light at 1. Positions outside this range are clamped.
-/// Source: S. van der Walt, N. Smith, viridis of Matplotlib (CC0), at seventeen equal steps, linear in between.
+/// Source: S. van der Walt, N. Smith, viridis of Matplotlib (CC0); linear between seventeen equally spaced colours.
 ImU32 viridis(double position);
 
 /// The colour map "RdBu" from blue at 0 over white at 0.5 to red at 1, for values of both signs.
@@ -37,7 +37,7 @@ struct CurveStyle {
 CurveStyle current_style();
 CurveStyle overlay_style();
 CurveStyle pin_style(std::size_t pin);
-CurveStyle stale(const CurveStyle& style);   ///< for a curve of an earlier scene
+CurveStyle stale(const CurveStyle& style);   ///< a fainter style, for outdated or hidden curves
 ImU32 band_colour(const CurveStyle& style);  ///< for the area between dolp_low and dolp_high
 
 inline constexpr Themed kTextColour{IM_COL32(225, 228, 232, 255), IM_COL32(24, 26, 30, 255)};
@@ -65,7 +65,7 @@ std::string ascii(std::string_view text);  ///< `text` with names instead of Gre
 /// Breaks a text into lines of at most `width`, at spaces. A longer word stays whole.
 std::string in_lines(std::string text, float width);
 
-void coloured_text(ImU32 colour, const std::string& text);  ///< draws text at ImGui's cursor, in lines
+void coloured_text(ImU32 colour, const std::string& text);  ///< draws text at ImGui's cursor; breaks long lines
 
 inline constexpr float kTooltipDelay_s = 0.5F;  ///< time that the mouse rests before a tooltip appears
 

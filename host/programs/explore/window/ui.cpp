@@ -246,7 +246,7 @@ void draw_right(Ui& ui, float window_height) {  // draws everything right of the
     draw_one_page(ui);
     ImGui::EndChild();
   } else {
-    // The plots get more than half of the height. If the panels below them need more than the rest, they scroll.
+    // The plots get more than half of the height. The panels below scroll if they do not fit in the rest.
     const float below = std::max(0.33F * window_height, 15.0F * ImGui::GetTextLineHeight());
     draw_plots(ui, {room.x, height - std::min(below, 0.45F * height)});
   }

@@ -10,8 +10,8 @@ class Actions {
   using Clock = std::chrono::steady_clock;
 
  public:
-  /// `preferences` is the file of Preferences; empty: no file. Background threads call `on_change` when they have news.
-  /// The session must outlive this object.
+  /// `preferences` is the file of the preferences, or empty to store none. Background threads call `on_change` when
+  /// their work progresses or ends. The session must outlive this object.
   Actions(Session& session, const std::string& device, std::string command_line,
           const std::filesystem::path& preferences, const std::function<void()>& on_change);
 

@@ -38,7 +38,7 @@ inline Vector<double> toward_view(const SlopePoint& point, const Zenith& view) {
   return {view.sin * point.sin_chi, -view.sin * point.cos_chi, view.cos};
 }
 
-/// Electric vectors of an s wave and a p wave of amplitude 1 along k. s is the unit vector along k x z, and p = k x s.
+/// Electric vectors of an s and a p wave of amplitude 1 along k. s = k x z / |k x z|, a limit at theta = 0. p = k x s.
 struct UnitLight {
   Electric from_s;
   Electric from_p;

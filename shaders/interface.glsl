@@ -5,7 +5,7 @@
 #define DOLP_BINDING_THETAS 0         // ThetaNode[]
 #define DOLP_BINDING_SHAPES 1         // ShapeNode[]
 #define DOLP_BINDING_INDICES 2        // IndexNode[]
-#define DOLP_BINDING_TASKS 3          // uvec4[]: positions of ThetaNode, first ShapeNode and IndexNode; task word
+#define DOLP_BINDING_TASKS 3          // uvec4[]: positions in THETAS, SHAPES and INDICES, and the task word (see below)
 #define DOLP_BINDING_MASKING_TABLE 4  // real4[]: written by masking_table.comp, one table per ShapeNode
 #define DOLP_BINDING_MOMENTS 5        // MomentsNode[]: the output, DOLP_WIDTH nodes per task
 #define DOLP_BINDING_RULE 6           // RuleNode: one for all tasks
@@ -23,7 +23,7 @@
 #define DOLP_SPEC_TOTAL_REFLECTION 3  // true if any index has total reflection (IndexNode::critical_cos > 0)
 #define DOLP_SPEC_MULTIPLE 4          // true if rays are followed through all bounces in a groove
 #define DOLP_SPEC_DIRECT 5            // true if the request needs the emission straight to the viewer
-#define DOLP_SPEC_COLUMN_COUNT 6      // number of columns, which are sums beside the moments, see physics/columns.glsl
+#define DOLP_SPEC_COLUMN_COUNT 6      // number of columns: further sums over the facets, see physics/columns.glsl
 #define DOLP_SPEC_COLUMNS 7           // kind of the columns, DOLP_COLUMNS_*
 #define DOLP_SPEC_CURVES 8            // true if reflectances come from tables, for films and measured reflectances
 
@@ -57,7 +57,7 @@
 #define DOLP_TASK_ROOT_AT_END 12u    // bit: square root at the end of the piece
 #define DOLP_TASK_ROOT_BEFORE_START 13u // bit: square root at the start of the preceding piece
 #define DOLP_TASK_ROOT_AFTER_END 14u // bit: square root at the end of the next piece
-#define DOLP_TASK_SPLIT_LINE 15u     // bit: pieces or arcs end where `integral` or smith masking is not smooth
+#define DOLP_TASK_SPLIT_LINE 15u     // bit: pieces or arcs end at the kink of smith or `integral` masking (split line)
 #define DOLP_TASK_AZIMUTHS_SHIFT 16u // from this bit: largest number of azimuth nodes on an arc; bounds the loops
 
 // ---- Sizes ---------------------------------------------------------------------------------------------------------
@@ -66,23 +66,23 @@
 #endif
 #define DOLP_ROW_WIDTH 4         // DOLP_WIDTH in the kernels that compute several entries
 #ifndef DOLP_MOST_COLUMNS
-#define DOLP_MOST_COLUMNS 0      // largest number of columns that a kernel can compute; 0 in kernels without columns
+#define DOLP_MOST_COLUMNS 0      // largest number of columns in the kernel being compiled; 0 if it has no columns
 #endif
 #define DOLP_COLUMNS 24          // largest number of columns that any kernel computes
-#define DOLP_SKY_FUNCTIONS 8     // largest number of functions of a sky; DOLP_MOST_COLUMNS in kernels for skies
+#define DOLP_SKY_FUNCTIONS 8     // largest number of functions of a sky, and of columns in kernels for skies
 #define DOLP_MOST_SKY_CORNERS 24 // largest number of corners of a sky that split the azimuths
 #define DOLP_COLUMN_PARTS 4      // numbers per column: r_i and r_q by the coarser rule, r_i and r_q by the finer rule
 #define DOLP_MAX_PIECES 63       // largest number of pieces of the slope axis for one direction
-#define DOLP_MAX_ARCS 13        // largest number of azimuth arcs at one slope, not counting those of total reflection
+#define DOLP_MAX_ARCS 13        // most azimuth arcs at one slope, before total reflection and skies split them further
 // V-grooves, see physics/groove.glsl
 #define DOLP_STEEPEST_SPLIT 20.0  // for slopes below this, azimuths are split where the number of bounces changes
 #define DOLP_MOST_SPLITS 8       // largest RuleNode::split_bounces
-#define DOLP_MOST_BOUNCES 32      // in longer paths, a group of 2, 4, 8 ... bounces counts as one
-#define DOLP_GROUPS_PER_DISTANCE 6 // a group of n bounces has 6 n or more bounces before it, and 6 n or more after it
+#define DOLP_MOST_BOUNCES 32      // rays with more bounces are followed in groups of 1, 2, 4, 8 ... bounces
+#define DOLP_GROUPS_PER_DISTANCE 6 // a group of n > 1 bounces has at least 6 n bounces before it and 5 n after it
 #define DOLP_MOST_DOUBLINGS 12    // a group has at most 2^12 bounces
 #define DOLP_LAST_BOUNCES (DOLP_MOST_BOUNCES << DOLP_MOST_DOUBLINGS)  // a ray with more bounces is absorbed
-#define DOLP_CURVE_NODES 6       // rule nodes per cell of a table of reflectances: three cubics with two nodes each
-#define DOLP_MAX_ORDER 128       // largest Gauss order of the rule nodes
+#define DOLP_CURVE_NODES 6       // rule nodes (pairs) per cell of a table of reflectances: 3 cubics of 4 coefficients
+#define DOLP_MAX_ORDER 128       // largest order (number of nodes) of a Gauss rule
 #define DOLP_MASKING_OCTAVES 29  // octaves of v = 1 + tau / table_scale in a masking table, where tau is a slope
 #define DOLP_MASKING_CELL_BITS_FLOAT 3   // a masking table has 2^bits cells per octave
 #define DOLP_MASKING_CELL_BITS_DOUBLE 6
@@ -94,16 +94,16 @@
 struct RuleNode {
   real digits;            // decimal digits required of the moments
   real t_nodes;           // slope axis: constant part of the number of nodes of a piece
-  real t_digits;          // slope axis: added to the required digits, because singularities have different strengths
-  real t_fall;            // slope axis: nodes for each time the density falls by the factor e over a piece
-  real phi_nodes;         // azimuth: nodes per radian of an arc, beside the nodes that the digits cost
-  real phi_digits;        // azimuth: added to the required digits, because singularities have different strengths
-  real cluster_stretch;   // smith: if the cusp of G costs more nodes per digit than this, nodes cluster at the cusp
+  real t_digits;          // slope axis: a fitted constant, added to the required digits
+  real t_fall;            // slope axis: nodes for each factor e by which the share of steeper facets falls on a piece
+  real phi_nodes;         // azimuth: nodes per radian of an arc, in addition to the nodes for the digits
+  real phi_digits;        // azimuth: a fitted constant, added to the required digits
+  real cluster_stretch;   // smith: nodes cluster at the cusp of G at theta_r = 0 if it costs more nodes per digit
   real split_bounces;     // all bounces: azimuths are split where the number of bounces changes, up to this number
   real dimmest;           // all bounces: a ray is followed until less than this share of its light is left
   real cluster_below_q;   // `integral`: if q is below this, nodes cluster at the azimuth where G has a kink
-  real response_scale;    // for responses: 1 / c0 of chebyshev_at() in physics/columns.glsl
-  real response_norm;     // for responses: 2 / asinh(1 / c0)
+  real response_scale;    // for responses: 1 / c0; their polynomials resolve most detail at cos(beta) < c0
+  real response_norm;     // for responses: 2 / asinh(1 / c0), see chebyshev_at() in physics/columns.glsl
 };
 
 // One direction theta, and the pieces of the slope axis t = tan(alpha) on which the integrand is smooth. A direction
@@ -128,12 +128,12 @@ struct SlopeNode {
 struct ShapeNode {
   real m;              // sqrt(2) sigma
   real q_minus_1;      // q - 1, stored because a float q does not resolve it near 1; unused by the Gaussian
-  real two_q_minus_3;  // 2q - 3, stored because a float q does not resolve it near q = 3/2, the limit of smith
+  real two_q_minus_3;  // 2q - 3, stored because a float q does not resolve it near 3/2; smith needs q > 3/2
   real marginal_norm;  // p(0), with the density p of the in-plane slopes
   real scale;          // the slope t is mapped to X with t = scale sinh(X)
   real cut;            // slopes above this one are left out
   real table_scale;    // the variable of the masking table is v = 1 + tau / table_scale, where tau is a slope
-  real cusp_digits;    // smith: log10 of the error without a split at the cusp, see cusp_digits() of plan/rule.hpp
+  real cusp_digits;    // smith: log10 of the relative error of Lambda if no rule is split at its cusp, theta_r = 0
 };
 
 struct IndexNode {
@@ -165,7 +165,7 @@ struct GeometryNode {
 struct BeamNode {
   GeometryNode g;
   ShapeNode shape;  // with the scale and the cut that physics/in_plane.glsl needs
-  real density;     // D(alpha) / 4 [1/sr], divided by a power of two: 0 or in [1/2, 1)
+  real density;     // D(alpha) / 4 [1/sr] over 2^Beam::power, so that a float can hold it: 0 or in [1/2, 1)
   // Mueller matrix of the facet in the frame of the facet, with r_s* r_p = cross_re + i cross_im:
   // [m00 m01 0 0; m01 m00 0 0; 0 0 cross_re -cross_im; 0 0 cross_im cross_re].
   real m00;
@@ -178,8 +178,8 @@ struct MuellerNode {
   real m[16];
 };
 
-#define DOLP_AZIMUTH_NUMBERS 8  // numbers of an AzimuthNode
-#define DOLP_MOMENTS_NUMBERS 13  // numbers of a MomentsNode
+#define DOLP_AZIMUTH_NUMBERS 8  // how many members an AzimuthNode has
+#define DOLP_MOMENTS_NUMBERS 13  // how many members a MomentsNode has
 
 // Integrals over the azimuths from 0 to pi for the facets of slope t, without the weight P(t) t dt of this slope.
 struct AzimuthNode {
@@ -199,7 +199,7 @@ struct MomentsNode {
   real r_q;
   real albedo;
   real deficit;
-  real behind;               // a sum that slope_sums() subtracts from `deficit`, for the bound of the rounding error
+  real behind;               // slope_sums() computes `deficit` as another sum minus this sum; for its error bound
   real many;                 // part of r_i from grooves with more bounces than DOLP_MOST_BOUNCES
   real direct_i;             // direct emission
   real direct_q;

@@ -31,7 +31,7 @@ using Emitted = Values<kCount>;
 
 using Absorption = std::function<FresnelCoefficients(double cos_beta)>;
 
-// The emission of all facets toward one direction. With `is_response`, errors are relative to cos(theta).
+// The emission of all facets toward one direction. Errors are relative to it; if `is_response`, to cos(theta).
 class Facets {
  public:
   Facets(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants, Absorption absorption,
@@ -65,8 +65,7 @@ class Facets {
   }
 
  private:
-  // Projected area of a facet toward the viewer, per horizontal area. `side`: 1 for azimuth phi, -1 for phi + 180
-  // degrees.
+  // Projected area of a facet toward the viewer, per horizontal area. `side`: 1 for the azimuth phi, -1 for phi + pi.
   double facing(const SlopePoint& point, double side) const {
     return view_.cos + side * point.t * view_.sin * point.sin_chi;
   }
@@ -110,13 +109,13 @@ class Facets {
     return number;
   }
 
-  // The slope at which the integral ends: steeper facets count as vertical, or are fewer than the share kNoShare.
+  // The slope at which the integral ends. Steeper facets count as vertical, or their share is below kNoShare.
   double end() const {
     const double vertical = kVertical * std::max(1.0, slopes_.width()) / std::max(view_.sin, kSmallestSine);
     return std::min(vertical, slopes_.quantile(kNoShare));
   }
 
-  // Emission of facets steeper than t. Their visible area grows like the slope with smith, not with v-cavity masking.
+  // Emission of facets steeper than t. With smith masking their visible area is proportional to their slope.
   Emitted tail(double t, const Refinement& refinement) {
     const double share = masking_ == Masking::kVCavity ? slopes_.share_above(t) : slopes_.length_above(t) / t;
     if (share < kNoShare) return {};
@@ -152,7 +151,7 @@ Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg,
 Moments direct_response(const Slopes& slopes, Masking masking, double theta_deg,
                         const std::function<double(double cos_beta)>& curve, double bend,
                         const Refinement& refinement) {
-  const FacetOptics bent{1.0 / bend, 0.0};  // an index with its Brewster angle at the bend of `curve`
+  const FacetOptics bent{1.0 / bend, 0.0};  // an index whose Brewster angle is near the bend of `curve`
   const auto absorption = [&](double cos_beta) -> FresnelCoefficients {
     const double sin2_beta = (1.0 - cos_beta) * (1.0 + cos_beta);
     const double f = curve(cos_beta);

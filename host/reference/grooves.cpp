@@ -23,17 +23,17 @@ using Vector3 = Vector<double>;
 
 constexpr double kRounding = 256.0 * std::numeric_limits<double>::epsilon();
 constexpr double kDark = 1e-24;  // light of lower intensity is not followed
-// Most bounces of a beam that are followed. The light that remains then may or may not leave the groove.
+// A beam is followed for at most this many bounces. It is unknown whether the remaining light leaves the groove.
 constexpr int kMostFollowed = 2000;
 constexpr double kSteepest = 1e15;
 constexpr double kSteeper = 1.5;
-// The program assumes that grooves beyond the end of the integral reflect at most kTailRoom times as much as a groove
-// at the end. They usually reflect less, but the number of bounces jumps with the slope.
+// The integral over slopes ends at a largest slope. The program assumes that steeper grooves reflect at most kTailRoom
+// times as much as a groove of this slope. A steeper groove may reflect more if the number of bounces jumps.
 constexpr double kTailRoom = 2.0;
 constexpr double kTailShare = 0.01;     // share of the tolerance for the error due to grooves that are not integrated
 constexpr double kStepsPerGamma = 3.0;  // ScanSteps::per_gamma
-// Bends of the integrand are searched up to the slope kSteepestBends, but not beyond the slope above which less than
-// the share kBendShare of the integral remains. Steeper grooves have many small bends.
+// The integral over slopes is split at bends, but not above the slope kSteepestBends, and not where less than the share
+// kBendShare of the integral remains. The bends at steeper slopes are many and small.
 constexpr double kBendShare = 1e-2;
 constexpr double kSteepestBends = 10.0;
 // An integration is abandoned after kMostBounces bounces (two seconds) and repeated with kLessAmbitious times the
@@ -42,7 +42,7 @@ constexpr double kMostBounces = 2e7;
 constexpr double kLessAmbitious = 100.0;
 constexpr double kLeastAmbition = 1e-5;
 constexpr double kThinWeight = 0.02;   // SlopeTask::thin_weight
-constexpr double kNegligible = 1e-12;  // smaller integrals, relative to the albedo, are only rounding errors
+constexpr double kNegligible = 1e-12;  // an integral below this share of the albedo counts as a rounding error
 // The quadrature's error estimates are multiplied by this, because they are too small for panels with a bend inside.
 constexpr double kBentErrors = 6.0;
 // A first rough estimate of the moments uses kLookShares slopes, none above kLookSteepest, and kLookAzimuths azimuths.
@@ -102,9 +102,9 @@ void follow(const Groove<double>& groove, const SlopePoint& point, const Vector3
   }
 }
 
-// A number that differs on both sides of a bend of the integrand (see Regime): a hash over the bounces of a beam. For
-// each bounce it contains whether no, some or all light leaves the groove, and on which sides of the special angles the
-// angle of incidence lies.
+// A number that differs on both sides of a bend of the integrand (see Regime): a hash over the bounces of a beam. Each
+// bounce adds three facts: whether no light, some light or all light leaves the groove; on which side of each special
+// angle the angle of incidence lies; how many kinks of the sky have a smaller zenith than the light that leaves.
 std::uint64_t history(const SlopePoint& point, const Vector3& omega, Facet first, const SpecialAngles& special,
                       const SkyFunction* sky) {
   constexpr std::uint64_t kPrime = 1099511628211U;
@@ -230,8 +230,8 @@ class Surveyor {
   }
 
   struct Ends {
-    double bends;  ///< bends of the integrand are searched up to this slope
-    double all;    ///< the integral over slopes ends here
+    double bends;  ///< the integral over slopes is split at bends up to this slope
+    double all;    ///< the integral over slopes ends at this slope
   };
   // The integral ends where the rest is negligible, or where most of the reflected light has too many bounces.
   Ends ends(const GrooveValues& expected) {

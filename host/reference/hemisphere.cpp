@@ -31,13 +31,12 @@ constexpr double kSmallAbsorbed = 1e-2;
 constexpr double kElevationRounding = 32.0 * std::numeric_limits<double>::epsilon();
 // At theta = 90 degrees the integral over theta_r ends this far from the horizon. A power law gives the rest.
 constexpr double kHorizonGap = 1e-30;
-// If theta is closer to the horizon than this, break points are added where theta_r is close to the horizon, too.
+// If theta is this close to the horizon, the integral over theta_r gets additional break points near the horizon.
 constexpr double kNearHorizon_rad = 1e-3;
 constexpr double kLayerGrowth = 10.0;
-constexpr double kInnerShare = 0.02;  // error of an inner integral, relative to the error of the outer integral
-// Least relative error of an integral over the azimuth: a Kronrod panel has a rounding error of 1e-15 of its magnitude.
-constexpr double kInnerFloor = 4e-15;
-constexpr double kNegligible = 1e-12;  // smaller integrals, relative to the albedo, are only rounding errors
+constexpr double kInnerShare = 0.02;   // error of an inner integral, relative to the error of the outer integral
+constexpr double kInnerFloor = 4e-15;  // least tolerance of an inner integral: rounding errors are about 1e-15
+constexpr double kNegligible = 1e-12;  // an integral below this share of the albedo counts as a rounding error
 
 // Tolerance of the masking G: above rounding, but too small to disturb the integral over the azimuth.
 double masking_tolerance_for(const Refinement& refinement) {
@@ -58,8 +57,9 @@ Values<N> moment_scales(const Values<N>& value) {
 template <std::size_t K>
 class Hemisphere {
  public:
-  // The inner integral, over the azimuth, has the moments, K responses of r_i and K responses of r_q. The outer
-  // integral has also the two moments with a function of the sky, and the sum of the inner errors of each component.
+  // Inner integral, over the azimuth: the moments, r_i for each of K curves, and r_q for each curve. Outer integral:
+  // also r_i and r_q with the sky's function as a factor, and the errors of the inner integrals, summed over the
+  // zenith.
   static constexpr std::size_t kAzimuthCount = kMomentCount + 2 * K;
   static constexpr std::size_t kSkyReflected = kAzimuthCount;
   static constexpr std::size_t kSkyPolarised = kAzimuthCount + 1;
@@ -116,9 +116,9 @@ class Hemisphere {
     Zenith running;
     Attenuation attenuation;
   };
-  // Break points of the outer integral. Its variable u has tan((theta_r - theta)/2) = width sinh(u). Break points are
-  // the specular direction u = 0, kinks of the sky, and those theta_r at which azimuth_breaks() has a point at
-  // Delta_phi = 180 or 0 degrees.
+  // Break points of the outer integral. Its variable is u, with tan((theta_r - theta)/2) = width sinh(u). Among the
+  // break points are the specular direction u = 0, kinks of the sky, and the values of theta_r at which a break point
+  // of the inner integral lies at Delta_phi = 180 or 0 degrees.
   Breaks zenith_breaks() const {
     const double width = slopes_.width();
     Breaks breaks(std::asinh(-std::tan(0.5 * theta_rad_) / width),
@@ -178,7 +178,7 @@ class Hemisphere {
     return breaks;
   }
 
-  // The variable v has tan(delta/4) = width sinh(v). The width is chosen so that D is small beyond about v = 1.
+  // The variable is v, with tan(delta/4) = width sinh(v). The width is such that D is small beyond about v = 1.
   Integral<kAzimuthCount> integrate_azimuth(const Row& row) {
     const double t2 = row.t * row.t;
     const double scale2 =
@@ -218,7 +218,7 @@ class Hemisphere {
     const Row row{t, cos_mean * cos_mean, fixed_.sin * running.sin, running,
                   Attenuation(slopes_, masking_, fixed_, running, masking_tolerance_for(refinement_))};
     const auto inner = integrate_azimuth(row);
-    // The first factor 2 stands for the other half of the azimuths.
+    // The first factor 2 is needed because the inner integral covers only half of the azimuths.
     const double jacobian = 2.0 * running.sin * 2.0 * slopes_.width() * std::cosh(u) / (1.0 + t * t);
     BothValues both;
     for (std::size_t k = 0; k < inner.value.size(); ++k) {
@@ -245,8 +245,8 @@ class Hemisphere {
 
     const double cos_beta = std::sqrt(cos2_beta);
     const FresnelCoefficients r = fresnel(constants_, cos_beta);
-    // eta is the angle between the plane of omega_i and z and the plane of incidence on the facet. In the retro
-    // direction (beta = 0) there is no eta, and no polarisation, because r_p = -r_s.
+    // eta is the angle between two planes: the plane of incidence on the facet, and the plane that contains omega_i and
+    // z. In the retro direction (beta = 0) eta is undefined. Then nothing is polarised, because r_p = -r_s.
     const double sin_2beta = 2.0 * std::sqrt(cos2_beta * sin2_beta);
     double from_s = 0.5 * (std::norm(r.r_s) + std::norm(r.r_p));
     double from_p = from_s;
@@ -294,8 +294,8 @@ double amplitude_rounding(double reflected, double albedo) {
   return kRounding * (2.0 * std::sqrt(reflected * albedo) + kRounding * albedo);
 }
 
-// Adds rounding and the error of G to the errors of both integrals. These two errors are relative to `magnitude`. The
-// factor 2 is needed because G_1 may be as small as 1/2.
+// Errors of the outer and inner integrals, plus the error of G and rounding, which are both relative to `magnitude`.
+// The tolerance of G_1 is absolute. G_1 is at least 1/2, so its relative error is at most twice this tolerance.
 template <std::size_t N>
 double error_of(const Integral<N>& integral, std::size_t k, double magnitude, const Refinement& refinement) {
   const double masking_error = 2.0 * masking_tolerance_for(refinement);
@@ -364,7 +364,7 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
 
 std::vector<ColumnMoments> hemisphere_responses(const Slopes& slopes, Masking masking, double theta_deg,
                                                 const Curves& curves, double bend, const Refinement& refinement) {
-  const FacetOptics bent{1.0 / bend, 0.0};  // an index with its Brewster angle at the bend of `curves`
+  const FacetOptics bent{1.0 / bend, 0.0};  // an index whose Brewster angle is near the bend of `curves`
   const auto integral =
       Hemisphere<kCurves>(slopes, masking, theta_deg, bent, refinement, nullptr, &curves).integrate_zenith();
   std::vector<ColumnMoments> columns;

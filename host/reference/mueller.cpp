@@ -28,7 +28,7 @@ using Jones = std::array<std::array<Number, 2>, 2>;
 
 constexpr double kMaskingTolerance = 1e-13;
 constexpr double kRetro = 1e-50;  // if sin^2(2 beta) is smaller, the plane of incidence is undefined
-// If the squared length of the horizontal part of omega_i + omega_r is smaller, the directions are mirror directions.
+// h: horizontal part of omega_i + omega_r. If |h|^2 is smaller, omega_r is the mirror direction: the result is NaN.
 constexpr double kMirrored = 1e-50;
 constexpr int kMostMuellerBounces = 2000;
 constexpr int kMostInQuad = 24;  // light with more bounces is weak, so it is computed in double
@@ -264,7 +264,7 @@ BouncesSum reference_all_bounces(const Surface& surface, const FacetOptics& cons
     for (const double value : latest) recent += value;
     if (k >= kIdleBounces && recent <= kIdleShare * sum.matrix[0][0]) return sum;
   }
-  // The rest of the sum is smaller if term k falls at least like k^(-9/8), or by the share 1e-4 from term to term.
+  // A bound of the sum of all further terms, if they fall at least like k^(-9/8) or by the factor 0.9999 per bounce.
   sum.error = recent * kMostMuellerBounces;
   return sum;
 }

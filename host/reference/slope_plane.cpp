@@ -9,15 +9,15 @@ namespace {
 constexpr int kBisections = 60;
 constexpr int kMostSteps = 150;
 constexpr int kPlainSteps = 12;
-// If the integrand has more bends, each is so small that it needs no break point.
-constexpr std::size_t kMostBends = 40;
-// The scan of t has kStepsPerDecade steps per decade, and steps of 1 / gamma (gamma: half-angle of the groove).
+constexpr std::size_t kMostBends = 40;  // if there are more bends, each is tiny, and chi_breaks() ignores them
+// t_breaks() computes the regime at kStepsPerDecade slopes t per decade. It also takes steps of kStepInverse in
+// 1 / gamma, from 1 to kMostInverse, where gamma is the half-angle of the groove: t = cot(gamma).
 constexpr double kStepInverse = 0.04;
 constexpr double kMostInverse = 10.0;
 constexpr int kStepsPerDecade = 16;
 constexpr double kSmallestShare = 1e-7;  // smallest scanned slope, relative to the width of the distribution
-// Near grazing the integrand varies quickly next to chi = 0 and t = 0. If this layer is thinner than kThinLayer, break
-// points are added, at distances that grow by the factor kPlaneLayerGrowth.
+// For grazing views the integrand varies quickly in a layer: where chi or t is below about cot(theta). If the layer is
+// thinner than kThinLayer, break points are added: the first at cot(theta), each next one kPlaneLayerGrowth times it.
 constexpr double kThinLayer = 0.05;
 constexpr double kPlaneLayerGrowth = 8.0;
 
@@ -65,7 +65,7 @@ std::vector<double> RegimeScan::chi_breaks(double t) const {
   const int steps = static_cast<int>(exact_steps) + 1;
   std::vector<double> points;
   for (int i = 0; i <= kPlainSteps; ++i) points.push_back(0.5 * pi * i / kPlainSteps);
-  // Equal steps of psi, with tan(psi) = tan(theta) sin(chi): the zenith of the view in the plane across the groove.
+  // Equal steps of psi, the zenith of the projected view (ScanSteps): tan(psi) = tan(theta) sin(chi).
   for (int i = 1; i < steps; ++i) {
     const double psi = theta_rad_ * i / steps;
     points.push_back(std::asin(std::min(1.0, std::tan(psi) * layer)));

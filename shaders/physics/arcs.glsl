@@ -36,7 +36,7 @@ struct Arc {
   real span;        // length in phi
   int section;      // section of the rule nodes, kSection*
   bool is_critical; // true if total reflection begins at or near the centre
-  real resolution;  // see critical_arc(); 0 if the arc has no square root that absorption smooths
+  real resolution;  // share of the arc on which absorption smooths a square root, see critical_arc(); 0 without a root
 };
 
 Arc make_arc(real2 from, real2 to) {
@@ -84,8 +84,8 @@ struct Azimuth {
   real weight;
 };
 
-// Moves the node of a rule, if Arc::resolution is not 0: absorption smooths the square root at the centre of the arc.
-// After the move, the distances of the nodes from the centre grow geometrically beyond the resolution.
+// Moves a node of the rule if absorption smooths the square root at the centre of the arc (Arc::resolution > 0). The
+// moved nodes resolve the smooth part. Farther out, their distances from the centre grow geometrically.
 real2 place_on_arc(Arc arc, real2 node) {
   if (!kTotalReflection) return node;
   real scale = real(1.0) / sqrt(arc.resolution);  // sinh(a)
@@ -109,13 +109,13 @@ Azimuth azimuth(Arc arc, real2 node) {
   return at;
 }
 
-// Half angles that split [0, pi] into arcs, in ascending order. Total reflection may begin on any of the arcs.
+// Half angles that split [0, pi] into arcs, in ascending order. azimuth_sums() splits the arcs also at `critical`.
 struct SplitLines {
   real2 end[DOLP_MAX_ARCS];  // end of each arc; the first begins at phi = 0
   int arcs;
   int leaving;     // number of arcs whose reflected ray leaves the surface
   real2 horizon;   // theta_r = 90 degrees; beyond it the reflected ray does not leave
-  real2 critical;  // beginning of total reflection, cos(beta) = critical_cos: a square root on both sides
+  real2 critical;  // here total reflection begins; the integrand has a square root on both sides
 };
 
 // Half angle of the azimuth phi with cos(phi) = level / st.
@@ -145,8 +145,8 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
     lines.leaving = 3;
   }
   if (kMasking == DOLP_MASKING_V_CAVITY) {
-    // For t < 1, G = 1 between two lines. On the first, `shaded`, 2 cos(alpha) cos(theta) = cos(beta). On the second, 2
-    // cos(alpha) cos(theta_r) = cos(beta). The masking G1 of the direct emission has a kink at `shaded`.
+    // For t < 1, G = 1 between two lines. The first is `shaded`, where 2 cos(alpha) cos(theta) = cos(beta). The second
+    // is end[1], where 2 cos(alpha) cos(theta_r) = cos(beta). At `shaded`, G1 of the direct emission has a kink.
     real2 shaded = line_at(c, st);
     real level = c * (real(3.0) * t * t - real(1.0)) / (real(3.0) - t * t);
     lines.end[0] = t < real(1.0) ? shaded : same_zenith;
@@ -168,10 +168,10 @@ SplitLines single_lines(ThetaNode theta, real t, bool has_split_line, SplitLines
   return lines;
 }
 
-// A split line of a groove: the azimuth phi with tan(psi) = tan(theta) cos(phi). psi is the zenith of the ray in the
-// plane across the groove. With gamma = pi/2 - alpha, the number of bounces changes at psi = pi/2 - j gamma and at
-// psi = pi - (2j + 1) gamma for some integers j, and the width of the beam has another formula beyond psi = gamma. At
-// psi = -gamma facets turn away from the ray.
+// A split line of a groove. Project the ray onto the plane perpendicular to the groove: its zenith there is psi, with
+// tan(psi) = tan(theta) cos(phi). The line is the azimuth phi that gives this psi. Let gamma = pi/2 - alpha. The number
+// of bounces changes at psi = pi/2 - j gamma and at psi = pi - (2j + 1) gamma, with integers j > 0. The formula for the
+// width of the beam changes at psi = gamma. At psi = -gamma facets turn away from the ray.
 real2 groove_line(ThetaNode theta, real cos_psi, real sin_psi) {
   return line_at(theta.c * sin_psi / max(cos_psi, real(1e-30)), max(theta.s, real(1e-30)));
 }

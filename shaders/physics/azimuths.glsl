@@ -6,7 +6,7 @@ struct Slope {
   int most_azimuths;
   bool is_coarse;
   SkyPlace sky;
-  real weight[DOLP_WIDTH];  // factor of this slope in the columns (columns.glsl), for each entry of the row
+  real weight[DOLP_WIDTH];  // for each entry of the row (row.glsl): weight of the slope in AzimuthSums::columns
 };
 
 // Sums over azimuths. `member` holds (r_i, r_q, albedo, deficit) for each entry of a row.
@@ -14,7 +14,7 @@ struct AzimuthSums {
   real4 member[DOLP_WIDTH];
   Columns columns[DOLP_WIDTH];  // include the sums over the slopes and arcs before this one
   real2 direct;       // (I, Q) of the direct emission, not yet multiplied by smith masking
-  real behind;        // see MomentsNode::behind
+  real behind;        // slope_sums() subtracts it to compute the deficit; the error bound needs it, too
   real evaluations;
 };
 
@@ -30,8 +30,8 @@ AzimuthSums no_azimuths(Columns columns[DOLP_WIDTH]) {
   return sums;
 }
 
-// sin(theta_r). If q is just above 3/2 (is_diverging), G varies even where 1 - cos(theta_r) has lost its digits. Then
-// the sine is the length of the horizontal part of the reflected ray.
+// sin(theta_r). If q is just above 3/2 (is_diverging), G changes steeply near theta_r = 0, where 1 - cos(theta_r) has
+// few digits. Then the function computes the sine as the length of the horizontal part of the reflected ray.
 real sine_of_ray(ThetaNode theta, Row row, Facet f, real t, Azimuth at) {
   if (!is_diverging(row.shape[0])) return sqrt((real(1.0) - f.cos_r) * (real(1.0) + f.cos_r));
   real turned = real(2.0) * f.e * t / (real(1.0) + t * t);
@@ -40,7 +40,7 @@ real sine_of_ray(ThetaNode theta, Row row, Facet f, real t, Azimuth at) {
   return sqrt(along * along + across * across);
 }
 
-// Factors of a column's function (columns.glsl) in the two sums of the column, which correspond to r_i and r_q.
+// Factors of the integrand in the two sums of a column (columns.glsl): x in the sum like r_i, y in the sum like r_q.
 real2 column_factors(Slope slope, Facet f) {
   if (kColumns == DOLP_COLUMNS_SKY) return real2(f.m00, f.m01);
   real sky = (kColumns == DOLP_COLUMNS_SKY_RESPONSE) ? sky_function(slope.sky, 0, f.cos_r) : real(1.0);
@@ -144,8 +144,8 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
   return sums;
 }
 
-// Sums over all facets of a slope. Facets whose reflected ray does not leave the surface add their projection e to the
-// deficit. e is negative if a facet faces away from the direction theta. From a groove every ray leaves.
+// Sums over all facets of a slope. A facet whose reflected ray goes below the horizon adds its projection e to the
+// deficit (facet.glsl); e is negative if the facet faces away from theta. With all bounces every ray leaves the groove.
 AzimuthSums slope_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope,
                        Columns columns[DOLP_WIDTH]) {
   SplitLines lines = split_lines(rule, theta, index, slope.t, slope.has_split_line, slope.digits);
@@ -163,7 +163,7 @@ struct SlopeResult {
   Columns columns;
 };
 
-// The computation of slopes.comp. Its maskings do not depend on the slope distribution, so the row is a dummy.
+// The sums at one slope, for slopes.comp. The masking does not depend on the slope distribution: no_row() is enough.
 SlopeResult azimuths_of(RuleNode rule, ThetaNode theta, IndexNode index, SlopeNode slope_node) {
   Slope slope;
   slope.t = slope_node.t;

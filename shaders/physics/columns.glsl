@@ -1,9 +1,9 @@
-// Columns are sums over the facets, like r_i and r_q but with another integrand. A column is of one of two kinds:
+// Columns are sums over the facets. They have other integrands than r_i and r_q. A column is of one of two kinds:
 //   sky: the integrand of r_i or r_q times a function g of the zenith theta_r of the reflected ray, |g| <= 1. These
 //     columns are needed for a sky that changes with the zenith (README.md beside this file, section 11).
 //   response: Chebyshev polynomials of the angle of incidence replace the reflectances in the integrand. The moments of
 //     any index are weighted sums of responses (section 8). There are responses of the reflected light, of the
-//     reflected light times the first function of a sky, and of the direct emission.
+//     reflected light times one function g, and of the direct emission.
 // A function g is stored as straight lines over u = sqrt(1 - cos(theta_r)), in cells of equal width. A cell stores the
 // value at its start and the change over the cell (host/compute/plan/sky_table.cpp).
 

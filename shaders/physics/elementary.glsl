@@ -144,7 +144,7 @@ real2 cos_sin(real x) {
   return real2(real(1.0) + z * (real(0.5) + z * c), x + x * z * (real(1.0) / real(6.0) + z * s));
 }
 
-// atan(y) for 0 <= y <= 1: halves the argument twice, then sums the Taylor series.
+// atan(y) for 0 <= y <= 1: halves the angle twice, then sums the Taylor series.
 real atan_unit(real y) {
   real y1 = y / (real(1.0) + sqrt(real(1.0) + y * y));
   real y2 = y1 / (real(1.0) + sqrt(real(1.0) + y1 * y1));

@@ -6,9 +6,9 @@
 //   cos(beta) = r e,   cos(theta_r) = 2 r^2 e - c,
 //   sin^2(beta)             = r^2 [(c t x - s)^2 + t^2 (1 - x^2)],
 //   sin^2(beta) cos(2 eta)  = r^2 [(c t x - s)^2 - t^2 (1 - x^2)],
-//   M00 = R_s - D sin^2(beta) / 2,   M01 = D sin^2(beta) cos(2 eta) / 2,   D = (R_s - R_p) / sin^2(beta).
-// The code stores moments and their sums as vectors (r_i, r_q, albedo, deficit). The deficit is the part of the beam
-// that does not leave the surface: the light is masked, absorbed, or reflected below the horizon.
+//   D = (R_s - R_p) / sin^2(beta),   M00 = R_s - D sin^2(beta) / 2,   M01 = D sin^2(beta) cos(2 eta) / 2.
+// Sums over facets are vectors (r_i, r_q, albedo, deficit). The albedo is r_i with M00 = 1. The deficit is the part of
+// the beam that does not leave the surface: the light is masked, absorbed, or reflected below the horizon.
 
 struct Facet {
   real e;         // projected area toward theta divided by the area of the facet's base
@@ -45,7 +45,7 @@ Facet facet(ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
   return result;
 }
 
-// The projection e of a facet in two parts: visible e G, hidden e (1 - G). A difference of e and one part loses digits.
+// A facet's projection e in two parts: visible e G, hidden e (1 - G). Computed as e minus visible, hidden loses digits.
 struct Projection {
   real visible;
   real hidden;
@@ -60,8 +60,8 @@ real seen_directly(ThetaNode theta, Facet f) {
   return (kMasking == DOLP_MASKING_V_CAVITY) ? min(f.e, real(2.0) * theta.c) : f.e;
 }
 
-// Direct emission (I, Q) per radian of azimuth: e G1 (1 - M00) and -e G1 M01, with the masking G1 toward the viewer at
-// theta. With smith masking the factor G1 is still missing here; moments.glsl multiplies by it later.
+// Direct emission (I, Q) per radian of azimuth: with v-cavity masking e G1 (1 - M00) and -e G1 M01, where G1 is the
+// masking toward the viewer at theta. With smith masking the result lacks the factor G1; moments.glsl multiplies by it.
 real2 emitted(ThetaNode theta, Facet f) {
   real visible = seen_directly(theta, f);
   return real2(visible * f.absorbed, -visible * f.m01);

@@ -34,7 +34,7 @@ Fresnel fresnel_of_sums(real2 n2m1, real cos_beta, real2 w, real2 s_sum, real2 p
   return f;
 }
 
-// The formulas for a bare surface. Domain: 0 < cos_beta <= 1.
+// Reflection by a bare surface, without films. Domain: 0 < cos_beta <= 1.
 Fresnel fresnel(IndexNode index, real cos_beta) {
   real2 w = sqrt_upper(index.n2m1_re + cos_beta * cos_beta, index.n2m1_im);
   real2 s_sum = real2(cos_beta + w.x, w.y);

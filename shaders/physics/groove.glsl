@@ -8,9 +8,9 @@
 // chi_k = psi + (2k - 1) gamma. With X_k = a sin(chi_k) and Y_k = a cos(chi_k):
 //   cos(beta_k) = X_k is the cosine of the angle of incidence,
 //   eta_k turns the plane of incidence: (cos(eta_k), sin(eta_k)) is proportional to (Y_k, b X_k).
-// Bounce k multiplies the Stokes vector by Fresnel's matrix between two turns by eta_k. The beam of the rays that meet
-// the facet of slope t first has the width min(c + s t x, 2c). With X_0 = max(a sin(psi - gamma), 0), the share
-// (min(X_k, X_1) - X_0) / (X_1 - X_0) of this beam goes on to bounce k.
+// The fields are mirrored, too. So bounce k turns the Stokes vector by eta_k, multiplies it by Fresnel's matrix, and
+// turns it back. The beam of the rays that meet the facet of slope t first has the width min(c + s t x, 2c). With
+// X_0 = max(a sin(psi - gamma), 0), the share (min(X_k, X_1) - X_0) / (X_1 - X_0) of this beam goes on to bounce k.
 
 // The state of a ray in the fan. If a ray has many bounces, a group of 2, 4, 8 ... bounces counts as one. Groups are
 // smaller near the first and the last bounce, which may be grazing (error: host/compute/plan/error_bounds.cpp).

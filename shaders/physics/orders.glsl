@@ -147,7 +147,7 @@ real diverging_nodes(ThetaNode theta, ShapeNode shape, Piece piece) {
 
 // Nodes of a piece. The nearest singularity of the integrand decides how many nodes a digit costs. Singularities are
 // t = i m (density), t = i (factors 1 + t^2), those of Fresnel's coefficients, and square roots beyond the ends of the
-// piece. The fall of the density over the piece needs further nodes, and each end with a square root needs one.
+// piece. The fall of the distribution (Piece::fall) needs further nodes, and each end with a square root needs one.
 real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, bool has_split_line, Piece piece) {
   real cost = piece_cost(piece, real_part_of_asinh(real(1.0) / shape.scale), real(0.5) * kPi);
   if (kDistribution == DOLP_CAUCHY) {
@@ -291,7 +291,7 @@ Arc masked_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_l
     return with_root(arc, false, has_root && is_cusp);
   }
   if (kMasking == DOLP_MASKING_INTEGRAL && kDistribution == DOLP_CAUCHY) {
-    // G is not smooth at the line b = pi/2 (arcs.glsl): a part of G is the distance from the line to the power 2q - 1.
+    // G is not smooth at the line b = pi/2 (arcs.glsl): a part of G is proportional to (distance from it)^(2q - 1).
     bool is_rough = shape.q_minus_1 + real(1.0) < rule.cluster_below_q;
     bool is_line = zone == 2 && is_rough;
     return with_root(arc, false, has_root && is_line);

@@ -22,7 +22,7 @@ struct Integral {
 };
 
 struct Goal {
-  double relative = 1e-9;        ///< required error of each integral, divided by its scale
+  double relative = 1e-9;        ///< allowed error of an integral, in units of a scale such as the integral itself
   std::size_t max_panels = 400;  ///< at this number of panels the quadrature stops and returns the error reached
   int subdivisions = 1;          ///< number of panels between two break points at the start
 };
@@ -76,7 +76,7 @@ Integral<N> kronrod_panel(const Integrand& integrand, double low, double high) {
   return result;
 }
 
-/// Maps s in [0, 1] to an interval by s^2 (3 - 2 s). Square roots and 3/2 powers at the ends are smooth functions of s.
+/// Maps s in [0, 1] to an interval. An integrand with a square root or a 3/2 power at an end becomes smooth in s.
 struct Stretch {
   double low;
   double high;
@@ -128,7 +128,7 @@ double scaled_error(const Values<N>& error, const Values<N>& scale) {
   return worst;
 }
 
-/// Halves the worst panel until all errors are at most `goal.relative` times their scales, or up to `goal.max_panels`.
+/// Halves the worst panel until every error is at most goal.relative times its scale, or there are max_panels panels.
 template <std::size_t N, class Integrand, class Scale>
 Integral<N> integrate(const Integrand& integrand, const Breaks& breaks, const Goal& goal, const Scale& scale) {
   const std::vector<double> points = breaks.sorted();

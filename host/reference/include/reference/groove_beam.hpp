@@ -1,4 +1,4 @@
-// Follows a beam in a symmetric V-groove from facet to facet, without the light that passes a rim.
+// Follows a beam in a symmetric V-groove from facet to facet. Light that leaves the groove is not followed further.
 // Axes: u across the groove, v along it, z upward, from the middle of the aperture. Both facets have length 1 and meet
 // at the apex, u = 0 and z = -sin(alpha). The rim of facet A is at u = -cos(alpha), the rim of B at u = cos(alpha).
 #pragma once
@@ -52,7 +52,7 @@ class GrooveBeam {
   }
 
  private:
-  // Follows the edge of the beam to the facet on `side_`. Returns the flux of a beam that reaches from it to the rim.
+  // Follows the edge of the beam to the facet on `side_`. Returns the flux of a beam between that edge and the rim.
   Real land() {
     const Vector<Real> n = normal();
     const Real cos_beta = -dot(k_, n);

@@ -13,7 +13,7 @@ namespace dolp::reference {
 /// Accuracy of the quadratures. Two computations with different settings have nearly independent errors.
 struct Refinement {
   double relative_tolerance = 1e-9;  ///< error of r_i, albedo and absorbed part; the error of r_q is relative to r_i
-  int subdivisions = 1;              ///< panels between two break points of a quadrature at first
+  int subdivisions = 1;              ///< number of panels between two break points at the start
 };
 
 /// A function of the zenith of the reflected ray, and the zeniths at which the function has kinks.
@@ -22,14 +22,14 @@ struct SkyFunction {
   std::vector<double> corners_deg;
 };
 
-/// Functions of cos(beta), from -1 to 1, in the place of (R_s + R_p) / 2 and (R_s - R_p) / (2 sin^2(beta)).
+/// Functions of cos(beta) with values in [-1, 1]. Each replaces both (R_s + R_p) / 2 and (R_s - R_p) / (2 sin^2(beta)).
 inline constexpr std::size_t kCurves = 24;
 using Curves = std::function<std::array<double, kCurves>(double cos_beta)>;
 
 Zenith zenith_from_deg(double theta_deg);
 
-/// The moments of a rough surface (sigma > 0) with k_s = 1. If `sky` is given, Moments::columns contains the moments
-/// with this function as a factor.
+/// The moments of a rough surface (sigma > 0) with k_s = 1. If `sky` is given, Moments::columns contains r_i and r_q
+/// with the function `sky` as a factor of the integrand.
 /// Equation: r = cos(theta) int f cos(theta_r) sin(theta_r) dtheta_r dDelta_phi, eqs. (7), (15), (16) of Wang, Li, Wang
 /// 2025. The outer integral is over theta_r, the inner integral over delta = pi - Delta_phi.
 /// Domain: theta in [0, 90] degrees. At 90 degrees the moments are 0 with v-cavity and smith masking. With other
@@ -55,11 +55,11 @@ Moments groove_moments(const Slopes& slopes, double theta_deg, const FacetOptics
 
 /// What becomes of the light that enters one groove: fluxes divided by the width of the groove's aperture.
 struct GrooveLight {
-  double albedo = 0.0;     ///< flux that leaves if the facets absorb nothing
-  double reflected = 0.0;  ///< I that leaves if unpolarised light enters
-  double polarised = 0.0;  ///< Q: half the intensity that leaves if s light enters, less half of that if p light enters
-  double absorbed = 0.0;   ///< absorbed by all bounces
-  double lost = 0.0;       ///< I after the last followed bounce, neither in `reflected` nor in `absorbed`
+  double albedo = 0.0;          ///< flux that leaves if the facets absorb nothing
+  double reflected = 0.0;       ///< I that leaves if unpolarised light enters
+  double polarised = 0.0;       ///< Q: (I that leaves if s light enters - I that leaves if p light enters) / 2
+  double absorbed = 0.0;        ///< absorbed by all bounces
+  double lost = 0.0;            ///< I after the last followed bounce, neither in `reflected` nor in `absorbed`
   double once_reflected = 0.0;  ///< I that leaves after one bounce
   double once_absorbed = 0.0;   ///< absorbed by the first bounce
   double sky_reflected = 0.0;   ///< like `reflected`, but each ray is multiplied by the function of the sky
@@ -79,7 +79,7 @@ GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zeni
 Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants,
                         const Refinement& refinement);
 
-/// The direct emission with `curve` instead of 1 - (R_s + R_p) / 2 and of (R_p - R_s) / (2 sin^2(beta)). Its errors are
+/// The direct emission if `curve` replaces both 1 - (R_s + R_p) / 2 and (R_p - R_s) / (2 sin^2(beta)). The errors are
 /// relative to cos(theta). `bend`: cosine of the angle of incidence at which the curve bends sharply.
 Moments direct_response(const Slopes& slopes, Masking masking, double theta_deg,
                         const std::function<double(double cos_beta)>& curve, double bend, const Refinement& refinement);

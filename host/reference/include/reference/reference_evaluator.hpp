@@ -19,7 +19,7 @@ struct ReferenceOptions {
 /// quadrature in double, over zenith and azimuth of reflection. For V-grooves with all bounces and for direct emission,
 /// it integrates over the slopes of the facets.
 /// Equation: (4), (7), (9)-(13), (15), (16) of Wang, Li, Wang 2025.
-/// Accuracy: the returned errors, which are those of the quadratures plus rounding (test
+/// Accuracy: the returned errors. They are the estimated errors of the quadratures plus rounding errors (test
 /// ReferenceMoments_CoarseQuadrature_StaysWithinItsErrors). The tolerance of the integrals is a hundredth of the
 /// request's tolerance, but at least ReferenceOptions::relative_tolerance, and at most half of the request's tolerance.
 /// Domain: theta in [0, 90] degrees; sigma >= 0; cauchy q > 1, with smith masking q > 3/2; n > 0, k >= 0. Multiple

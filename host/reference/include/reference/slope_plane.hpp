@@ -38,7 +38,7 @@ inline Vector<double> toward_view(const SlopePoint& point, const Zenith& view) {
   return {view.sin * point.sin_chi, -view.sin * point.cos_chi, view.cos};
 }
 
-/// Electric vectors of an s wave and a p wave of amplitude 1 along k. s is the unit vector along k x z, and p = k x s.
+/// Electric vectors of an s and a p wave of amplitude 1 along k. s = k x z / |k x z|, a limit at theta = 0. p = k x s.
 struct UnitLight {
   Electric from_s;
   Electric from_p;
@@ -77,11 +77,12 @@ class SpecialAngles {
 /// Maps a slope to a number. Slopes on different sides of a bend of the integrand have different numbers.
 using Regime = std::function<std::uint64_t(const SlopePoint&)>;
 
-/// A scan of chi has a dozen equal steps, and these steps in addition.
+/// A RegimeScan computes the regime at values of chi with a dozen equal steps, and at these further values.
 struct ScanSteps {
-  /// Steps of gamma / per_gamma in the angle psi of slope_plane.cpp, where gamma is the half-angle of the groove.
+  /// If not 0: steps of gamma / per_gamma in psi. gamma is the half-angle of the groove. psi is the zenith of the view,
+  /// projected onto the plane across the groove.
   double per_gamma = 0.0;
-  int halvings = 0;  ///< number of steps toward chi = 0, each half as long as the previous one
+  int halvings = 0;  ///< number of values toward chi = 0, each half as large as the previous one
 };
 
 /// Finds the bends of the integrand for one view. Computes the regime at many slopes, then bisects where it changes.
@@ -89,10 +90,9 @@ class RegimeScan {
  public:
   RegimeScan(const Zenith& view, double theta_rad, const ScanSteps& steps, Regime regime)
       : view_(view), theta_rad_(theta_rad), steps_(steps), regime_(std::move(regime)) {}
-  /// Values of chi in (0, pi/2) at which the integral at slope t is split: bends (unless there are too many), and at
-  /// grazing zeniths small values of chi.
+  /// Break points of the integral over chi: bends, unless there are too many. For grazing views also small chi.
   std::vector<double> chi_breaks(double t) const;
-  /// Slopes up to `end` at which the integral over t is split: those with a bend at chi = 0 or pi/2, and small slopes.
+  /// Break points of the integral over t, up to `end`: bends at chi = 0 or pi/2. For grazing views also small t.
   std::vector<double> t_breaks(double width, double end) const;
 
  private:
@@ -105,17 +105,17 @@ class RegimeScan {
 template <std::size_t N>
 struct SlopeTask {
   std::function<Values<N>(const SlopePoint&)> integrand;
-  std::function<Values<N>(const Values<N>&)> scales;  ///< scales of the errors, see Goal::relative
+  std::function<Values<N>(const Values<N>&)> scales;  ///< computes the scale of each integral, see Goal::relative
   double steepest;                                    ///< upper end of the integral over t
-  double bends_end;                                   ///< bends are searched up to this t, which is at most `steepest`
-  /// At slopes with a smaller weight, the integral over chi may have an error that is larger by thin_weight / weight.
+  double bends_end;                                   ///< the integral over t is split at bends up to this t
+  /// The allowed error of the integral over chi is larger by the factor thin_weight / density_at(v) if this exceeds 1.
   double thin_weight = 0.0;
   std::function<double()> work = [] { return 0.0; };  ///< work done so far, in any unit
   double most_work = 1.0;                             ///< after this much work no integral is refined
 };
 
-/// Integrals of N functions: int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} dchi, with the slope density P. The result
-/// holds these N integrals, then N integrals of the errors of the inner integrals. `expected`: rough values of the N.
+/// Integrals of N functions: int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} dchi, with the slope density P. Component
+/// N + k of the result is the error of inner integral k, integrated over t. `expected`: rough values of the integrals.
 template <std::size_t N>
 Integral<2 * N> integrate_slopes_of(const SlopeTask<N>& task, const Slopes& slopes, const RegimeScan& scan,
                                     const Refinement& refinement, const Values<N>& expected) {

@@ -48,7 +48,7 @@ class Slopes {
   double in_plane_norm_;  ///< p(0)
 };
 
-/// A zenith angle. Formulas use the elevation near the horizon, so that nothing cancels there.
+/// A zenith angle. Formulas for directions near the horizon use the elevation, in which no digits cancel.
 struct Zenith {
   double elevation_rad = 0.0;
   double cos = 1.0;  ///< cosine of the zenith angle
@@ -59,8 +59,9 @@ struct Zenith {
 double smith_lambda(const Slopes& slopes, const Zenith& zenith);
 
 /// G_1 of the masking `integral` for a facet of tilt alpha. Accuracy: `tolerance`, absolute.
-/// Equation: G_1 = P(gamma < a) + int_a^b p (1 + cos(theta + gamma)/cos(theta - alpha)) over tilts gamma in one plane;
-/// a = pi/2 - theta and b = min(pi/2, pi - 2 theta + alpha). Source: Wang, Li, Wang 2025, eqs. (9)-(12).
+/// Equation: G_1 = P(gamma < a) + int p (1 + cos(theta + gamma)/cos(theta - alpha)) dt, for gamma from a to b, where
+/// a = pi/2 - theta and b = min(pi/2, pi - 2 theta + alpha). t = tan(gamma) is a slope in one vertical plane, p is the
+/// density of these slopes, and P is a share of them. Source: Wang, Li, Wang 2025, eqs. (9)-(12).
 class IntegralMasking {
  public:
   IntegralMasking(const Slopes& slopes, const Zenith& zenith, double tolerance);

@@ -1,4 +1,4 @@
-// Vectors in space, and a plane wave at a facet by explicit cross products. `Real` is double or more precise.
+// Vectors in space, and the reflection of a plane wave at a facet. `Real` is double or a more precise type.
 #pragma once
 
 #include <array>

@@ -151,12 +151,12 @@ struct SceneModel {
 struct SceneValues : SceneModel {
   std::string title;
   SceneNames names;
-  Axes grid;                       ///< values in the user's order; sigma and q from [surface] if absent in [grid]
+  Axes grid;                       ///< values in the user's order; [surface] gives sigma or q if [grid] does not
   AxisLabels labels;               ///< names of the materials and bands on the grid's axes
   std::vector<double> wind_m_s;    ///< winds from which the grid's sigmas follow; empty if the scene gives sigmas
   std::string path_name;           ///< path of the scene as the user gave it, for messages
   std::string text;                ///< text of the scene file, unchanged
-  std::vector<std::string> files;  ///< paths of the files that the scene names, as the process opens them
+  std::vector<std::string> files;  ///< paths by which the program opens the files that the scene names
   std::vector<Setting> settings;   ///< settings that were applied to the text
   std::shared_ptr<const SceneDocument> document;  ///< text and settings as TOML; null without a text
 };
@@ -166,7 +166,7 @@ SceneModel at_wavelength(const SceneModel& scene, double wavelength_um);
 
 void set_films(Surface& surface, const std::vector<FilmValue>& films);
 
-/// The scene with the values of `variant`. `scene` must have these films. Errors: errors of at_wavelength.
+/// The scene with the values of `variant`. Domain: `scene` has the films of `variant`. Errors: errors of at_wavelength.
 SceneModel with_variant(const SceneModel& scene, const SceneVariant& variant);
 
 }  // namespace dolp

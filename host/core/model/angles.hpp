@@ -7,7 +7,6 @@ struct CosSin {
   double sin = 0.0;
 };
 
-/// Cosine and sine of an angle in degrees, exact at multiples of 90 degrees.
-CosSin cos_sin_deg(double angle_deg);
+CosSin cos_sin_deg(double angle_deg);  ///< cosine and sine of an angle in degrees, exact at multiples of 90 degrees
 
 }  // namespace dolp

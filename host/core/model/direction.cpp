@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kNearGrazingDeg = 90.0 - 1e-12;
 
-// Cosine of a mirror at 90 degrees, because moments / 0 would be NaN. It is far below 1 / |N|^2 of every index N.
+// Replaces the cosine 0 of a mirror at 90 degrees, so that moments / cosine is not 0 / 0, but the limit at 90 degrees.
 constexpr double kNearGrazingCosine = 1e-100;
 
 constexpr double kSmallestSigma = 1e-28;

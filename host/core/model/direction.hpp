@@ -17,7 +17,7 @@ enum class Treatment {
 struct Direction {
   double theta_deg = 0.0;
   double cos_theta = 1.0;  ///< cosine of `used_deg`; for a mirror at 90 degrees a tiny positive number
-  double used_deg = 0.0;   ///< zenith for the evaluator: `theta_deg`, or the result of zenith_before_limit_deg
+  double used_deg = 0.0;   ///< zenith for the evaluator: `theta_deg`, or slightly less (see zenith_before_limit_deg)
   Treatment treatment = Treatment::kIntegrated;
 };
 
@@ -27,7 +27,7 @@ Direction direction_of(Distribution distribution, Masking masking, double theta_
 
 bool is_mirror(const SlopeShape& shape);
 
-/// Replaces 90 degrees by a slightly smaller zenith if `masking` gives reflectances a limit at 90 degrees.
+/// With some maskings, reflectances are 0 / 0 at 90 degrees. Then a slightly smaller zenith replaces 90 degrees.
 double zenith_before_limit_deg(Masking masking, double zenith_deg);
 
 }  // namespace dolp

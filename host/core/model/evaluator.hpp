@@ -35,7 +35,7 @@ struct EvaluationReport : Work {
   std::string driver;              ///< name and version of the driver; empty for cpu and reference
   std::string precision;           ///< precision of the computations: float, double, or float and double
   std::uint32_t devices_lost = 0;  ///< devices lost and replaced by a new one
-  double setup_s = 0.0;            ///< time to create pipelines and, if the run needed a new device, the device
+  double setup_s = 0.0;            ///< time to create pipelines, plus the time to create a device if needed
   double pipelines_s = 0.0;        ///< the part of setup_s that creates pipelines
 };
 
@@ -56,8 +56,7 @@ class ModelEvaluator {
   virtual bool has_double() const { return true; }
   /// True if the evaluator must integrate each entry. Then a run neither interpolates nor uses responses.
   virtual bool computes_each_entry() const { return false; }
-  /// Totals over all calls since the last clear_report.
-  virtual EvaluationReport report() const = 0;
+  virtual EvaluationReport report() const = 0;  ///< totals over all calls since the last clear_report
   virtual void clear_report() {}
 };
 

@@ -19,8 +19,8 @@ struct Film {
   friend auto operator<=>(const Film&, const Film&) = default;
 };
 
-/// Measured reflectances R_s and R_p of a smooth surface at one wavelength. R_s and R_p are linear in the angle beta
-/// between two measured angles. Below the second angle, R_s - R_p is proportional to sin^2(beta) instead.
+/// Measured reflectances R_s and R_p of a smooth surface at one wavelength. Between measured angles they are linear in
+/// the angle beta. Between the first two angles only R_s + R_p is linear; R_s - R_p is proportional to sin^2(beta).
 struct MeasuredReflectance {
   std::vector<double> beta_deg;  ///< angles of incidence, ascending from 0 to 90; r_s and r_p are equal at 0
   std::vector<double> r_s;

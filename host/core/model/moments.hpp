@@ -18,8 +18,7 @@ namespace dolp {
 class ResponseBasis;
 class SkyBasis;
 
-/// Tightest tolerance that a quadrature rule can meet in float. At a tighter one, rounding errors would dominate.
-inline constexpr double kLeastFloatTolerance = 2e-6;
+inline constexpr double kLeastFloatTolerance = 2e-6;  ///< least tolerance in float; below it, rounding errors dominate
 
 struct MomentsPoint {
   double theta_deg = 0.0;
@@ -42,7 +41,7 @@ struct Response {
 };
 
 /// The entries form a grid or a list. A grid has all combinations of `optics`, `theta_deg`, `sigma` and `q`; q varies
-/// fastest. In a list each of these four vectors has one value per entry. The number of an entry is its position.
+/// fastest. In a list each of these four vectors has one value per entry. `entry`: position in the grid or list.
 struct MomentsRequest {
   enum class Layout { kGrid, kList };
 
@@ -54,12 +53,12 @@ struct MomentsRequest {
   Precision precision = Precision::kAuto;       ///< kAuto means float
   bool may_interpolate = true;                 ///< allows interpolation between slope distributions, within `tolerance`
   bool has_extra_splits = false;               ///< integrates with more panels than usual, to check another computation
-  std::shared_ptr<const ResponseBasis> basis;  ///< if set, moments are sums of these responses
+  std::shared_ptr<const ResponseBasis> basis;  ///< if set, moments are sums of the responses of this basis
   std::shared_ptr<const SkyBasis> sky;  ///< if set, Moments::columns has one element for each function of this sky
   std::optional<Response> response;     ///< if set, Moments::columns has one element for each response
   Layout layout = Layout::kGrid;
   std::vector<double> theta_deg;
-  std::vector<FacetOptics> optics;  ///< bare facets, or facets with films
+  std::vector<FacetOptics> optics;
   std::vector<double> sigma;
   std::vector<double> q;
   std::vector<char> wanted;  ///< a flag per entry of a grid; empty: all. Moments of unwanted entries are undefined
@@ -67,7 +66,7 @@ struct MomentsRequest {
   std::size_t size() const;
   bool is_wanted(std::size_t entry) const { return wanted.empty() || wanted[entry] != 0; }
   std::size_t wanted_count() const;
-  /// `share` times the tolerance. Lower limit in float: kLeastFloatTolerance or `tolerance`, whichever is less.
+  /// `share` times the tolerance. In float it is at least kLeastFloatTolerance, but never more than `tolerance`.
   double finer_tolerance(double share) const;
   std::size_t shapes() const { return sigma.size() * q.size(); }
   MomentsPoint operator[](std::size_t entry) const;
@@ -76,17 +75,17 @@ struct MomentsRequest {
   void append(const MomentsPoint& point);  ///< adds an entry; the request becomes a list
 };
 
-/// Moments of one entry with an additional function g in the integrands, |g| <= 1.
-/// - Function of a sky: g depends on the zenith of the reflected ray and multiplies the integrands of r_i and r_q.
+/// Moments of one entry with a function g in the integrands, |g| <= 1. A column is for a sky, or it is a response:
+/// - Sky: g depends on the zenith of the reflected ray. It multiplies the integrands of r_i and r_q.
 /// - Response: g depends on the local angle of incidence beta. It replaces (R_s + R_p) / 2 in r_i and
 ///   (R_s - R_p) / (2 sin^2(beta)) in r_q.
 struct ColumnMoments {
   double i = 0.0;
   double q = 0.0;
-  double error = 0.0;  ///< bound of the absolute errors of i and q; in a response, only a part of the error
+  double error = 0.0;  ///< bound of the absolute errors of i and q; for a response, only one of three terms, see below
   // The next members are for responses. i_apart and q_apart are differences between the results of two quadrature
-  // rules. The sum of w i over responses with weights w has the error |sum of w i_apart| + relative_error |sum of w i|
-  // + sum of |w| error.
+  // rules, times a safety factor. Let S be the sum of w i over responses, with a weight w for each. The error bound of
+  // S is the sum of three terms: |sum of w i_apart|, relative_error |S|, and the sum of |w| error.
   double i_apart = 0.0;
   double q_apart = 0.0;
   double relative_error = 0.0;

@@ -12,7 +12,7 @@
 namespace dolp {
 namespace {
 
-// Choices of c0. Polynomials follow reflectances best at cosines below c0. Metals need a small c0, dielectrics a large.
+// Choices of the scale c0. Metals need a small c0, which resolves their steep R_p near grazing incidence.
 constexpr std::array<double, 5> kScales = {1.0, 0.3, 0.1, 0.03, 0.01};
 constexpr Eigen::Index kCoefficients = 65;  // Chebyshev coefficients that are computed for a reflectance curve
 constexpr Eigen::Index kLastOfCurve = 4;
@@ -44,7 +44,7 @@ Eigen::RowVector2d errors_of(const CurveCoefficients& all, Eigen::Index count) {
          kCoefficients * all.bottomRows<kLastOfCurve>().cwiseAbs().colwise().maxCoeff();
 }
 
-/// Number of polynomials with which the reflectances of an index meet the tolerance, at most kMostResponses + 1.
+/// Number of polynomials that the reflectances of an index need; kMostResponses + 1 if kMostResponses are too few.
 std::size_t needed(const FacetOptics& index, double c0, double tolerance) {
   const CurveCoefficients all = coefficients_of(index, c0);
   const double most = kReach * tolerance * reflectance_level(index);
@@ -105,7 +105,7 @@ std::shared_ptr<const ResponseBasis> ResponseBasis::of(const std::vector<FacetOp
   for (const FacetOptics& index : candidates_of(indices, kMostCandidates)) {
     if (needed(index, basis->c0_, tolerance) > basis->count_) continue;
     basis->bend_ = std::min(basis->bend_, distance_of_bend(index));
-    // The reference must not have total reflection. The kink of its reflectances would add errors to the responses.
+    // The reference must not have total reflection, which would enlarge the error bounds of all responses.
     if (critical_cosine(index) > 0.0 || reflectance_level(index) >= lowest) continue;
     lowest = reflectance_level(index);
     basis->reference_ = index;

@@ -1,6 +1,7 @@
 // Computes moments of many refractive indices as weighted sums of a few responses. A response is a moment with a
-// Chebyshev polynomial of 2 u - 1 instead of the Fresnel reflectances, where u = asinh(c / c0) / asinh(1 / c0) with a
-// scale c0 and the cosine c of the local incidence. The weights are Chebyshev coefficients of the reflectances.
+// Chebyshev polynomial instead of the Fresnel reflectances. The weights are Chebyshev coefficients of the reflectances.
+// The variable of the polynomials is 2 u - 1, where u = asinh(c / c0) / asinh(1 / c0). c is the cosine of the local
+// angle of incidence. The scale c0 is chosen for each run.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,17 +22,18 @@ struct ResponseWeights {
 
 class ResponseBasis {
  public:
-  /// Approximates the reflectances of each index to `tolerance` times its reflectance_level. `passes`: number of kernel
-  /// passes that compute responses. Null if responses would save too little time.
+  /// Chooses c0 and the number of responses that need the least time for `indices`. `passes`: see response_passes(). An
+  /// approximated reflectance has an error of at most `tolerance` times reflectance_level(). Null if responses would
+  /// save too little time, or if no index can be the reference.
   static std::shared_ptr<const ResponseBasis> of(const std::vector<FacetOptics>& indices, double tolerance,
                                                  std::size_t passes);
 
-  /// The index with the lowest reflectance_level. Kernels integrate its moments besides the responses. Moments of
-  /// another index can then be the moments of the reference plus a small sum over responses, which has a small error.
+  /// The index that reflects or absorbs least. Kernels integrate its moments together with the responses. Moments of a
+  /// similar index are the moments of this reference plus a sum of responses. The sum is small, and so is its error.
   const FacetOptics& reference() const { return reference_; }
   std::size_t count() const { return count_; }
   double c0() const { return c0_; }
-  /// Distance from the cosines [0, 1] to the nearest complex cosine at which u or a reflectance is singular.
+  /// Distance from the cosines [0, 1] to the nearest complex cosine at which a polynomial or a reflectance is singular.
   double bend() const { return bend_; }
   const ResponseWeights& of_reference() const { return of_reference_; }
   /// Weights for moments of `index`; nullopt if it needs more than count() responses, as with total reflection.

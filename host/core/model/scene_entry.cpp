@@ -189,7 +189,7 @@ std::vector<SceneEntries> SceneEntries::parts(std::size_t most) const {
 
 void for_each_run(const PerAxis& first, const PerAxis& count, const PerAxis& whole,
                   const std::function<void(const GridRun&)>& use) {
-  // A run goes over the last axes, which vary fastest, up to and including one that the part covers only partly.
+  // `slowest` is the last axis of which the part lacks values, or axis 0. A run covers this axis and all later axes.
   std::size_t slowest = count.size() - 1;
   while (slowest > 0 && count[slowest] == whole[slowest]) --slowest;
   const auto from = static_cast<std::ptrdiff_t>(slowest);

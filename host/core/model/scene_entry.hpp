@@ -48,7 +48,7 @@ struct FilmValue {
   friend auto operator<=>(const FilmValue&, const FilmValue&) = default;
 };
 
-/// Values that an entry uses instead of the scene's, besides direction, slope shape and index.
+/// Values that an entry uses instead of the scene's. Direction, slope shape and index are not here but in SceneEntry.
 struct SceneVariant {
   std::optional<double> wavelength_um = {};               ///< nullopt: the scene's spectrum
   std::optional<std::uint32_t> material = {}, band = {};  ///< positions in SceneModel::materials and bands
@@ -90,10 +90,11 @@ class SceneEntries {
     return std::views::iota(std::size_t{0}, size()) |
            std::views::transform([this](std::size_t i) { return (*this)[i]; });
   }
-  /// The variants of the entries, at least one. A grid has all combinations of the values on kVariantAxes.
+  /// Each variant is a set of values that some entries use instead of the scene's. There is at least one. A grid has a
+  /// variant for each combination of values on kVariantAxes.
   const std::vector<SceneVariant>& variants() const { return variants_; }
 
-  // The next functions need a grid.
+  // The functions from here to index_at() need a grid.
   const Axes& axes() const { return axes_; }
   const PerAxis& counts() const { return counts_; }
   const std::vector<double>& theta_deg() const { return axes_[Axis::kTheta]; }
@@ -102,10 +103,10 @@ class SceneEntries {
   PerAxis axis_positions(std::size_t entry) const { return positions_on_axes(entry, counts_); }
   std::size_t entries_per_direction() const { return sigma().size() * q().size(); }
   const OpticalConstants& index() const { return index_; }
-  /// Position in variants() of the entry that has the positions `on_axes` on the axes.
+  /// The variant of the entry at the positions `on_axes` on the axes, as a subscript of variants().
   std::size_t variant_at(const PerAxis& on_axes) const;
   bool has_own_index() const { return !axes_[Axis::kN].empty() || !axes_[Axis::kK].empty(); }
-  /// The refractive index at the positions `on_axes`. Domain: a grid with an axis of n or k.
+  /// The refractive index at the positions `on_axes`. Domain: the grid has an axis of n or k.
   OpticalConstants index_at(const PerAxis& on_axes) const;
 
   /// A list of the entries at `positions`, with only the variants that these entries use.
@@ -113,12 +114,11 @@ class SceneEntries {
   /// Cuts the entries into parts of at most `most` entries. The parts of a grid are grids, too.
   std::vector<SceneEntries> parts(std::size_t most) const;
   SceneEntries part(const PerAxis& first, const PerAxis& count) const;
-  /// A part begins at first() on the axes of the whole grid. whole(): number of values on the whole grid's axes.
-  const PerAxis& first() const { return first_; }
-  PerAxis first_in(const SceneEntries& whole) const;
-  const PerAxis& whole() const { return whole_; }
+  const PerAxis& first() const { return first_; }     ///< position of the part's first value on each axis of the grid
+  PerAxis first_in(const SceneEntries& whole) const;  ///< position of the first value in a larger part, `whole`
+  const PerAxis& whole() const { return whole_; }     ///< number of values on each axis of the whole grid
   const Axes& whole_axes() const { return *whole_axes_; }
-  /// The position in this part of the entry at `in_whole` in the whole grid; nullopt if the part lacks it.
+  /// Converts an entry's position in the whole grid to its position in this part; nullopt if the part lacks the entry.
   std::optional<std::size_t> position_of(std::size_t in_whole) const;
 
  private:
@@ -133,7 +133,8 @@ class SceneEntries {
   std::vector<SceneEntry> points_;
 };
 
-/// Calls `use` for each GridRun of a part, which has count[axis] of the whole[axis] values, from first[axis].
+/// Calls `use` for each GridRun of a part of a grid. The grid has whole[axis] values on each axis. The part has
+/// count[axis] of these values, beginning with number first[axis].
 void for_each_run(const PerAxis& first, const PerAxis& count, const PerAxis& whole,
                   const std::function<void(const GridRun&)>& use);
 

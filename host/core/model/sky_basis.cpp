@@ -15,7 +15,7 @@ namespace {
 
 constexpr Eigen::Index kPoints = 17;  // Chebyshev points in each interval of zeniths
 
-// The error of a sum of basis functions between the nodes is at most this times its largest error at the nodes.
+// A sum of basis functions approximates a sky. Its error is at most kBetweenNodes times the largest error at a node.
 constexpr double kBetweenNodes = 1.5;
 constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
 

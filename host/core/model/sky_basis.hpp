@@ -11,10 +11,9 @@ namespace dolp {
 class LeastSquares {
  public:
   LeastSquares() = default;
-  /// Domain: the columns are linearly independent.
-  explicit LeastSquares(const Eigen::MatrixXd& columns);
+  explicit LeastSquares(const Eigen::MatrixXd& columns);  ///< domain: linearly independent columns
 
-  /// The weight of each column in the sum that is nearest to `values`. Rows beyond the end of `values` count as 0.
+  /// The weight of each column in the sum that is nearest to `values`. Shorter `values` are extended by zeros.
   Eigen::VectorXd solve(const Eigen::VectorXd& values) const;
 
  private:
@@ -26,8 +25,7 @@ class LeastSquares {
 /// a function is the polynomial through its values at Chebyshev-Lobatto points. At the ends it may have kinks.
 class SkyNodes {
  public:
-  /// `ends_deg`: at least three values, ascending from 0 to 90.
-  explicit SkyNodes(std::vector<double> ends_deg);
+  explicit SkyNodes(std::vector<double> ends_deg);  ///< at least three values, ascending from 0 to 90
 
   const std::vector<double>& ends_deg() const { return ends_deg_; }
   const std::vector<double>& zenith_deg() const { return zenith_deg_; }
@@ -38,8 +36,9 @@ class SkyNodes {
   /// Estimates the largest interpolation error of at() for one function. `values`: the function at the nodes.
   double error(const Eigen::VectorXd& values) const;
 
-  /// Weights for values at the nodes. The weighted sum is the mean over the sky, where a zenith with the cosine c
-  /// counts with c^(power + 1) factor(c): the projected area c times the reflectance. Domain: power > -1.
+  /// A weight for each node. The weighted sum of a function's values at the nodes is its mean over the solid angle of
+  /// the sky. In this mean, a direction with the cosine c of the zenith has the weight c^(power + 1) factor(c): the
+  /// projected area c times the reflectance c^power factor(c). Domain: power > -1.
   Eigen::VectorXd mean_weights(double power, const std::function<double(double)>& factor = {}) const;
 
  private:
@@ -57,8 +56,9 @@ struct SkyWeights {
 /// Functions of the zenith, up to 1 in absolute value, whose weighted sums approximate the sky at each wavelength.
 class SkyBasis {
  public:
-  /// Chooses some of `functions` (values at the nodes) one by one: each time the function that sums of the chosen ones
-  /// approximate worst. Stops at an error of `tolerance` times the function's largest value, or at kMostSkyFunctions.
+  /// Each of `functions` is given by its values at the nodes. The constructor adds to the basis the function that the
+  /// basis approximates worst, again and again, until all relative errors are at most `tolerance` or the basis has
+  /// kMostSkyFunctions functions. A relative error refers to the largest absolute value of the function.
   SkyBasis(SkyNodes nodes, const std::vector<Eigen::VectorXd>& functions, double tolerance);
 
   const SkyNodes& nodes() const { return nodes_; }

@@ -37,7 +37,7 @@ ReflectedAmplitudes interface_amplitudes(const Wave& above, const Wave& below) {
 using Complex = std::complex<double>;
 
 SmoothAbsorptance bare_absorptance(const OpticalConstants& index, double cosine) {
-  // With smaller n and k, N^4 would underflow, so kLeast replaces n. The absorptance is then below 4e-75 anyway.
+  // If n and k are both below kLeast, N^4 underflows, so kLeast replaces n. The absorptance stays below 4e-75.
   constexpr double kLeast = 1e-75;
   const double n = index.k < kLeast ? std::max(index.n, kLeast) : index.n;
   const double k = index.k;
@@ -154,7 +154,7 @@ Moments mirror_moments(const FacetOptics& optics, double cosine) {
   moments.deficit = 0.5 * (absorbed.s + absorbed.p) * cosine;
   moments.r_i = cosine - moments.deficit;
   moments.r_q = 0.5 * (absorbed.p - absorbed.s) * cosine;
-  // With N = 1 exactly nothing is reflected, so these moments have no error.
+  // If N is exactly 1, nothing is reflected: r_i and r_q are exactly 0 and have no error.
   moments.r_i_error = moments.r_i == 0.0 ? 0.0 : rounding;
   moments.r_q_error = moments.r_i == 0.0 ? 0.0 : rounding;
   moments.albedo_error = rounding;

@@ -37,8 +37,8 @@ struct SmoothAbsorptance {
 /// and the relative error of `split` is 1e-10.
 SmoothAbsorptance smooth_absorptance(const FacetOptics& optics, double cosine);
 
-/// The smaller of reflectance and absorptance, the unit for errors of reflectances. For a bare medium it is taken at
-/// normal incidence, otherwise as a mean over four angles, because films may reflect nothing at one angle.
+/// The unit for errors of reflectances: the reflectance or the absorptance at normal incidence, whichever is smaller.
+/// Films may reflect nothing at one angle, so for all but bare media both are means over four angles.
 double reflectance_level(const FacetOptics& optics);
 
 /// Cosine sqrt(1 - Re N^2) of the angle where total reflection begins; 0 if there is none or if it begins gradually.

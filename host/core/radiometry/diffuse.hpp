@@ -32,7 +32,7 @@ class DiffuseReflection {
   DiffuseLight beam(double cos_theta_i, double cos_theta_r) const;
   /// t_+ and t_- at the incidence `cosine`, divided by t_+ at normal incidence. (1, 0) if is_polarised_ is false.
   DiffuseLight transmitted(double cosine) const;
-  /// Weights for radiances of a sky at `nodes`: the weighted sum is the mean radiance that the diffuse part reflects.
+  /// One weight per node. The weighted sum of a sky's radiances is the mean radiance that the diffuse part reflects.
   Eigen::VectorXd mean_weights(const SkyNodes& nodes) const;
 
  private:

@@ -59,8 +59,9 @@ std::uint32_t tolerance_status(const PointResult& result, double tolerance) {
   return (dolp_missed ? std::uint32_t{kToleranceNotMet} : 0U) | (rho_missed ? std::uint32_t{kRhoToleranceNotMet} : 0U);
 }
 
-/// Estimates the error of I in single scattering, which ignores later bounces. With direct emission the error is the
-/// light that is neither emitted nor reflected. Otherwise it is the change of I if rho_I is divided by the albedo A.
+/// Estimates how much light single scattering leaves out of I because it ignores later bounces. With direct emission
+/// this is pi B (1 - rho_I - eps_I). Otherwise it is the change of I if the specular part of rho_I is divided by the
+/// albedo A, which is rho_I of facets that reflect all light; with all bounces it would be 1.
 double change_by_model(const SceneModel& scene, const SpectralRule& rule, std::span<const Moments> moments,
                        std::span<const Reflectance> reflectances, std::span<const Emissivity> emissivities,
                        double cos_theta) {

@@ -15,24 +15,25 @@
 namespace dolp {
 
 /// Converts moments to the quantities that a sensor measures.
-/// Equation: before the path to the sensor, I = pi B (1 - rho_I) + X rho_I and Q = (X - pi B) rho_Q. B is Planck's
-/// radiance of the surface. X = E0 cos(theta) + pi B(T_surr) is the incident light of source and surroundings. With
-/// emission.model = "fresnel" the surface emits 1 - R_s(theta) and 1 - R_p(theta) of the smooth surface instead of
-/// 1 - rho_s and 1 - rho_p. In bistatic mode X has no E0, I and Q are divided by pi, and the light of the source is
-/// added: E0 cos(theta_i) f, with the pBRDF f from the source to the view.
+/// Equation: the light that leaves the surface has I = pi B (1 - rho_I) + X rho_I and Q = (X - pi B) rho_Q. B is the
+/// Planck radiance at the temperature of the surface. X = E0 cos(theta) + pi B(T_surr) is the incident light of source
+/// and surroundings. The emissivities are 1 - rho_s and 1 - rho_p; with emission.model = "fresnel" they are 1 - R_s
+/// and 1 - R_p of the smooth surface. In bistatic mode I and Q are divided by pi, and the source is not part of X: it
+/// adds E0 cos(theta_i) f, where f is the pBRDF from the source to the view.
 class Radiometry {
  public:
   /// `kept`: effects that contribute. If kept.moments is false, the specular part of rho counts as 0, and quantities
-  /// that need it are NaN. `dropped`: bound of the change of DOLP by the other effects. Error estimates include it.
-  /// `sky`: functions of the sky in the Moments; null: computed from the scene.
+  /// that need it are NaN. `dropped`: how much the effects that are not kept can change DOLP. The error estimate of
+  /// DOLP includes it. `sky`: the sky functions of Moments::columns. If null, they are computed from the scene.
   explicit Radiometry(const SceneModel& scene, const KeptEffects& kept = {}, double dropped = 0.0,
                       const std::shared_ptr<const SkyBasis>& sky = nullptr);
 
   /// The spectral samples of the scene. `point` needs Moments for the index of each sample, in this order.
   const SpectralRule& rule() const { return rule_; }
 
-  /// For NaN moments the status is 4 (outside the model's domain), and every quantity is NaN. If rho diverges at 90
-  /// degrees, the status is 1 | 4 (1: rho outside [0, 1]), rho and Stokes parameters are NaN, and dolp is its limit.
+  /// If moments are NaN, the status is 4 (outside the model's domain), and every quantity is NaN. If rho diverges at 90
+  /// degrees, the status is 1 | 4 (1: rho outside [0, 1]). Then rho and the Stokes parameters are NaN, and dolp is its
+  /// limit for theta -> 90 degrees.
   PointResult point(const Direction& direction, std::span<const Moments> moments) const;
 
   /// For each spectral sample: the optics of the facets, and the diffuse reflection of a surface with these optics.
@@ -43,12 +44,12 @@ class Radiometry {
   };
   Optics optics_with(std::vector<FacetOptics> facets) const;
 
-  /// For an entry with its own n or k. Only fresnel emission and a polarised diffuse part use `optics`.
+  /// For an entry with its own n or k. Its `optics` affect only fresnel emission and a polarised diffuse part.
   PointResult point(const Direction& direction, std::span<const Moments> moments, const Optics& optics) const;
 
   /// Result in bistatic mode. `moments` and rho belong to the direction of the view; the source is at theta_i.
   /// Shape: one Moments and one Scattered per sample of rule(), in the order of the samples.
-  /// NaN moments: as in `point`. If rho diverges at 90 degrees, every quantity is NaN, with status 1 | 4.
+  /// If moments are NaN, the result is as in `point`. If rho diverges, every quantity is NaN, with status 1 | 4.
   PointResult bistatic_point(const Direction& view, double cos_theta_i, std::span<const Moments> moments,
                              const Optics& optics, std::span<const Scattered> scattered) const;
   const Optics& optics() const { return optics_; }

@@ -20,7 +20,6 @@ double mean_weight(const SpectralSample& sample, double total_emitted, double to
 
 }  // namespace
 
-// `absorbed` is a sum over the absorbed light. Subtracting rho_i from 1 would lose digits of the emission of a metal.
 Reflectance reflectance(const Surface& surface, const Moments& moments, double cos_theta, const DiffuseLight& diffuse) {
   const double scale = surface.specular / cos_theta;
   const double absorbed_terms = (1.0 - surface.specular) + scale * std::abs(moments.deficit) + diffuse.i;

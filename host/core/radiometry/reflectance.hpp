@@ -39,7 +39,7 @@ Reflectance reflectance(const Surface& surface, const Moments& moments, double c
 /// True if rho_s or rho_p is outside [0, 1] by more than its error.
 bool is_unphysical(const Reflectance& r);
 
-/// Mean of rho over the spectral samples, weighted by emission; without it, by incident light; without both, by width.
+/// Mean of rho over the spectral samples. Weights: emitted light; if it is 0, incident light; if both are 0, widths.
 MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Reflectance> reflectances, double cos_theta);
 
 Emissivity fresnel_emissivity(const FacetOptics& index, double cos_theta);

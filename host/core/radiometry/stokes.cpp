@@ -11,7 +11,7 @@ namespace {
 
 using std::numbers::pi;
 
-// Relative rounding error of a radiance. Planck's exponent, up to 745, multiplies one or two units in the last place.
+// Relative rounding error of a radiance. The exponent in Planck's law, up to 745, multiplies its own relative error.
 constexpr double kRadianceRounding = 1e-12;
 
 /// Contribution of one spectral sample to I, with the emissivity 1 - rho.
@@ -39,7 +39,6 @@ Intensity moments_intensity(double emitted, double incident, double net, double 
 void add_moments_sample(Stokes& sum, const SpectralSample& sample, const Reflectance& r, double direct,
                         double rounding) {
   const double net = direct + sample.excess;
-  // If surface and surroundings have equal temperatures, the excess is exactly 0, without rounding.
   const double thermal = sample.excess == 0.0 ? 0.0 : std::abs(sample.emitted) + std::abs(sample.surroundings);
   const double net_terms = std::abs(direct) + thermal;
   const Intensity intensity = moments_intensity(sample.emitted, direct + sample.surroundings, net, net_terms, r);
@@ -62,7 +61,6 @@ void add_emitting_sample(Stokes& sum, const SpectralSample& sample, const Reflec
                  rounding * (emitted_terms + std::abs(incident * r.rho_q));
 }
 
-/// Middle and half width of the range of some values. Both are 0 if there are no values.
 struct Span {
   double middle = 0.0;
   double half = 0.0;
@@ -191,10 +189,10 @@ Bracket bracket(const SceneModel& scene, const SpectralRule& rule, std::span<con
   single.i += sky.i;
   single.i_error += sky.i_error;
   double q = sky.q;
-  // The light D (see Bracket) is emission, or reflected light from an unknown part of the sky.
-  double unknown = 0.0;    // if D is emission: largest change of Q
-  double unreached = 0.0;  // if D is reflected: largest change of Q and of I, from the range of the sky's exitance
-  double reflected = 0.0;  // if D is reflected: change of I under a uniform sky with the middle exitance
+  // `single` counts the light D of later bounces (see Bracket) as emission. D may also be reflected light of the sky.
+  double unknown = 0.0;    // if D is emission: how much D can change q
+  double unreached = 0.0;  // if D is reflected: how much the unknown part of the sky can change q and I
+  double reflected = 0.0;  // if D is reflected: change of I, with the mean of the sky's least and largest exitance
   double error = sky.q_error;
   for (std::size_t j = 0; j < reflectances.size(); ++j) {
     const SpectralSample& sample = rule.samples[j];

@@ -25,10 +25,11 @@ struct Stokes {
 };
 
 /// Lower and upper bound of the DOLP that the surface has with all bounces.
-/// Equation: later bounces add an unknown d to the direct emissivity eps_I,direct, with 0 <= d <= D and
-/// D = 1 - rho_I - eps_I,direct. They change eps_Q,direct by at most d. With the exitance X of source and surroundings
-/// and N = pi B - X, the surface has I = X + N eps_I and Q = N eps_Q. DOLP has its extreme values at d = D,
-/// (|sum of N eps_Q,direct| -+ sum of |N| D) / I, or under a sky profile at d = 0. Sums are over the samples.
+/// Equation: direct emission eps_I,direct and first reflection rho_I leave D = 1 - rho_I - eps_I,direct to later
+/// bounces. An unknown part d of D is emission and changes eps_Q,direct by at most d. The rest of D is reflected light.
+/// With the incident exitance X and N = pi B - X, the surface has I = X + N eps_I and Q = N eps_Q. So DOLP is extreme
+/// at d = D: (|sum of N eps_Q,direct| -+ sum of |N| D) / I, summed over the spectral samples. Under a sky profile it
+/// may also be extreme at d = 0, because the reflected light may come from any part of the sky.
 struct Bracket {
   double low = 0.0;
   double high = 0.0;
@@ -39,29 +40,28 @@ struct Bracket {
 Stokes stokes_sum(const SpectralRule& rule, std::span<const Reflectance> reflectances,
                   std::span<const Emissivity> emissivities, EmissionModel model, double cos_theta, bool with_source);
 
-/// Adds net * r_i to I and net * r_q to Q. Moments have the factor cos(theta), so `sum` has it too.
+/// Adds net * r_i to I and net * r_q to Q, with an exitance `net`. The moments give `sum` the factor cos(theta).
 void add_specular(Stokes& sum, double net, const Moments& moments);
 
-/// The diffuse part in a spectral sample. `beyond_mean`: sky exitance averaged with mean_weights(), minus its mean.
+/// The diffuse part in a spectral sample. `beyond_mean`: the mean exitance of the sky that the diffuse part reflects
+/// (see DiffuseReflection::mean_weights), minus SpectralFactors::surroundings.
 struct DiffuseSample {
   DiffuseLight rho;
   double beyond_mean = 0.0;
 };
 
-/// Adds the light that a surface reflects from a sky, minus what it would reflect from a uniform sky with the same
-/// mean. The specular part is k_s / cos(theta) times the weighted sum of Moments::columns. The diffuse part is
-/// DiffuseSample::rho times beyond_mean. `weights`: weights of the functions of the sky; empty without a sky.
+/// Adds the reflected light of a sky profile, minus the reflected light of a uniform sky with the same irradiance. Its
+/// specular part is k_s / cos(theta) times the weighted sum of Moments::columns, where k_s is Surface::specular. Its
+/// diffuse part is DiffuseSample::rho times beyond_mean. `weights`: see sky_weights(); empty without a sky profile.
 void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std::span<const SkyWeights> weights,
              std::span<const DiffuseSample> diffuse, std::span<const Moments> moments, double cos_theta);
 
-/// Adds the specular part of add_sky: `specular` times the weighted sum of Moments::columns.
 void add_specular_sky(Stokes& sum, double specular, double rounding, const SkyWeights& weights, const Moments& moments);
 
 /// Adds the light of the source as an exitance, pi E0 cos(theta_i) f. `diffuse`: pi cos(theta_i) f of the diffuse part.
 void add_beam(Stokes& sum, double k_s, const SpectralRule& rule, std::span<const Scattered> scattered,
               std::span<const DiffuseLight> diffuse, double cos_theta_r);
 
-/// Multiplies the Stokes parameters by the transmittance of the path, then adds the path's exitance to I.
 void add_path(Stokes& sum, const std::optional<Path>& path, double path_exitance);
 
 Bracket bracket(const SceneModel& scene, const SpectralRule& rule, std::span<const Reflectance> reflectances,

@@ -12,12 +12,12 @@ namespace dolp {
 
 struct CsvForm {
   char separator = ',';         ///< if it is ' ', any number of blanks separates two cells
-  bool has_blank_lines = true;  ///< true: skips blank lines. Lines that begin with # are always skipped
+  bool has_blank_lines = true;  ///< true: blank lines are skipped; false: a blank line is one empty cell
   std::size_t first_line = 1;
 };
 
 /// Goes through a text line by line: `for (CsvReader row(text, name); row.next();)`. A cell in double quotes may
-/// contain separators. Leaves out lines at the end of the text that have no value. All views point into `text`.
+/// contain separators. Skips lines that begin with #, and lines without a value at the end. Views point into `text`.
 class CsvReader {
  public:
   CsvReader(std::string_view text, std::string name, CsvForm form = {});
@@ -59,8 +59,8 @@ struct CsvColumn {
 /// The columns of a file. The header may name them in any order, in upper or lower case.
 class CsvColumns {
  public:
-  /// Ignores the columns in `ignored`. Errors: InputError for an unknown (with a suggestion), repeated or missing
-  /// column name, for a separator other than the comma, and for numbers instead of names.
+  /// Ignores the columns in `ignored`. Errors: InputError for a repeated, missing or unknown name, for a separator
+  /// other than the comma, and for numbers instead of names. The message about an unknown name lists the known names.
   CsvColumns(const CsvReader& header, std::vector<CsvColumn> known, const std::vector<std::string>& ignored = {});
 
   /// For a file without a header, whose rows have all known columns in this order.
@@ -74,7 +74,7 @@ class CsvColumns {
   /// For each cell of a row, the position of its column in the list of known columns; nullopt if the column is ignored.
   const std::vector<std::optional<std::size_t>>& cells() const { return cells_; }
 
-  /// The number of `row` in column `name`; nullopt without this column. Errors: a wrong value, or those of check_width.
+  /// The number of `row` in the column `name`; nullopt if the file lacks this column. Errors: InputError for a bad row.
   std::optional<double> number(const CsvReader& row, std::string_view name) const;
   double number_at(const CsvReader& row, std::size_t cell) const;
 

@@ -12,7 +12,7 @@ inline constexpr int kDispersionFormulas = 9;
 /// Accuracy: reproduces published indices to their last digit (test Dispersion_Formulas_*).
 struct Dispersion {
   int number = 0;                    ///< number of the formula, 1 to kDispersionFormulas; 0 means no formula
-  std::vector<double> coefficients;  ///< C1, C2, …; coefficient_counts gives the allowed numbers of them
+  std::vector<double> coefficients;  ///< C1, C2, …; coefficient_counts() says how many are allowed
 
   double at(double wavelength_um) const;  ///< n; NaN if the formula gives a negative n^2
 };

@@ -69,7 +69,7 @@ std::vector<const Material*> materials_with(std::string_view words) {
   return found;
 }
 
-/// Finds a material by its full name, else by first words, else by any words. Null unless exactly one fits.
+/// The material whose name is `name`, else begins with it, else contains it, in whole words. Null unless just one fits.
 const Material* match_name(std::string_view name) {
   const std::string wanted = lower_case(trim(name));
   std::vector<const Material*> beginning;

@@ -12,16 +12,15 @@ namespace dolp {
 /// The materials of host/data/materials.csv with their sources, in the order of host/data/materials_sources.csv.
 const std::vector<Material>& built_in_materials();
 
-/// Finds a built-in material. Whole words are enough if only one has them: "water" finds "water 25C". Case is ignored.
+/// Finds a built-in material by its name, or by whole words of the name: "water" finds "water 25C". Case is ignored.
 /// Errors: InputError that begins with `prefix` and suggests names, if not exactly one material fits.
 const Material& named_material(std::string_view name, const std::string& prefix);
 
 Material find_material(std::string_view name, const Spectrum& spectrum, const std::string& prefix);
 
-/// Reads a user's file with n and k over wavelength in um, linear between rows, and calls fit_to_spectrum.
+/// Reads a user's file with n and k over wavelength in um, linear between rows. Returns fit_to_spectrum() of it.
 /// - A .yml or .yaml file is a "full database record" of refractiveindex.info: tables of n and k, or a formula for n.
-/// - Any other file is a CSV with the columns `wavelength_um` (or `wl`) and n, k or both. A further line of column
-///   names begins a further table.
+/// - Any other file is a CSV with the columns `wavelength_um` (or `wl`) and n, k or both, or several such tables.
 /// If the file has no k, k is 0. A k from -1e-5 to 0 is noise and counts as 0.
 /// Errors: InputError with file and line. If the file cannot be opened, the message begins with `prefix`.
 Material read_material_file(const std::string& path, const Spectrum& spectrum, const std::string& prefix);
@@ -36,11 +35,11 @@ Spectrum known_range(const Material& material);
 /// Refuses a tabulated material that lacks n or k in a part of the spectrum. The message begins with `prefix`.
 void check_covers(const Material& material, const Spectrum& spectrum, const std::string& prefix);
 
-/// Refuses a material whose formula gives an n out of range, as near a pole. Checks 1001 wavelengths of a band.
+/// Refuses a material whose formula gives an n out of range, for example near a pole. Checks 1001 points of a band.
 void check_formula(const Material& material, const Spectrum& spectrum, const std::string& prefix);
 
-/// The material for the spectrum of a scene: the whole `material` for a band; for a single wavelength, a material with
-/// the constant index at this wavelength. Errors: InputError of check_covers and check_formula.
+/// For a band, returns `material`. For a single wavelength, returns a material with the constant index at this
+/// wavelength, and `material` as its `tabulated`. Errors: InputError of check_covers and check_formula.
 Material fit_to_spectrum(const Material& material, const Spectrum& spectrum, const std::string& prefix);
 
 /// Reads a user's CSV with the columns beta_deg (angle of incidence, from 0 to 90), r_s and r_p. If the reflectances

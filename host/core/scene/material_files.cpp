@@ -104,7 +104,8 @@ std::vector<double> numbers_of(const Material& material, const YAML::Node& text,
   return numbers;
 }
 
-/// Reads a DATA item with a formula. The table of n gets two rows, the ends of the range where the formula holds.
+/// Reads a DATA item with a formula for n. known_range() needs rows in the table of n. So the table gets two rows: the
+/// first and the last wavelength at which the formula gives an allowed n.
 void read_formula(Material& material, const YAML::Node& item, int number) {
   const YAML::Node range = text_of(material, item, "wavelength_range");
   const YAML::Node coefficients = text_of(material, item, "coefficients");

@@ -22,7 +22,7 @@ constexpr std::size_t kMostPointsBytes = 1U << 30U;
 
 using FilmColumn = std::pair<std::size_t, FilmValue::Part>;
 
-/// A column of points: values on an axis, values of a film, or angles of a pair of directions. Angles are required.
+/// A column of points: values on an axis, values of a film, or theta_i, theta_r or delta_phi, which are required.
 struct ColumnRule {
   std::string name;
   NumberRange range;
@@ -39,7 +39,7 @@ struct ColumnRule {
   }
 };
 
-/// Adds a rule for each name of n, k or thickness of a film, such as "surface.coating.1.thickness_um".
+/// Adds a rule for each name in `names` that means n, k or thickness of a film, such as "surface.coating.1.n".
 void append_film_rules(std::vector<ColumnRule>& rules, const std::vector<std::string>& names) {
   static const std::map<std::string, FilmValue::Part> kParts = {
       {"n", FilmValue::Part::kN}, {"k", FilmValue::Part::kK}, {"thickness_um", FilmValue::Part::kThickness}};

@@ -31,9 +31,9 @@ struct Points {
   std::vector<std::string> left_out;  ///< columns of the file that are not read because they are results
   using Column = std::optional<std::vector<double>>;
   AxisArray<Column> coordinates;
-  /// For axes with labels: the different labels in the file. A column of such an axis has positions in this list.
+  /// For the axes of materials and bands: the different names in the file. Their columns have positions in this list.
   AxisLabels labels;
-  /// Columns such as "surface.coating.1.thickness_um", by layer (counted from 0) and by n, k or thickness.
+  /// Columns such as "surface.coating.1.thickness_um". The key is the layer (0 for coating.1) and n, k or thickness.
   std::map<std::pair<std::size_t, FilmValue::Part>, Column> films;
   bool has_winds = false;                          ///< true if the points have winds instead of sigmas
   Column theta_i_deg, theta_r_deg, delta_phi_deg;  ///< only for kGeometries, which have no theta_deg and wavelength_um
@@ -62,9 +62,8 @@ std::vector<double> label_positions(const Points& points, Axis axis, const AxisL
 Points points_of(std::span<const Column> columns, std::size_t count, PointsKind kind);
 
 /// Reads the points in the CSV file at `path` ("-" is stdin). A header without rows is a valid list of no points.
-/// Accepts what CsvReader accepts. Leaves out columns whose names are in `results`.
-/// Units: angles in degrees. delta_phi_deg is in [-360, 360], and 180 is the specular side.
-/// Errors: InputError that names file, line, column, value and allowed range, or a file that cannot be opened.
+/// Leaves out columns whose names are in `results`. Angles are in degrees. delta_phi_deg = 180 is the specular side.
+/// Errors: InputError for a wrong value, with file, line, column and range. InputError if the file cannot be opened.
 Points read_points(const std::string& path, PointsKind kind, const std::vector<std::string>& results = {});
 
 Points parse_points(const std::string& text, const std::string& path_name, PointsKind kind,

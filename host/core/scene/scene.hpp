@@ -31,7 +31,7 @@ struct Material {
   std::string source;  ///< where the values come from; empty if the scene gives n and k as numbers
   OpticalConstants constant;
   SpectralTable n, k;
-  std::shared_ptr<const Material> tabulated = {};  ///< the whole table, if `constant` holds its value at one wavelength
+  std::shared_ptr<const Material> tabulated = {};  ///< the whole table, if `constant` was taken from it; else null
   double least_k = 0.0;  ///< smallest k in the file, if it is negative; the tables have 0 instead
   bool is_constant() const { return n.wavelength_um.empty(); }
   OpticalConstants at(double wavelength_um) const;
@@ -75,7 +75,7 @@ struct Surface {
 struct Emission {
   double temperature_K = 0.0;
   EmissionModel model = EmissionModel::kMoments;
-  bool has_bracket = false;  ///< if true, results have dolp_low and dolp_high
+  bool has_bracket = false;  ///< adds dolp_low and dolp_high to results: DOLP with all bounces lies between them
 };
 
 /// Irradiance E0 of the source at normal incidence. A scene gives it in one of three ways.
@@ -95,7 +95,8 @@ struct Surroundings {
   void set_sky(SkyProfile sky);
 };
 
-/// Path to the sensor. It changes radiances I to tau I + L, exitances I to tau I + pi L, and multiplies Q, U, V by tau.
+/// Path to the sensor. It has the transmittance tau and the radiance L. A radiance I becomes tau I + L; an exitance I
+/// becomes tau I + pi L. Q, U and V are multiplied by tau.
 struct Path {
   double transmittance = 1.0;
   std::optional<double> temperature_K;  ///< temperature from which L = (1 - tau) B(T) follows
@@ -117,10 +118,10 @@ struct Geometry {
 struct Accuracy {
   double tolerance = 1e-4;
   Precision precision = Precision::kAuto;
-  bool may_interpolate = true;  ///< allows interpolation between slope distributions, and the use of responses
+  bool may_interpolate = true;  ///< if false, the program integrates every entry by itself
 };
 
-/// Names and paths as a scene gives them; empty if absent. A `material` is completed to the full name of the material.
+/// Names and paths as a scene gives them; empty if absent. Only `material` is always the full name of the material.
 struct SceneNames {
   struct OfLayer {
     std::string material, material_file;
@@ -133,7 +134,7 @@ struct SceneNames {
 
 class SceneDocument;
 
-/// The part of a scene that determines the physics: everything except grid, names and texts.
+/// The part of a scene that determines the physics. SceneValues adds the values on the grid's axes, names and texts.
 struct SceneModel {
   Surface surface;
   std::optional<Emission> emission;
@@ -150,12 +151,12 @@ struct SceneModel {
 struct SceneValues : SceneModel {
   std::string title;
   SceneNames names;
-  Axes grid;                       ///< values in the user's order; sigma and q from [surface] if absent in [grid]
+  Axes grid;                       ///< values in the user's order; [surface] gives sigma or q if [grid] does not
   AxisLabels labels;               ///< names of the materials and bands on the grid's axes
   std::vector<double> wind_m_s;    ///< winds from which the grid's sigmas follow; empty if the scene gives sigmas
   std::string path_name;           ///< path of the scene as the user gave it, for messages
   std::string text;                ///< text of the scene file, unchanged
-  std::vector<std::string> files;  ///< paths of the files that the scene names, as the process opens them
+  std::vector<std::string> files;  ///< paths by which the program opens the files that the scene names
   std::vector<Setting> settings;   ///< settings that were applied to the text
   std::shared_ptr<const SceneDocument> document;  ///< text and settings as TOML; null without a text
 };
@@ -165,7 +166,7 @@ SceneModel at_wavelength(const SceneModel& scene, double wavelength_um);
 
 void set_films(Surface& surface, const std::vector<FilmValue>& films);
 
-/// The scene with the values of `variant`. `scene` must have these films. Errors: errors of at_wavelength.
+/// The scene with the values of `variant`. Domain: `scene` has the films of `variant`. Errors: errors of at_wavelength.
 SceneModel with_variant(const SceneModel& scene, const SceneVariant& variant);
 
 }  // namespace dolp

@@ -50,7 +50,7 @@ Spectrum all_wavelengths(const SceneValues& scene) {
   return all;
 }
 
-/// Loads the material of `table`, "surface" or a layer. `stored`: the material from a table file, or null.
+/// Loads the material of the surface or of a film. `stored`: the material from a table file, or null.
 void load_material(SceneValues& scene, const SceneDocument& document, const std::string& table, Material& material,
                    std::string& name, const std::string& file, const KnownData* known, const Material* stored) {
   const bool is_file = document.find(table + ".material_file") != nullptr;

@@ -35,7 +35,7 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
 
 /// The line where nesting exceeds kMostDepth, else 0. There the TOML parser would recurse too deeply.
 std::size_t line_of_deep_nesting(std::string_view text) {
-  std::vector<std::size_t> around = {0};  // depth of the text, and of each bracket that is open
+  std::vector<std::size_t> around = {0};  // depth in the whole text, then inside each open bracket
   std::size_t depth = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -167,7 +167,7 @@ void SceneDocument::apply(const Setting& setting) {
 
 toml::table& SceneDocument::create_table(const std::vector<std::string_view>& path, const std::string& origin) {
   toml::table* table = &root_;
-  toml::array* list = nullptr;  // the list whose element the next part of the path names, or null
+  toml::array* list = nullptr;  // null unless the next part is a position in a list
   std::string key;
   for (const std::string_view part : path) {
     if (list) {
@@ -245,7 +245,7 @@ unsigned SceneDocument::line_of(std::string_view key) const {
 
 std::string SceneDocument::prefix(std::string_view key) const {
   const toml::node* node = find(key);
-  // If the key is missing, blames the setting that gave its table, but only if the table is an axis such as grid.sigma.
+  // A missing part of an axis, such as grid.sigma.to, is the fault of the setting that gave the whole axis.
   const bool is_of_value = node != nullptr || find_scene_key(table_part(key)) != nullptr;
   if (const std::string* origin = is_of_value ? origin_of(key) : nullptr; origin)
     return *origin + ": " + (node ? "" : last_part(key) + ": ");

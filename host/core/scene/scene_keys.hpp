@@ -15,7 +15,7 @@ namespace dolp {
 struct KeyValue {
   double number = 0.0;
   std::size_t word = 0;              ///< position in Key::words
-  std::string text = {};             ///< value of a text, a word or a flag as text
+  std::string text = {};             ///< a text or a word; "true" or "false" for a flag, but empty from read_value()
   std::vector<double> numbers = {};  ///< numbers of an axis, of a band (from, to), or of several bands in a row
   std::vector<std::string> names = {};
 };
@@ -39,7 +39,7 @@ struct KeyAlternative {
 struct KeyChoice {
   std::string table;
   std::vector<KeyAlternative> alternatives;
-  bool is_required = true;   ///< a scene must choose an alternative, unless `table` is an absent effect or layer
+  bool is_required = true;   ///< a scene must choose one; if `table` is an effect or a layer, it may be absent instead
   bool is_of_layer = false;  ///< `table` is a layer of a coating, so it may be absent
 };
 

@@ -15,7 +15,6 @@
 namespace dolp {
 namespace {
 
-/// The known key or table that is most similar to `key`.
 std::string key_hint(const std::string& key) {
   std::vector<std::string> known = scene_tables();
   for (const Key& description : dolp::keys()) known.push_back(description.key);
@@ -222,7 +221,6 @@ void check_smith(const SceneValues& scene, const SceneDocument& document) {
   }
 }
 
-/// Refuses multiple scattering, emission.bracket, direct emission and polarised diffuse light where they are undefined.
 void check_scattering(const SceneValues& scene, const SceneDocument& document) {
   const Surface& surface = scene.surface;
   const Emission emission = scene.emission.value_or(Emission());
@@ -274,7 +272,6 @@ void apply(SceneDocument& document, const Setting& setting) {
   document.apply(setting);
 }
 
-/// Makes the scene that a document describes. Paths in the document are relative to the folder of `path_name`.
 SceneValues scene_of(const SceneDocument& document, const std::string& path_name, const KnownData* known) {
   SceneValues scene = read_keys(document);
   fill_from_grid(scene, document);

@@ -18,8 +18,8 @@ SceneValues read_scene(const std::string& path, const std::vector<Setting>& sett
 /// Applies further settings to a scene that was read. Errors: errors of read_scene.
 SceneValues with_settings(const SceneValues& scene, const std::vector<Setting>& settings);
 
-/// Makes a scene from a text. `path_name` appears in messages. Relative paths in the scene begin in its folder. If
-/// `known` is given, missing data are an InputError, unless `may_open_files` allows opening files.
+/// Makes a scene from a text. Paths in the scene are relative to the folder of `path_name`, which also appears in
+/// messages. If `known` is given but lacks the data of a file, this is an InputError, unless `known->may_open_files`.
 SceneValues parse_scene(const std::string& text, const std::string& path_name,
                         const std::vector<Setting>& settings = {}, const KnownData* known = nullptr);
 

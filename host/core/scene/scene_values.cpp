@@ -147,7 +147,6 @@ KeyValue read_word(const SceneDocument& document, const Key& description, const 
   return value;
 }
 
-/// For a message: how to write several values, if a key that takes one number has a list.
 std::string list_hint(const Key& description) {
   const std::string name = description.key.substr(description.key.find('.') + 1);
   const std::string axis = "grid." + name;

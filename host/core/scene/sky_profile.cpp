@@ -22,7 +22,8 @@ namespace {
 
 constexpr std::size_t kMostZeniths = 1000;
 
-// Zeniths that divide a sky further. Near the horizon its radiance may change like exp(-1 / cos), so parts are short.
+// Ends of intervals of zenith: kDivisions_deg in addition to the zeniths of a table, kLayerDivisions_deg for kLayers.
+// Intervals are short near the horizon, where the radiance may change like exp(-1 / cos(zenith)).
 constexpr std::array<double, 2> kDivisions_deg = {60.0, 85.0};
 constexpr std::array<double, 11> kLayerDivisions_deg = {0.0,  30.0, 60.0,  75.0,  82.0, 86.0,
                                                         88.0, 89.0, 89.75, 89.94, 90.0};
@@ -54,7 +55,6 @@ double window_emissivity(double vapour_hPa, double air_K) {
 // Vapour pressure of saturated air. Source: Alduchov and Eskridge, J. Appl. Meteorol. 35, 601 (1996).
 double saturated_hPa(double air_K) { return 6.1094 * std::exp(17.625 * (air_K - 273.15) / (air_K - 30.11)); }
 
-/// The pressure of the water vapour in hPa. Errors: InputError if the air cannot hold this much water.
 double vapour_pressure(const SkyAir& air, double air_K, const std::string& prefix) {
   if (!air.vapour_cm) return air.temperature_K ? std::min(kVapour_hPa, saturated_hPa(air_K)) : kVapour_hPa;
   const double vapour_hPa = *air.vapour_cm * air_K / kWater_cmK_hPa;
@@ -65,8 +65,8 @@ double vapour_pressure(const SkyAir& air, double air_K, const std::string& prefi
 // Band of carbon dioxide in which a few metres of air are opaque.
 constexpr double kOpaqueFrom_um = 4.17;
 constexpr double kOpaqueTo_um = 4.45;
-// Overcast: a black cloud with its base at 1 km, as warm as the air there (Martin and Berdahl, Solar Energy 33, 321
-// (1984)). From the ground up, the temperature falls by 6.5 K per km, and the vapour falls to 1 / e in 2 km.
+// Overcast: a black cloud with its base at a height of 1 km. It is as warm as the air at this height. Source: Martin
+// and Berdahl, Solar Energy 33, 321 (1984). The air cools by 6.5 K per km of height. Its vapour falls to 1 / e in 2 km.
 constexpr double kCloudBase_km = 1.0;
 constexpr double kLapse_K_km = 6.5;
 constexpr double kVapourHeight_km = 2.0;

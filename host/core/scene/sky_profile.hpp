@@ -9,12 +9,12 @@
 
 namespace dolp {
 
-/// A sky: temperatures or radiances at zeniths, linear between them, or a layer of air before a black background.
-/// Equation: a layer has the radiance (1 - p) B(air_K) + p B(beyond_K), with the share
-/// p = (1 - emissivity)^(1 / cos(zenith)) of the background's light that passes through.
-/// Source: Granqvist and Hjortsberg, J. Appl. Phys. 52, 4205 (1981), for a plane-parallel atmosphere of one
-/// temperature. Idso, Water Resources Research 17, 295 (1981), for two vertical emissivities of clear air: the mean
-/// over 8-14 um, also used at other wavelengths, and the value at 10.5-12.5 um. Both determine the rest of 8-14 um.
+/// A sky: a table of temperatures or radiances, interpolated linearly; or kLayers, which is air in front of a black
+/// background: dark space or a cloud. Equation for air: radiance = (1 - p) B(air_K) + p B(beyond_K). The air lets the
+/// share p = (1 - emissivity)^(1 / cos(zenith)) of the background's light pass.
+/// Source: Granqvist and Hjortsberg, J. Appl. Phys. 52, 4205 (1981), for plane-parallel air of one temperature. Idso,
+/// Water Resources Research 17, 295 (1981), for the vertical emissivity of clear air: its mean over 8-14 um, also used
+/// outside 8-14 um, and its value at 10.5-12.5 um. `beside_window` follows from both numbers.
 struct SkyProfile {
   enum class Kind { kTemperature, kRadiance, kLayers };
   Kind kind = Kind::kTemperature;
@@ -27,16 +27,16 @@ struct SkyProfile {
   std::optional<double> window = {};  ///< vertical emissivity at 10.5-12.5 um; nullopt: `emissivity`
   std::optional<double> beside_window = {};  ///< vertical emissivity in the rest of 8-14 um; nullopt: `emissivity`
 
-  /// The sky has the radiance share B(first_K) + (1 - share) B(second_K) + radiance, with Planck's function B.
+  /// The radiance of the sky is share * B(first_K) + (1 - share) * B(second_K) + radiance. B is Planck's function.
   struct Emission {
     double share = 1.0;
     double first_K = 0.0;
     double second_K = 0.0;
-    double radiance = 0.0;  ///< W m-2 sr-1 um-1, in addition
+    double radiance = 0.0;  ///< W m-2 sr-1 um-1
   };
   Emission at(double wavelength_um, double zenith_deg) const;
 
-  /// Zeniths that divide the interval after row `interval` so that temperatures differ by at most a factor of two.
+  /// Zeniths that divide the interval after zenith_deg[interval] into parts with similar temperatures, for ends_deg().
   std::vector<double> temperature_divisions_deg(std::size_t interval) const;
   /// Zeniths from 0 to 90 between which the profile is a smooth function of zenith.
   std::vector<double> ends_deg() const;

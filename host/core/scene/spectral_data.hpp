@@ -34,8 +34,8 @@ struct SpectralRow {
   std::size_t line;
 };
 
-/// Sorts `rows` and appends them, but no duplicates and no wavelength outside kWavelengthUmRange. `named`: name and
-/// range of the values. Errors: InputError with file and line for two values at one wavelength; errors of append_row.
+/// Appends `rows`, sorted by wavelength. Skips repeated rows and wavelengths outside kWavelengthUmRange. `named`: name
+/// and range of the values. Errors: InputError with file and line if a wavelength has two values or one out of range.
 void append_rows(SpectralTable& table, std::vector<SpectralRow> rows, const NamedValue& named, const std::string& file);
 
 /// A row of a CSV that has values over an angle from 0 to 90 degrees and, in some files, over wavelength.

@@ -7,7 +7,7 @@
 namespace dolp {
 namespace {
 
-// Chosen. Allowed error of a sky as a sum of functions, relative to the tolerance. Each function slows a kernel by 1/6.
+// Allowed error, relative to the tolerance, of the functions that replace a sky. Each one slows a kernel by 1/6.
 constexpr double kBasisShare = 0.02;
 
 Eigen::VectorXd vector_of(const std::vector<double>& values) {

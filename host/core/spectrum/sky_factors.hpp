@@ -13,7 +13,8 @@ namespace dolp {
 /// The radiance of a scene's profile at a wavelength. Units: W m-2 sr-1 um-1.
 double sky_radiance(const SkyProfile& profile, double wavelength_um, double zenith_deg);
 
-/// Samples pi times the radiance of a sky at nodes(). mean(): exitance of the uniform sky with the same irradiance.
+/// at() gives pi L at the zeniths nodes(), where L is the radiance of the sky. mean() gives pi L of the uniform sky
+/// that has the same irradiance.
 class SkySampler {
  public:
   explicit SkySampler(const SkyProfile& profile);
@@ -27,10 +28,12 @@ class SkySampler {
   Eigen::VectorXd mean_weights_;
 };
 
-/// Functions whose weighted sums approximate each variant's sky minus its mean. Null if all skies are uniform.
+/// Functions of the zenith. Their weighted sums approximate the sky of each variant, minus the mean of this sky. Null
+/// if all skies are uniform.
 std::shared_ptr<const SkyBasis> sky_basis(const SceneModel& scene, const std::vector<SceneVariant>& variants);
 
-/// For each sample of `rule`, weights with which the functions add up to the sky minus its mean. Empty without a basis.
+/// For each sample of `rule`, the weights of the basis functions. Their weighted sum approximates the sky, minus the
+/// mean of the sky. Empty without a basis.
 std::vector<SkyWeights> sky_weights(const SpectralRule& rule, const SkyBasis* basis);
 
 }  // namespace dolp

@@ -25,23 +25,25 @@ using FineRule = boost::math::quadrature::gauss<double, 16>;
 // change of the exponent h c / (lambda k_B T), and ratio of its longest to its shortest wavelength.
 constexpr double kPieceExponentChange = 4.0;
 constexpr double kPieceWavelengthRatio = 1.5;
-// h c / k_B in um K, for this exponent. Planck's function underflows if the exponent is above kLargestPlanckExponent.
+// h c / k_B in um K. Planck's function underflows if the exponent h c / (lambda k_B T) exceeds kLargestPlanckExponent.
 constexpr double kExponentScale_umK = 14388.0;
 constexpr double kLargestPlanckExponent = 750.0;
 constexpr double kPieceRelativeError = 1e-12;  // relative error of a sum over pieces
 
-// Allowed nodes_error of a segment, with kSmallestPart as `least`. At most kMostNodes nodes are tried.
+// The band is cut into segments at the rows of the optical tables and, with films, at fringe_ends(). A segment gets the
+// fewest Gauss nodes for which nodes_error(..., kSmallestPart) is at most kNodesRelativeError, or kMostNodes nodes.
 constexpr double kNodesRelativeError = 1e-10;
 constexpr double kSmallestPart = 1e-4;
 constexpr int kMostNodes = 24;
-// Probes test the nodes of a segment. They are angles of incidence on the smooth surface: fixed ones, and the critical
-// angles at kCriticalShares of the segment. The error bound is kProbeSafety times the largest error at a probe.
+// A probe is an angle of incidence on the smooth surface. The nodes of a segment are tested at probes. Some probes are
+// fixed. The other probes are critical angles of total reflection, at wavelengths that kCriticalShares places in the
+// segment. The error bound is kProbeSafety times the largest error at a probe.
 constexpr double kProbeSafety = 10.0;
 constexpr std::array<double, 7> kProbeCosines = {1.0, 0.5, 0.25, 0.15, 0.1, 0.07, 0.04};
 constexpr std::array<double, 7> kCriticalShares = {0.03, 0.19, 0.34, 0.52, 0.67, 0.81, 0.96};
-// If kMostNodes nodes leave an error above kShareOfTolerance of the tolerance, the segment is cut into panels, which
-// have kPanelNodes nodes each. The number of panels grows until the error is below kPanelShareOfTolerance of the
-// tolerance, or until the band has about kMostPanels. Mirrors may have more panels, because their moments are cheap.
+// If kMostNodes nodes leave an error above kShareOfTolerance times the tolerance, the segment is cut into panels with
+// kPanelNodes nodes each. Their number doubles until the error is at most kPanelShareOfTolerance times the tolerance,
+// or until the band has about kMostPanels. A mirror may have kMostMirrorPanels, because its moments are cheap.
 constexpr double kShareOfTolerance = 0.005;
 constexpr double kPanelShareOfTolerance = 0.03;
 constexpr int kLeastPanels = 4;
@@ -214,7 +216,7 @@ std::vector<SpectralSample> samples_at(const SceneModel& scene, const std::vecto
   return samples;
 }
 
-/// Wavelengths that divide the band into parts in which the films cause at most one interference fringe each.
+/// Wavelengths that divide the band into parts in which the films cause about one interference fringe each.
 std::vector<double> fringe_ends(const SceneModel& scene) {
   const double from = 1.0 / scene.spectrum.max_um;
   const double to = 1.0 / scene.spectrum.min_um;
@@ -268,8 +270,8 @@ std::vector<ProbeSums> exact_sums(const Surface& surface, const std::vector<Fine
   return sums;
 }
 
-/// Largest relative error of ProbeSum::s and ProbeSum::p, if they are computed from `samples`. The divisor is the
-/// smaller of the integrals of reflectance and absorptance, or `least` times ProbeSum::whole if that is larger.
+/// Largest relative error of ProbeSum::s and ProbeSum::p, if they are computed from `samples`. The errors are divided
+/// by the reflected or the absorbed radiation, whichever is less, but at least by `least` times ProbeSum::whole.
 double nodes_error(const std::vector<SpectralSample>& samples, const std::vector<ProbeSums>& exact,
                    const std::vector<double>& cosines, double least) {
   double worst = 0.0;
@@ -320,7 +322,6 @@ SegmentRule smooth_segment(const SceneModel& scene, double from_um, double to_um
   return rule;
 }
 
-/// Cuts a segment into panels of equal width with kPanelNodes samples each. Computes the error of all panels together.
 SegmentRule segment_of_panels(const SceneModel& scene, double from_um, double to_um, int panels,
                               const std::vector<double>& cosines) {
   SegmentRule rule;
@@ -337,7 +338,7 @@ SegmentRule segment_of_panels(const SceneModel& scene, double from_um, double to
   return rule;
 }
 
-/// Adds the samples of a segment to `panels` if it needs panels, else to `rule`. A segment lies between two table rows.
+/// Adds the samples of a segment to `panels` if it needs panels, else to `rule`.
 void append_segment(const SceneModel& scene, double from_um, double to_um, SpectralRule& rule,
                     std::vector<SpectralSample>& panels) {
   const std::vector<FineNode> fine = fine_nodes(scene, from_um, to_um);

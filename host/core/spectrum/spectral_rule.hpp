@@ -17,11 +17,11 @@ struct KeptEffects {
   bool path_radiance = true;  ///< radiance of the path; the transmittance is always kept, and cancels in DOLP
   bool diffuse = true;
   bool further_bounces = true;  ///< bounces in V-grooves after the first one
-  bool moments = true;          ///< specular part of rho at theta; in bistatic mode, at the zenith of the view
+  bool moments = true;  ///< moments for the specular part of rho: at theta, or in bistatic mode at the view zenith
   friend bool operator==(const KeptEffects&, const KeptEffects&) = default;
 };
 
-/// Integrals over wavelength of radiation times a weight. Units: W m-2 over a band, W m-2 um-1 at one wavelength.
+/// Radiation times a weight: over a band its integral in W m-2, at one wavelength its value in W m-2 um-1.
 struct SpectralFactors {
   double emitted = 0.0;          ///< pi B(T); 0 without [emission]
   double surroundings = 0.0;     ///< pi B(T_surr), or pi times the mean of a sky profile; 0 without [surroundings]
@@ -33,16 +33,16 @@ struct SpectralFactors {
   void add(const SpectralFactors& more, double factor);
 };
 
-/// A refractive index at which moments are needed, and the factors that multiply these moments. Between two rows of the
-/// material's table, rho is interpolated by the polynomial through its values at Gauss nodes. So the integral of rho
-/// times a radiation F is a sum of rho w over these nodes, where w is the integral of F times the node's Lagrange
-/// polynomial. w may be negative.
+/// A refractive index, and the factors of its reflectance rho. Between two rows of the material's table, rho is the
+/// polynomial through its values at Gauss nodes. So the integral of rho times a radiation F is a sum over the nodes:
+/// rho at the node times a factor. The factor is the integral of F times the Lagrange polynomial of the node. It may be
+/// negative.
 struct SpectralSample : SpectralFactors {
   FacetOptics index;
   double wavelength_um = 0.0;  ///< first wavelength at which the index occurs
 };
 
-/// Number of samples in a panel. A segment in which total reflection begins is cut into panels, because rho has a kink.
+/// Number of samples in a panel. A segment is cut into panels if rho is not smooth, as where total reflection begins.
 inline constexpr std::size_t kPanelNodes = 8;
 
 struct SpectralRule {
@@ -53,14 +53,14 @@ struct SpectralRule {
   std::vector<FacetOptics> indices() const;
 };
 
-/// Samples for the spectrum of a scene. A single wavelength or a constant index needs one sample. Otherwise each
-/// segment between rows of the material's table gets enough Gauss nodes for the reflectances of the smooth surface.
-/// Accuracy: 1e-9 relative for band integrals (tests SpectralRule_*Band*), except in panels.
+/// Samples for the spectrum of a scene. A single wavelength or a constant index needs one sample. Otherwise the band is
+/// cut at the rows of the material's table. Each part gets as many Gauss nodes as the smooth surface needs.
+/// Accuracy: SpectralRule::relative_error. It is about 1e-9 without films and panels (tests SpectralRule_*Band*).
 SpectralRule spectral_rule(const SceneModel& scene);
 
-/// Estimates the error of a sum over the samples of all panels. `term(j, m)`: the term of sample j, computed with the
-/// moments of sample m. In each panel, the moments at four samples are interpolated to the other four. The result adds
-/// up the errors of the terms there (tests Bands_*).
+/// Estimates the error of a sum over the samples of all panels (tests Bands_*). `term(j, m)`: the term of sample j,
+/// computed with the moments of sample m. In each panel, moments are interpolated from samples 0, 2, 4 and 6 to samples
+/// 1, 3, 5 and 7. This changes the terms of samples 1, 3, 5 and 7. The estimate is the sum of the changes.
 template <typename Term>
 double panel_error(const SpectralRule& rule, const Term& term) {
   double error = 0.0;

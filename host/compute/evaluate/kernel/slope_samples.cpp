@@ -21,7 +21,7 @@ namespace {
 constexpr double kWidthStep = 1.3;
 constexpr double kNodeWidthStep = 0.4;  // largest step of ln(m) between the widths m in corners_of()
 
-constexpr double kNoFacets = 80.0;  // skips a piece if less than exp(-kNoFacets) of the facets are steeper than it
+constexpr double kNoFacets = 80.0;  // skips pieces at slopes that less than exp(-kNoFacets) of the facets exceed
 
 struct SampleRequest {
   double all = 0.0;  // estimate of the light that all facets reflect upward, from weight_of_shape()
@@ -43,8 +43,8 @@ struct SlopeWeights {
   Eigen::ArrayXd common;
 };
 
-// Returns some artificial shapes. The nodes are chosen for them, because there may be very many wanted shapes. Their
-// widths m go from the smallest to the largest wanted m. Each width occurs with the smallest and with the largest q.
+// Returns some artificial shapes. The nodes are chosen for them, because there may be very many wanted shapes. The
+// artificial widths m go from the smallest to the largest wanted m. Each occurs with the smallest and the largest q.
 std::vector<kernel::ShapeNode> corners_of(const KernelData& data, std::span<const std::uint32_t> shapes) {
   kernel::ShapeNode corner = data.shapes[shapes.front()];
   double widest = corner.m, lightest = corner.q_minus_1;

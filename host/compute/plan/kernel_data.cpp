@@ -122,7 +122,7 @@ void add_direction(KernelData& data, const MomentsRequest& request, double theta
   data.pieces.push_back(pieces);
 }
 
-// A slope t. Less than `share` of the facets are steeper than t, and they add less than `share` to the mean slope.
+// A slope t. Less than `share` of the facets are steeper than t, and they make up less than `share` of the mean slope.
 double slope_cut(const MomentsRequest& request, const SlopeShape& shape, double share) {
   const double m = slope_width(shape);
   if (request.distribution == Distribution::kGaussian) return m * std::sqrt(1.0 - std::log(share));

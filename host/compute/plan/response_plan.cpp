@@ -135,7 +135,8 @@ class Combination {
     const Sums i(all, Responses::kI, Responses::kIApart, reflected_);
     const Sums q(all, Responses::kQ, Responses::kQApart, split_);
     // There are two ways to the moments of an index: a sum for its whole reflectance curve, or the moments of the
-    // reference index plus a sum for the difference of the curves. The second is better for similar curves.
+    // reference index plus a sum for the difference of the curves. The second is more accurate if the curves are
+    // similar or if little light is absorbed.
     const Sums more_absorbed = Sums::of_difference(all, Responses::kI, Responses::kIApart, absorbed_apart_);
     const Sums more_split = Sums::of_difference(all, Responses::kQ, Responses::kQApart, split_apart_);
     const ResponseWeights& of_reference = request_.basis->of_reference();

@@ -192,7 +192,7 @@ void set_errors(Moments& moments, const kernel::MomentsNode& node, const KernelD
   const double largest_difference =
       std::max({node.reflected_difference, node.albedo_difference, node.deficit_difference});
   moments.albedo_error = shares.pair * largest_difference + shares.of_masked() * std::abs(node.albedo) + shares.cut;
-  // With total reflection the absorbed part may be far smaller than r_i. So its error is relative to the albedo.
+  // With total reflection, the deficit may be far smaller than r_i. So the deficit error is relative to the albedo.
   const bool is_critical = data.indices[entry.index].critical_cos > 0.0;
   const double deficit_terms = std::max(std::abs(deficit_scale), is_critical ? std::abs(node.albedo) : 0.0);
   const bool is_multiple = data.scattering == Scattering::kMultiple;

@@ -19,8 +19,8 @@ bool is_finite(const Moments& m) {
          std::isfinite(m.r_i_error + m.r_q_error + m.albedo_error + m.deficit_error);
 }
 
-/// Interpolates the moments for each pair of direction and index, if the moments at its nodes are finite. Returns one
-/// flag per entry: 1 if the entry is wanted and still has to be computed.
+/// For each pair of a direction and an index, `nodes` has moments at some slope distributions. If they are all finite,
+/// interpolates the pair's moments from them. Returns a flag per entry: 1 if it is wanted and was not interpolated.
 std::vector<char> interpolate_all(const ShapePlan& plan, std::span<const Moments> nodes, const MomentsRequest& request,
                                   std::span<Moments> moments) {
   const std::size_t of_nodes = plan.nodes_of_a_direction();

@@ -23,13 +23,13 @@ using std::numbers::pi;
 
 constexpr int kLargestOrder = 16;  // must equal kInPlaneOrder of physics/in_plane.glsl
 
-// The masking G is an integral over slopes. The integral ends where only a share exp(-kCutExponent) is steeper.
+// The masking G is an integral over slopes. It ends where the density of slopes is exp(-kCutExponent) of its maximum.
 constexpr double kCutExponent = 45.0;
 
-// Least sigma with which the masking G is computed. For a smaller one, squares of slope / m would overflow.
+// The masking G is computed with at least this sigma. Otherwise (slope / m)^2 would overflow, with m = sqrt(2) sigma.
 constexpr double kSmallestMaskingSigma = 1e-15;
 
-// The difference N^2 - sin^2(beta) has too few digits if it is below this share of N^2 and of sin^2(beta).
+// If |N^2 - sin^2(beta)| is below this share of |Re(N^2)| or sin^2(beta), exact_w_squared() avoids a loss of digits.
 constexpr double kCritical = 1e-6;
 constexpr double kSmallestSquare = 1e-300;
 constexpr double kSmallestFacetCosine = 1e-12;

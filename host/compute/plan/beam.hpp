@@ -18,20 +18,21 @@ struct BeamGeometry {
 /// Domain: zeniths from 0 to 90 degrees, but not both 90. In the retro direction, eta_i = eta_r = 0.
 BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_phi_deg);
 
-/// Inputs of the kernel for one entry. The pBRDF is the kernel's result times 2^power.
+/// Inputs of the kernel for one entry. The kernel's result times 2^power is the pBRDF times cos(theta_i) cos(theta_r).
+/// The factor 2^power is apart, because a float cannot hold very small slope densities.
 struct Beam {
   kernel::BeamNode node{};
   int power = 0;
 };
 
-/// Makes the beams of a request, which must outlive the object. The host computes the geometry, the slope density and
-/// the reflection of the facet, because a float would lose too many digits in some directions.
+/// Makes the beams of a request. The request must outlive the object. The host computes the geometry, the slope density
+/// and the reflection of the facet, because a float would lose too many digits in some directions.
 class BeamPlan {
  public:
   explicit BeamPlan(const ScatteringRequest& request);
   Beam operator()(const ScatteringEntry& entry) const;
 
-  /// The pBRDF of all bounces, with its error bound. `unit_roundoff` is the roundoff of the kernel's precision.
+  /// The ScatteringMatrix of all bounces. `unit_roundoff` is the roundoff of the kernel's precision.
   ScatteringMatrix matrix(const kernel::MuellerNode& node, const Beam& beam, const ScatteringEntry& entry,
                           double unit_roundoff) const;
 
@@ -45,15 +46,14 @@ class BeamPlan {
 };
 
 /// Adds the light after two and more bounces to `f`, the pBRDF of the first bounce times cos(theta_i) cos(theta_r).
-/// Returns the number of computed bounces, a measure of the time.
-/// Equation: shaders/physics/README.md, section 3.
+/// Returns the number of computed bounces, a measure of the time. Equation: shaders/physics/README.md, section 3.
 /// Domain: masking v-cavity. In the mirror direction, grooves of all azimuths contribute, and the result is NaN.
 /// Accuracy: relative error `accuracy` of the added m00. If a strong reflector needs more than kMostBouncesOfBeam
 /// bounces, f.error includes a bound of the light that they may add.
 int add_further_bounces(ScatteringMatrix& f, const ScatteringRequest& request, const ScatteringEntry& entry,
                         double accuracy);
 
-/// ln(D / 4), with the density D of the facet normals, at a slope.
+/// ln(D / 4) at a slope. D is the density of the facet normals, and the pBRDF contains D / 4.
 double log_density(Distribution distribution, const SlopeShape& shape, double slope);
 
 }  // namespace dolp

@@ -16,11 +16,10 @@ namespace {
 using std::numbers::pi;
 
 constexpr unsigned kRoots = kRootAbove | kRootBelow;
-constexpr double kNoEnd = 1e30;  // a finite slope that is larger than every other slope
-
+constexpr double kNoEnd = 1e30;       // stands for an infinite slope; larger than every other breakpoint
 constexpr double kCoincident = 1e-9;  // breakpoints within this relative distance differ only by rounding
 
-constexpr std::size_t kMostSkyBreakpoints = 60;  // most breakpoints of a direction with a sky
+constexpr std::size_t kMostSkyBreakpoints = 60;  // a sky adds breakpoints until a direction has this many
 
 // Long ranges of slopes, as in grazing directions, are also divided at these slopes.
 constexpr std::array kPlainBreakpoints = {30.0, 3e5};
@@ -45,7 +44,7 @@ void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   add(a.cos / (2.0 * critical), 0.0);
   add(a.cos / critical, 0.0);
   if (masking != Masking::kVCavity || a.cos <= 0.0) return;
-  const double at_slope_1 = std::sqrt(0.5);  // cos(alpha) at slope 1; the slopes of these two lines are smaller
+  const double at_slope_1 = std::sqrt(0.5);  // cos(alpha) at slope 1. V-cavity masking adds two lines at smaller slopes
   add(0.5 * critical / a.cos, at_slope_1);
   add(critical / (std::hypot(a.cos, 2.0 * critical) - a.cos), at_slope_1);
 }
@@ -139,7 +138,7 @@ void add_sky_breakpoints(std::vector<Breakpoint>& points, double theta_deg, cons
   }
 }
 
-// Splits each piece once more, so that its rules get other nodes.
+// Splits each piece once more. So the rules get other nodes, and the result can check a run without these splits.
 void add_extra_splits(std::vector<Breakpoint>& points) {
   constexpr double kShare = 0.43;
   const std::size_t count = points.size();
@@ -153,7 +152,7 @@ void add_extra_splits(std::vector<Breakpoint>& points) {
 
 }  // namespace
 
-// Most breakpoints are slopes at which a line that splits the azimuths (arcs.glsl) meets another line, phi = 0 or pi.
+// At most breakpoints, a line that splits the azimuths (arcs.glsl) meets the plane of incidence or another such line.
 std::vector<Breakpoint> breakpoints(double theta_deg, const MomentsRequest& request, const DirectionVariant& variant,
                                     const SkyTable& sky, int splits) {
   const CosSin a = cos_sin_deg(theta_deg);

@@ -1,7 +1,7 @@
 // Constants that steer cost or accuracy. They are tuned by hand unless a comment says otherwise.
-// Three numbers behind a constant are evaluations per entry: with half the value, with the value and with double the
-// value. They are means over 150 ordinary entries of each masking concerned, at the tolerance 1e-4 (`dolp-calibrate
-// check`), or over the entries that a section names. A constant without numbers changes the work by less than 1 %.
+// Three numbers behind a constant are evaluations per entry: with half its value, with its value and with double its
+// value. They are means at the tolerance 1e-4: over 150 ordinary entries for each masking that uses the constant
+// (`dolp-calibrate check`), or as a section says. A constant without numbers changes the work by less than 1 %.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ inline constexpr double kCoarseShare = 0.8;  // nodes of the coarser rule divide
 inline constexpr double kNodesPerDigit = 1.2;  // 502, 461, 425
 /// Pieces are split at a kink of the masking G if the error without the split would exceed this share of the tolerance.
 inline constexpr double kLineShare = 0.1;  // 471, 461, 452
-/// Nodes over the azimuth cluster at the kink of `integral` masking if q is below this value times the required digits.
+/// `integral` masking: nodes cluster at the azimuth of its kink if q is below this value times the required digits.
 inline constexpr double kClusterBelowQ = 0.3;  // 563, 608, 609
 /// Gaussian slopes with `integral` masking: the kink of the masking (needs_line() in rule.hpp) is split if sigma
 /// exceeds kLineSigma. If more than kTightDigits digits are required, it is split if sigma exceeds kTightLineSigma.
@@ -29,12 +29,12 @@ inline constexpr double kGaussianCuspPower = 4.0;
 inline constexpr int kPlainOrder = 64;
 inline constexpr double kOrderPerDigit = 8.0;
 /// In grooves the azimuths are split where the number of bounces changes, up to (required digits) / kDigitsPerSplit
-/// bounces. With half the value, the value and double the value, 5, 11 and 23 % of the entries miss the tolerance.
+/// bounces. 11 % of the entries miss the tolerance. With half this constant 5 % miss it, with twice this constant 23 %.
 inline constexpr double kDigitsPerSplit = 2.0;  // 2350, 1765, 1394
 /// Nodes that each interference fringe of a film adds: per piece of the slope axis, and per radian of azimuth.
 inline constexpr double kNodesOfFringe = 2.0;
 inline constexpr double kCurveRoundings = 4.0;  // rounding of sqrt(cos(beta)) in a reflectance table, in unit roundoffs
-/// A ray in a groove is followed until less than this share of the tolerance is left of its light.
+/// A ray in a groove is followed until the rest of its light is below this share of the tolerance.
 inline constexpr double kDimmest = 1e-10;
 
 // ---- Slopes (breakpoints.cpp, kernel_data.cpp)
@@ -47,9 +47,9 @@ inline constexpr double kLongWay = 300.0;
 inline constexpr double kSmallestHeavyTableScale = 1e-4;
 inline constexpr double kLightTailQ = 1.5;
 inline constexpr double kLargestTableScale = 0.5;
-inline constexpr double kSteepStep = 16.0;  // steep grooves: ratio of the bounces at neighbouring breakpoints
-inline constexpr int kCriticalBounces = 3;  // slopes are split where total reflection begins, up to this bounce
-/// Tolerance of the responses divided by the tolerance of the request. A sum of responses adds their errors.
+inline constexpr double kSteepStep = 16.0;  // steep grooves: ratio of the bounce numbers at neighbouring breakpoints
+inline constexpr int kCriticalBounces = 3;  // slopes are split where bounces up to this one become total reflections
+/// Responses (glossary of host/README.md) get this share of the tolerance, because a sum of responses adds errors.
 inline constexpr double kResponseTolerance = 0.25;
 inline constexpr double kResponseRoundings = 4.0;  // rounding of x in chebyshev_at() (columns.glsl), in unit roundoffs
 
@@ -62,7 +62,7 @@ inline constexpr std::uint32_t kMostSkyCells = 1U << 15U;       // most cells of
 inline constexpr std::uint32_t kMostTightSkyCells = 1U << 18U;  // most cells at tolerances below kTightSky
 inline constexpr double kTightSky = 1e-5;
 inline constexpr double kSkyTableShare = 0.05;  // a table may differ from its function by this share of the tolerance
-/// Error bound of a sky's table, divided by its largest error in the middle of a cell and at a corner.
+/// The error bound of a sky's table is this factor times the largest error found in the middle of cells and at corners.
 inline constexpr double kSkyTableSafety = 1.25;  // 690, 690, 690; 465, 465, 479
 /// A function of a sky has a corner where its derivative over u = sqrt(1 - cos(theta_r)) jumps by more than this.
 inline constexpr double kLeastBend = 1e-2;
@@ -92,7 +92,7 @@ inline constexpr double kExtremeTailQ = 1.01;
 inline constexpr double kCriticalRoundings = 300.0;
 inline constexpr double kMostCriticalRoundings = 3000.0;
 inline constexpr double kSmoothM = 0.05;
-/// Factors from the difference between the finer and the coarser rule to the error bound.
+/// The error bound of a sum is one of these factors times the difference between the finer and the coarser rule.
 inline constexpr double kPairFactor = 4.0;
 inline constexpr double kTablePairFactor = 8.0;    // with a masking table
 inline constexpr double kGroovePairFactor = 10.0;  // in grooves
@@ -101,8 +101,9 @@ inline constexpr double kCriticalFactor = 2.0;     // total reflection: an addit
 inline constexpr double kLeastShareOfTolerance = 0.1;
 /// Upper bound of the rounding error of moments in grooves, divided by the unit roundoff and by cos(theta).
 inline constexpr double kGrooveRoundings = 4.0;
-/// In grooves with many bounces the kernel treats several as one. The errors are relative to the light that enters: in
-/// general, and from kVeryManyBounces bounces. Fitted (tests/compute/evaluate/grooves_test.cpp).
+/// After many bounces of a ray in a groove, the kernel treats several bounces as one. The error that this causes is a
+/// share of the light that enters: at most kManyBouncesError, and from kVeryManyBounces bounces on at most
+/// kVeryManyBouncesError. These numbers are fitted (tests/compute/evaluate/grooves_test.cpp).
 inline constexpr double kManyBouncesError = 1e-3;
 inline constexpr double kVeryManyBounces = 1024.0;
 inline constexpr double kVeryManyBouncesError = 1e-2;
@@ -114,8 +115,7 @@ inline constexpr double kNotGrazing = 0.6;
 /// Most bounces whose light the pBRDF of grooves contains. The work grows as the square of this number.
 inline constexpr int kMostBouncesOfBeam = 1000;
 inline constexpr double kNegligibleBounces = 0.01;  // share of the wanted accuracy that the omitted bounces may take
-/// Replaces a smaller 2q - 3 as the divisor in beyond_last() (further_bounces.cpp).
-inline constexpr double kSlowestFall = 0.1;
+inline constexpr double kSlowestFall = 0.1;  // beyond_last() in further_bounces.cpp divides by 2q - 3, at least by this
 
 // ---- Grids (shape_plan.cpp, rows.cpp, refinement.cpp). The numbers are million evaluations of `dolp table` for 32^3
 // entries at 1e-4 (theta to 85 degrees, sigma 0.05 to 1, q 1.75 to 6): with `integral`, then with smith masking.
@@ -123,10 +123,10 @@ inline constexpr double kSlowestFall = 0.1;
 /// An interpolated axis (sigma or q) has kFirstShapeNodes more nodes than its digits need, at least kLeastShapeNodes.
 inline constexpr double kLeastShapeNodes = 6.0;
 inline constexpr double kFirstShapeNodes = 3.0;  // 1.87, 1.87, 2.44; 1.70, 1.81, 2.37
-/// Interpolation needs kLeastAxisGain values per node of an axis and kLeastShapeGain entries per node of a grid.
+/// To be interpolated, an axis needs kLeastAxisGain values per node, and a grid kLeastShapeGain entries per node.
 inline constexpr double kLeastAxisGain = 1.25;     // 1.87, 1.87, 3.84; 1.81, 1.81, 2.66
 inline constexpr std::size_t kLeastShapeGain = 2;  // 1.87, 1.87, 3.84; 1.81, 1.81, 2.66
-/// Tolerance of the nodes divided by the tolerance of the request: below 1, because an interpolation adds errors. The
+/// Moments at the nodes of an interpolation get this share of the tolerance, because the interpolation adds errors. The
 /// number of nodes is chosen for kExtraShapeDigits more digits than the tolerance has.
 inline constexpr double kShapeNodeTolerance = 0.125;  // 2.03, 1.87, 1.75; 1.86, 1.81, 1.78
 inline constexpr double kExtraShapeDigits = 1.0;      // 1.84, 1.87, 2.33; 1.75, 1.81, 2.32
@@ -136,7 +136,7 @@ inline constexpr int kLastShapeCoefficients = 3;
 inline constexpr double kSlowestShapeFall = 0.9;
 /// Largest ratio of two values of q - 1 in a kernel row. Shapes that differ more need nodes at other slopes.
 inline constexpr double kMostRowSpread = 6.0;
-/// Kernel rows have room for kRowWidth entries if a grid fills more than this share of the room; otherwise for one.
+/// A kernel row has kRowWidth places for entries if a grid fills more than this share of all places; otherwise one.
 inline constexpr double kLeastRowUse = 0.5;  // 1.87, 1.87, 5.63; 1.81, 1.81, 5.60
 /// If the error of an entry is f times the tolerance, it is computed again. The new tolerance is smaller by the factor
 /// f * kRefinementSafety. In powers of ten, this factor lies between kLeastDecades and kMostDecades.

@@ -16,7 +16,7 @@
 namespace dolp {
 namespace {
 
-constexpr double kRounding = 1e-8;  // relative rounding error of these bounds and of a run's sums over a band
+constexpr double kRounding = 1e-8;  // relative rounding error of the bounds, and of sums over spectral samples
 constexpr double kRoundingOfOne = 1e-13;
 constexpr double kSmallestCosine = 1e-300;  // safe as a divisor
 
@@ -57,8 +57,8 @@ Range reflectance(const std::vector<FacetOptics>& indices, double cosine) {
   return range;
 }
 
-/// Range of the slope density P at `slope`, over all sigma and q of an extent. As a function of m^2, P rises to a
-/// maximum (`peak`) and then falls. As a function of q, each factor of P only rises or only falls.
+/// Range of the slope density P at `slope`, over all sigma and q of an extent. If the slope width m grows, P rises to a
+/// maximum (at m^2 = `peak`) and then falls. Each factor of P is monotonic in q, so values at both ends of q bound it.
 Range slope_density(Distribution distribution, const EntriesExtent& extent, double slope) {
   const bool is_gaussian = distribution == Distribution::kGaussian;
   const double m2_low = std::pow(slope_width(extent.smoothest), 2);
@@ -110,7 +110,8 @@ EntriesExtent extent_of_grid(const SceneEntries& entries) {
   return extent;
 }
 
-/// All indices with their films: the scene's at each wavelength, and those of the entries with the films there.
+/// The optics of all facets. At each wavelength they are the scene's index and each index of the entries, all with the
+/// films of this wavelength.
 std::vector<FacetOptics> indices_of(const SpectralRule& rule, const EntriesExtent& extent) {
   std::vector<FacetOptics> indices = rule.indices();
   const std::vector<FacetOptics> samples = indices;

@@ -30,7 +30,7 @@ bool add_nothing(const std::vector<EffectBounds>& bounds, Part part, const KeptE
 }
 
 /// The largest bound of `part` over all variants, with the effects `kept`. For all parts except moments and profile, it
-/// is also at least the largest bound with all effects.
+/// also bounds the change in the scene with all effects.
 double worst_bound(const std::vector<EffectBounds>& bounds, Part part, const KeptEffects& kept) {
   double worst = 0.0;
   for (const EffectBounds& variant_bounds : bounds) {
@@ -42,8 +42,7 @@ double worst_bound(const std::vector<EffectBounds>& bounds, Part part, const Kep
 
 bool has_profile(const SceneValues& scene) { return scene.surroundings && scene.surroundings->profile; }
 
-/// These functions tell whether a scene has a part, in the order of Part.
-constexpr std::array<bool (*)(const SceneValues&), 8> kHasPart = {
+constexpr std::array<bool (*)(const SceneValues&), 8> kHasPart = {  // in the order of Part
     [](const SceneValues& scene) { return scene.surface.scattering == Scattering::kMultiple; },
     [](const SceneValues& scene) { return scene.surface.specular > 0.0; },
     [](const SceneValues& scene) { return scene.source.has_value(); },
@@ -67,7 +66,7 @@ void drop_effects(EffectPlan& plan, const SceneValues& scene, const std::vector<
   const double allowed = kDroppedShare * scene.accuracy.tolerance;
   for (const Part part : kDroppingOrder) {
     if (!is_kept(plan.kept, part)) continue;
-    if (part == Part::kMoments && scene.emission && scene.emission->has_bracket) continue;  // for the range of DOLP
+    if (part == Part::kMoments && scene.emission && scene.emission->has_bracket) continue;  // a bracket needs them
     const double bound = worst_bound(bounds, part, plan.kept);
     if (bound > allowed - plan.bound) continue;
     plan.kept = without(plan.kept, part);
@@ -135,7 +134,7 @@ Effect specular_row(const SceneValues& scene, const EffectPlan& plan) {
   return row;
 }
 
-/// The row about a choice of the model, for example the masking. If it is kept, `reason` follows the text `choice`.
+/// The row about a choice of the model, for example the masking. If the row is kept, its text is `choice` + `reason`.
 Effect model_row(const SceneValues& scene, const EffectPlan& plan, const char* name, const std::string& choice,
                  const SceneEntries& entries, const char* reason = ", a choice of the model: never swapped") {
   const auto is_flat = [](const SceneEntry& entry) { return entry.shape.sigma == 0.0; };

@@ -25,13 +25,13 @@ struct EntriesExtent {
   std::vector<FacetOptics> optics;
 };
 
-/// Returns one extent for a grid, because its variants have the same directions. Points have one extent per variant.
+/// A grid has one extent, because every SceneVariant has the same directions. Points have one for each SceneVariant.
 std::vector<EntriesExtent> extents_of(const SceneEntries& entries);
 
-/// Bounds of the change that each part of a scene causes at any of the entries.
-/// Derivation: let a part add (dI, dQ, dU) to the Stokes parameters. With q = (Q, U) / I, and a prime for values
-/// without the part, q - q' = ((dQ, dU) - q dI) / I'. Kirchhoff's law bounds these terms. With the exitances E of the
-/// emission, S of the surroundings and X of the source, I = E + (S - E + X) rho_I and Q = (S - E + X) rho_Q.
+/// Bounds of the change of p = (Q, U) / I that each part of a scene causes at any of the entries.
+/// Derivation: let a part add (dI, dQ, dU) to the Stokes parameters, and let a prime mark values without the part. Then
+/// p - p' = ((dQ, dU) - p dI) / I'. Kirchhoff's law bounds I and Q: I = E + (S - E + X) rho_I and
+/// Q = (S - E + X) rho_Q, with the exitances E of the emission, S of the surroundings and X of the source.
 class EffectBounds {
  public:
   EffectBounds(const SceneModel& scene, const EntriesExtent& extent);
@@ -53,9 +53,9 @@ class EffectBounds {
 
   SceneModel scene_;
   bool is_bistatic_;
-  SpectralSample total_;       ///< sums over the spectral samples, of absolute values except `emitted`
+  SpectralSample total_;       ///< sums over the spectral samples; all members but `emitted` sum absolute values
   double sky_apart_ = 0.0;     ///< largest difference between a sky profile and its mean
-  bool has_negative_ = false;  ///< true if a spectral weight is negative, as interpolation may give
+  bool has_negative_ = false;  ///< true if a spectral weight is negative, which SpectralSample allows
   double path_;
   double most_specular_ = 0.0;  ///< upper bound of the specular rho_I
   double most_diffuse_ = 0.0;   ///< upper bound of the diffuse rho
@@ -76,7 +76,7 @@ struct EffectPlan {
 };
 
 /// Drops parts as long as their bounds (EffectBounds) sum to at most kDroppedShare of the tolerance. The order is:
-/// source, surroundings, their profile, emission, path, moments, further bounces. Each bound is for the scene without
+/// source, surroundings, their profile, emission, path, moments, further bounces. Each bound covers the scene without
 /// the parts dropped before. The diffuse part and choices of the model (such as the masking) are never dropped.
 EffectPlan plan_effects(const SceneValues& scene, const SceneEntries& entries, bool keep_all);
 

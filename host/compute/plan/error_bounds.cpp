@@ -15,7 +15,6 @@ namespace {
 using std::numbers::pi;
 
 constexpr double kCosineRounding = 2.0 * std::numeric_limits<double>::epsilon();
-
 constexpr double kGrazingCosine = 1e-9;  // smaller cosines of theta count as this one
 
 // Relative rounding error of a sum, in unit roundoffs. It is large for heavy tails, where the masking table is a sum of
@@ -67,7 +66,7 @@ double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const k
   return masking_bound(data.distribution, data.masking, theta, shape) * (theta.c * tail + theta.s * slopes);
 }
 
-// Error of the masking G, relative to the albedo. With smith masking and Cauchy slopes it is infinite at q = 3/2.
+// Error of the masking G, as a share of the albedo. It is infinite for smith masking and Cauchy slopes at q = 3/2.
 double masking_error(const KernelData& data, const MomentsEntry& entry, double unit_roundoff) {
   if (!data.needs_masking_table()) return 0.0;
   const kernel::ThetaNode& theta = data.thetas[entry.theta];
@@ -86,9 +85,10 @@ double reflectance_s(const kernel::IndexNode& index, double cos_beta) {
   return std::min(1.0, std::norm((cos_beta - w) / (cos_beta + w)));
 }
 
-// Upper bound of the share of light that is left after `bounces` bounces with cos(beta) >= a/2, where a is the length
-// of the ray's direction across the groove. For each `level` the bound has two terms. Azimuths with a < level (their
-// share is `missed`) keep at most the share `most`. The others keep R_s at cos(beta) = level/2, to the power `bounces`.
+// Upper bound of the share of light that is left after `bounces` bounces with cos(beta) >= a/2. Here a is the length of
+// the ray's unit vector, projected on the plane across the groove. Every `level` gives a bound, and the least one is
+// returned. At azimuths with a < level (the share `missed`), at most the share `most` of the light is left. At all
+// other azimuths, each bounce leaves at most R_s at cos(beta) = level/2.
 double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index, double bounces, double most) {
   double least = most;
   for (double level = 1.0; level > 1e-6; level *= 0.5) {
@@ -101,9 +101,9 @@ double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index
   return least;
 }
 
-// Upper bound of the share of light that facets steeper than ShapeNode::cut reflect. R_s falls as cos(beta) grows, so a
-// lower limit of cos(beta) gives a bound. At slope t, a ray that leaves after one bounce has cos(beta) > cos(theta)
-// sqrt(1 + t^2) / 2. In grooves, at least t min(pi/3, pi/2 - theta) - 1 bounces have the limit a/2 of left_after().
+// Upper bound of the share of light that facets steeper than ShapeNode::cut reflect, from R_s at the least cos(beta). A
+// ray that leaves a facet of slope t after one bounce has cos(beta) > cos(theta) sqrt(1 + t^2) / 2. In grooves, at
+// least t min(pi/3, pi/2 - theta) - 1 bounces have cos(beta) >= a/2, as left_after() requires.
 double steep_reflectance(const KernelData& data, const kernel::IndexNode& index, const kernel::ThetaNode& theta,
                          const kernel::ShapeNode& shape) {
   if (data.scattering == Scattering::kSingle) {
@@ -115,7 +115,7 @@ double steep_reflectance(const KernelData& data, const kernel::IndexNode& index,
 }
 
 // Bound of the error in grooves with more than DOLP_MOST_BOUNCES bounces, where the kernel treats several bounces as
-// one. `reflected` is the light that the kernel computes for these grooves. Up to `least` it is itself the bound.
+// one. `reflected`, the light that the kernel computes for these grooves, is itself the bound if it is below `least`.
 double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::IndexNode& index,
                           const kernel::ShapeNode& shape, double reflected, double least) {
   const auto beyond = [&](double bounces, double most) {
@@ -151,7 +151,7 @@ double response_rounding(std::size_t degree, double unit_roundoff) {
 struct Shares {
   double cut = 0.0;            ///< bound of the albedo of facets steeper than ShapeNode::cut
   double reflected_cut = 0.0;  ///< bound of the light that these facets reflect
-  double grooves = 0.0;        ///< error of r_i because of grooves with many bounces
+  double grooves = 0.0;        ///< error of r_i and deficit in grooves: many bounces, rounding, light not followed
   double masking = 0.0;        ///< relative error of G
   double rounding = 0.0;       ///< relative rounding error
   double least = 0.0;          ///< least error bound of a sum, relative to the sum
@@ -192,7 +192,7 @@ void set_errors(Moments& moments, const kernel::MomentsNode& node, const KernelD
   const double largest_difference =
       std::max({node.reflected_difference, node.albedo_difference, node.deficit_difference});
   moments.albedo_error = shares.pair * largest_difference + shares.of_masked() * std::abs(node.albedo) + shares.cut;
-  // With total reflection the absorbed part may be far smaller than r_i. So its error is relative to the albedo.
+  // With total reflection, the deficit may be far smaller than r_i. So the deficit error is relative to the albedo.
   const bool is_critical = data.indices[entry.index].critical_cos > 0.0;
   const double deficit_terms = std::max(std::abs(deficit_scale), is_critical ? std::abs(node.albedo) : 0.0);
   const bool is_multiple = data.scattering == Scattering::kMultiple;

@@ -38,8 +38,8 @@ Eigen::Matrix2d turned(double x, double y) {
   return Eigen::Matrix2d{{cosine, sine}, {-sine, cosine}};
 }
 
-/// The Jones matrix of one bounce, from c = cos(beta) and a vector (x, y). The frame of the facet is rotated by the
-/// angle of this vector. The sign of r_p is such that r_p = r_s at normal incidence.
+/// The Jones matrix of one bounce on a facet. c is cos(beta). The vector (x, y) points along s of the facet, in the
+/// frame (s, p) of the fields. The sign of r_p is such that r_p = r_s at normal incidence.
 class Facet {
  public:
   explicit Facet(const OpticalConstants& index)
@@ -84,8 +84,8 @@ Eigen::Matrix4d mueller(const Jones& j) {
       {(of_s + of_p).imag(), (of_s - of_p).imag(), (straight + crossed).imag(), (straight - crossed).real()}};
 }
 
-/// Mueller matrix of a beam after `bounces` bounces in an unfolded groove (shaders/physics/groove.glsl). If `bounces`
-/// is odd, the outgoing direction there is the mirror image of the real one, and so is its frame (s, p).
+/// Mueller matrix of a beam after `bounces` bounces in an unfolded groove (shaders/physics/groove.glsl). After an odd
+/// number of bounces, the ray and its frame (s, p) in the unfolded groove are mirror images of the real ray and frame.
 Eigen::Matrix4d chain(const Across& at, const Facet& facet, double gamma, int bounces) {
   Jones fields = turned(-at.from.x(), at.from.y() * at.cos_i).transpose().cast<Complex>();
   const Complex turn = std::polar(1.0, 2.0 * gamma);
@@ -111,11 +111,11 @@ double beam_width(const Across& at, double gamma, int bounces) {
 
 struct FurtherBeams {
   Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
-  double unfollowed = 0.0;  ///< bound of m00 of the light after all bounces that are left out
+  double unfollowed = 0.0;  ///< bound of m00 of beams with more than kMostBouncesOfBeam bounces; 0 if negligible
   int bounces = 0;          ///< bounces computed so far, over all beams
 };
 
-/// Bound of a ratio: light after more than k = `bounces` bounces to light after k. The light falls like k^(2 - 2q).
+/// Bound of the light after more than k = `bounces` bounces, divided by the light after k, which falls like k^(2 - 2q).
 double beyond_last(const ScatteringRequest& request, const SlopeShape& shape, int bounces) {
   const bool is_cauchy = request.distribution == Distribution::kCauchy;
   return is_cauchy ? bounces / std::clamp(2.0 * shape.q - 3.0, kSlowestFall, 1.0) : bounces;
@@ -128,7 +128,7 @@ FurtherBeams further_beams(const Across& at, const ScatteringRequest& request, c
   const Facet facet(request.optics[entry.index].index);
   const double least_gamma = 0.49 * std::abs(std::abs(at.psi_i) - std::abs(at.psi_r));
   FurtherBeams beams;
-  // Bounds of the light of all further beams, separately for even and for odd numbers of bounces.
+  // Two bounds of the light of all further beams: from the last even number of bounces, and from the last odd number.
   std::array<double, 2> beyond = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   for (int k = 2; k <= kMostBouncesOfBeam; ++k) {
     const double gamma = (pi - at.psi_i + (k % 2 == 1 ? -at.psi_r : at.psi_r)) / (2.0 * k);
@@ -157,7 +157,7 @@ int add_further_bounces(ScatteringMatrix& f, const ScatteringRequest& request, c
   const CosSin i = cos_sin_deg(angles.theta_i_deg);
   const CosSin r = cos_sin_deg(angles.theta_r_deg);
   const double azimuth_deg = std::remainder(angles.delta_phi_deg, 360.0);
-  const CosSin half = cos_sin_deg(0.5 * std::abs(azimuth_deg));  // keeps all digits near 180 degrees
+  const CosSin half = cos_sin_deg(0.5 * std::abs(azimuth_deg));  // keeps all digits of the sine near 180 degrees
   const CosSin azimuth{cos_sin_deg(azimuth_deg).cos, std::copysign(2.0, azimuth_deg) * half.sin * half.cos};
   // The horizontal part h of omega_i + omega_r, without cancellation near the mirror direction.
   const double h_x = 2.0 * cos_sin_deg(0.5 * (angles.theta_i_deg + angles.theta_r_deg)).cos *

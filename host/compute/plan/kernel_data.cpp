@@ -24,7 +24,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kSmallestPole = 1e-6;  // replaces N^2 + 1 and N^2 - 1 if they are smaller
+constexpr double kSmallestPole = 1e-6;  // replaces N^2 + 1 or N^2 - 1 if its modulus is smaller, so poles stay finite
 
 /// Largest numbers of loop iterations for a piece of the slope axis. The numbers of nodes are not included.
 struct Loops {
@@ -56,7 +56,7 @@ Loops groove_loops(const KernelData& data, double start, double end) {
   Loops loops;
   loops.arcs = start >= slope_with_bounces(splits + 2.0) ? 2.0 : 5.0;
   if (start < DOLP_STEEPEST_SPLIT) loops.arcs += std::min(splits, std::max(std::floor(most) - 1.0, 0.0));
-  // Rays that lean away from the facet bounce up to twice as often.
+  // Rays that lean away from the facet bounce up to twice as often as vertical rays.
   loops.turns = turns_of(std::min(2.0 * most, double{DOLP_LAST_BOUNCES}));
   return loops;
 }
@@ -74,15 +74,15 @@ Loops loops_of(const KernelData& data, double critical, double start, double end
   return loops;
 }
 
-// The driver lavapipe stops an invocation after 65,535 iterations, without an error.
-constexpr double kMostIterations = 64'000.0;
+constexpr double kMostIterations = 64'000.0;  // the driver lavapipe stops an invocation after 65,535, without an error
 constexpr double kMostArcs = 2.0 * DOLP_MAX_ARCS;
 constexpr double kTurnsOfSlope = DOLP_MOST_SPLITS + 1.0;  // iterations at a slope, to find the split lines of a groove
 
 // Upper bound of the loop iterations of one invocation, with at most `most_nodes` nodes on an arc.
 double iterations(const KernelData& data, const Loops& loops, double most_nodes) {
   const double arcs = loops.arcs + loops.corners;
-  const double idle = data.sky.count == 0 ? 0.0 : 2.0 * loops.arcs * (1.0 + loops.corners);  // corners outside an arc
+  // Iterations that integrate nothing: each arc also loops over the corners of the sky that lie outside the arc.
+  const double idle = data.sky.count == 0 ? 0.0 : 2.0 * loops.arcs * (1.0 + loops.corners);
   if (!data.needs_masking_table()) return kTurnsOfSlope + idle + arcs * (2.0 + most_nodes * (1.0 + loops.turns));
   const auto of_rule = [&](double share) {
     return 1.0 + share * data.rule_order * (1.0 + idle + arcs * (2.0 + share * most_nodes));
@@ -122,7 +122,7 @@ void add_direction(KernelData& data, const MomentsRequest& request, double theta
   data.pieces.push_back(pieces);
 }
 
-// A slope t. Less than `share` of the facets are steeper than t, and they add less than `share` to the mean slope.
+// A slope t. Less than `share` of the facets are steeper than t, and they make up less than `share` of the mean slope.
 double slope_cut(const MomentsRequest& request, const SlopeShape& shape, double share) {
   const double m = slope_width(shape);
   if (request.distribution == Distribution::kGaussian) return m * std::sqrt(1.0 - std::log(share));
@@ -214,8 +214,8 @@ void add_shape(KernelData& data, const MomentsRequest& request, const SlopeShape
 
 static_assert(kMostResponses == DOLP_COLUMNS);
 
-/// The polynomials of responses need as many nodes as a function with a pole at cos(beta) = i * bend. So this pole
-/// replaces the pole of an index that is farther from 0.
+/// The poles of the indices, over complex cos(beta), set the numbers of nodes. The polynomials of responses need as
+/// many nodes as a pole at i * bend. So each pole that is farther from 0 moves to i * bend.
 void take_responses(KernelData& data, const Response& response) {
   data.response = response;
   data.rule.response_scale = 1.0 / response.c0;

@@ -17,7 +17,6 @@
 
 namespace dolp {
 
-/// The structures of shaders/interface.glsl with real = double.
 namespace kernel {
 using real = double;
 #include "interface.glsl"  // NOLINT: one source for host and shaders
@@ -81,12 +80,12 @@ struct KernelData {
   std::vector<kernel::ShapeNode> shapes;
   std::vector<char> needs_line;  ///< for each shape: 1 if pieces must be split at the kink of its masking
   std::vector<kernel::IndexNode> indices;
-  std::vector<std::uint32_t> index_variant;  ///< per index of a grid: number of its DirectionVariant without has_line
+  std::vector<std::uint32_t> index_variant;  ///< per index of a grid: number of its DirectionVariant; has_line adds 1
   std::vector<std::uint32_t> shape_of;
   /// Nodes and weights of the rules. The list continues with the tables of the sky (SkyTable) and of the reflectances.
   std::vector<std::array<double, 2>> rule_nodes;
   SkyTable sky;
-  std::optional<Response> response;  ///< null if the columns are moments with functions of a sky
+  std::optional<Response> response;  ///< set if the columns are responses; null if they belong to the sky
 
   std::size_t column_count() const { return response ? response->count : sky.count; }
   bool needs_masking_table() const { return masking == Masking::kIntegral || masking == Masking::kSmith; }
@@ -108,12 +107,12 @@ struct RuleModel;
 KernelData kernel_data(const MomentsRequest& request);
 KernelData kernel_data(const MomentsRequest& request, const RuleModel& model);
 
-/// How many numbers for columns follow each MomentsNode and each AzimuthNode.
+/// How many numbers the kernels store for columns (physics/columns.glsl): per MomentsNode and per AzimuthNode.
 inline std::size_t column_sums(const KernelData& data) { return DOLP_COLUMN_PARTS * data.column_count(); }
 inline std::size_t column_azimuths(const KernelData& data) { return 2 * data.column_count(); }
-/// Adds the columns of a piece of the slope axis to `sums`. For each column, `piece` has i and q of the coarser rule,
-/// then of the finer rule. `sums` has i and q of the finer rule, then the two differences between the rules; for
-/// functions of a sky it has only the larger difference.
+/// Adds the columns of a piece of the slope axis to `sums`. A column of `piece` is i and q of the coarser rule, then i
+/// and q of the finer rule. A column of `sums` is i and q of the finer rule, then their differences from the coarser
+/// rule. If the columns belong to a sky, the larger difference and 0 replace these two differences.
 template <class Real>
 void add_columns(const KernelData& data, std::span<const Real> piece, std::span<double> sums) {
   for (std::size_t first = 0; first < piece.size(); first += DOLP_COLUMN_PARTS) {

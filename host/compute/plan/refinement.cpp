@@ -46,7 +46,7 @@ std::optional<RefinementLevel> next_level(const RefinementLevel& last, const Poi
   const double rho_error = is_outside ? 0.0 : result[Quantity::kRhoErrorEstimate];
   const double excess =
       std::isnan(rho_error) ? rho_error : std::max(result[Quantity::kErrorEstimate], rho_error) / accuracy.tolerance;
-  // The step is at least half of all decades so far. So entries that do not converge reach the last level soon.
+  // A step lowers the tolerance by at least half the decades of all earlier steps, so the last level is reached soon.
   const double so_far = std::log10(accuracy.tolerance / last.tolerance);
   const double least = std::max(kLeastDecades, half_decades(0.5 * so_far));
   const double missed_by = std::isfinite(excess) ? half_decades(std::log10(kRefinementSafety * excess)) : kMostDecades;

@@ -26,7 +26,8 @@ struct RefinementLevel {
 /// Uses float if the tolerance is well above the rounding of float, unless the scene sets the precision.
 RefinementLevel first_level(const Accuracy& accuracy, bool has_double);
 
-/// The level that checks results of `first`. It splits the slope axis elsewhere, with a tolerance down to 1/100.
+/// The level that checks results of `first`. It splits the slope axis at more slopes. Its tolerance is 1/100 of the
+/// tolerance of `first`, or as small as its precision allows.
 RefinementLevel check_level(const RefinementLevel& first);
 
 /// The level at which an entry is computed again after `last`. Its tolerance is smaller by the factor by which `result`

@@ -8,14 +8,14 @@
 
 namespace dolp {
 
-/// A table of R_s, 1 - R_s and (R_s - R_p) / sin^2(beta) over sqrt(cos(beta)), in cells of equal width. Each cell has a
-/// cubic for each of the three. DOLP_CURVE_NODES elements of `nodes` store the coefficients (physics/fresnel.glsl).
+/// A table of R_s, 1 - R_s and (R_s - R_p) / sin^2(beta) over v = sqrt(cos(beta)), in cells of equal width. A cell has
+/// a cubic for each function. DOLP_CURVE_NODES pairs of coefficients in `nodes` store a cell (physics/fresnel.glsl).
 struct ReflectanceCurve {
   std::vector<std::array<double, 2>> nodes;
   std::size_t cells = 0;
-  double error = 0.0;         ///< bound of the distance of R_s, 1 - R_s and (R_s - R_p) / 2 from the cubics
-  double steepness = 0.0;     ///< largest derivative of the same quantities over ln sqrt(cos(beta))
-  std::complex<double> pole;  ///< pole in cos(beta) that makes a function as steep as R_s or R_p
+  double error = 0.0;         ///< bound of the errors of R_s, 1 - R_s and R_s - R_p that the cubics give
+  double steepness = 0.0;     ///< largest derivative of the three functions over ln(v); the third times sin^2(beta)
+  std::complex<double> pole;  ///< a function with this pole in cos(beta) is as steep as R_s and R_p
 };
 
 /// Doubles the number of cells until the error is at most a share of the tolerance, or the number reaches its limit.

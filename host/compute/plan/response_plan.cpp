@@ -19,7 +19,7 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// The mask `wanted` for new indices: new index i wants all entries that `request` wants for an index in needed_by[i].
+/// The mask `wanted` for new indices. Index i needs an entry if `request` wants it for any index in needed_by[i].
 std::vector<char> wanted_of(const MomentsRequest& request, const std::vector<std::vector<std::size_t>>& needed_by) {
   const std::size_t of_index = request.theta_deg.size() * request.shapes();
   std::vector<char> wanted;
@@ -54,12 +54,11 @@ struct Responses {
   std::vector<double> relative_error;  ///< ColumnMoments::relative_error of each shape
 };
 
-/// Matrix product with a fixed order of sums. Eigen's order depends on the sizes, and so on the division of a grid.
+/// Matrix product with a fixed order of sums. With Eigen's order, results would depend on how a grid is divided.
 RowMajor product(const RowMajor& weights, const RowMajor& part) {
   RowMajor sums = RowMajor::Zero(weights.rows(), part.cols());
   for (Eigen::Index i = 0; i < weights.rows(); ++i) {
-    for (Eigen::Index j = 0; j < weights.cols(); ++j) {
-      // the test prevents 0 times an infinite bound
+    for (Eigen::Index j = 0; j < weights.cols(); ++j) {  // skips weights of 0, because 0 times an infinite bound is NaN
       if (weights(i, j) != 0.0) sums.row(i) += weights(i, j) * part.row(j);
     }
   }
@@ -76,7 +75,8 @@ struct Sums {
     for (Eigen::Index shape = 0; shape < error.cols(); ++shape)
       error.col(shape) += responses.relative_error[static_cast<std::size_t>(shape)] * value.col(shape).cwiseAbs();
   }
-  /// Sums for the difference of two reflectance curves. Relative errors refer to a bound of |difference|.
+  /// Sums for the difference of two reflectance curves, which may change its sign. So relative errors refer to an upper
+  /// bound of the sum: response 0, whose polynomial is 1, times the sum of all |weights|.
   static Sums of_difference(const Responses& responses, Responses::Part of, Responses::Part apart,
                             const RowMajor& weights) {
     Sums sums(responses, of, apart, weights);
@@ -112,7 +112,7 @@ class Combination {
     if (rows > 0) reflected_.col(0).array() += 1.0;
   }
 
-  /// Computes `moments` of all indices at one direction. Each of `passes` has the moments of all shapes there.
+  /// Computes `moments` of all indices with weights at one direction, from the moments of all shapes in `passes`.
   void operator()(double cosine, std::span<const std::span<const Moments>> passes, std::span<Moments> moments) const {
     add_reflected(cosine, passes.front(), moments);
     std::size_t pass = 1;
@@ -136,7 +136,8 @@ class Combination {
     const Sums i(all, Responses::kI, Responses::kIApart, reflected_);
     const Sums q(all, Responses::kQ, Responses::kQApart, split_);
     // There are two ways to the moments of an index: a sum for its whole reflectance curve, or the moments of the
-    // reference index plus a sum for the difference of the curves. The second is better for similar curves.
+    // reference index plus a sum for the difference of the curves. The second is more accurate if the curves are
+    // similar or if little light is absorbed.
     const Sums more_absorbed = Sums::of_difference(all, Responses::kI, Responses::kIApart, absorbed_apart_);
     const Sums more_split = Sums::of_difference(all, Responses::kQ, Responses::kQApart, split_apart_);
     const ResponseWeights& of_reference = request_.basis->of_reference();

@@ -11,8 +11,8 @@
 
 namespace dolp {
 
-/// Decides which moments of a request with many indices the kernels compute, and combines the others from these
-/// (model/response_basis.hpp). The result of an entry does not depend on the other entries.
+/// A plan for a request with many indices. The kernels compute a few responses, and weighted sums of the responses give
+/// the moments (model/response_basis.hpp). For a given basis, the result of an entry does not depend on other entries.
 struct ResponsePlan {
   struct Source {
     std::optional<ResponseWeights> weights;  ///< weights of the responses; empty if the index is computed directly

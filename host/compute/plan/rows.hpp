@@ -29,12 +29,12 @@ struct Row {
 
 struct RowPiece {
   std::uint32_t row = 0;
-  std::uint32_t piece = 0;  ///< piece of the slope axis
+  std::uint32_t piece = 0;  ///< position among the smooth pieces into which the slope axis is split
 };
 
 struct Rows {
   std::uint32_t width = 1;                ///< 1 or kRowWidth
-  std::vector<kernel::ShapeNode> shapes;  ///< chunk by chunk, with equal scale, cut, table_scale and cusp_digits
+  std::vector<kernel::ShapeNode> shapes;  ///< chunk by chunk; a chunk has one scale, cut, table_scale and cusp_digits
   std::vector<std::uint32_t> shape_of;    ///< position of each of `shapes` in KernelData::shapes
   std::vector<Chunk> chunks;
   std::vector<Row> rows;  ///< ordered by chunk, index and direction
@@ -44,11 +44,12 @@ struct Rows {
   }
 };
 
-/// Kernel rows with room for kRowWidth entries, or for one entry if most of the room would be empty. Which entries
-/// share a row depends only on the shapes, not on directions, indices and wanted entries.
+/// Kernel rows with kRowWidth places for entries. If at least half of all places would be empty, the rows have one
+/// place. Which entries share a row depends only on the shapes, not on directions, indices and wanted entries.
 Rows rows_of(const MomentsRequest& request, const KernelData& data);
 
-/// The pieces of `count` rows from row `first`, one per invocation. Neighbouring invocations take about equal time.
+/// The pieces of `count` rows from row `first`. Each invocation of the kernel computes one piece. Pieces with about
+/// equal work are neighbours, because neighbouring invocations wait for each other.
 std::vector<RowPiece> pieces_of(const Rows& rows, const KernelData& data, std::uint32_t first, std::uint32_t count);
 
 }  // namespace dolp

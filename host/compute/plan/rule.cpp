@@ -44,7 +44,7 @@ constexpr std::array<RuleModel, 5> kModels = {{
 
 constexpr double kNone = -1000.0;
 
-// log10 of the number n of nodes that resolve a kink of the masking. If the width m exceeds 1, n falls like 1/m.
+// log10 of the number of nodes on a piece with a kink of the masking. The number falls like 1/m at slope widths m > 1.
 double decades_per_node(const SlopeShape& shape, double digits) {
   const double width = std::max(1.0, slope_width(shape));
   return std::log10(std::max(kNodesPerDigit * digits / width, 1.5));
@@ -55,7 +55,7 @@ double decades_per_node(const SlopeShape& shape, double digits) {
 double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double digits) {
   const double per_node = decades_per_node(shape, digits);
   if (distribution == Distribution::kGaussian) {
-    // For Gaussian slopes all derivatives of Lambda are 0 at the cusp. At 45 degrees Lambda is about exp(-1/m^2).
+    // Gaussian slopes: all derivatives of Lambda are 0 at the cusp. At 45 degrees, Lambda is about exp(-1/(2 sigma^2)).
     return -0.5 / (shape.sigma * shape.sigma * std::numbers::ln10) - kGaussianCuspPower * per_node;
   }
   const double from_integer = std::abs(shape.q - std::round(shape.q));
@@ -66,7 +66,7 @@ double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double d
   return size - 2.0 * shape.q * per_node;
 }
 
-// log10 of the error of rules without a split at the kink of `integral`, near which G contains |distance|^(2q-1).
+// log10 of the error without a split at the kink of `integral` masking. G contains |distance from the kink|^(2q-1).
 double unsplit_line(Distribution distribution, const SlopeShape& shape, double digits) {
   if (distribution == Distribution::kGaussian) {
     return shape.sigma > (digits > kTightDigits ? kTightLineSigma : kLineSigma) ? 0.0 : kNone;
@@ -103,7 +103,7 @@ RuleNodes make_rule_nodes(const Rules& gauss, int largest_order) {
     centre.insert(centre.end(), rule.begin(), rule.end());
     const RuleNodes& twice = gauss.at(2 * order);
     half.insert(half.end(), twice.begin() + order, twice.end());
-    // Midpoints psi of equal parts of [0, pi], stored as tau = tan(psi/4). The weights contain dtau/dpsi.
+    // Midpoints psi of equal parts of [0, pi]. The kernel uses tau = tan(psi/4), so the weights contain dtau/dpsi.
     const double part = std::numbers::pi / order;
     for (int i = 0; i < order; ++i) {
       const double tau = std::tan(0.25 * part * (i + 0.5));

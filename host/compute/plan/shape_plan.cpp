@@ -20,8 +20,8 @@ Values at_nodes(const ShapePlan& plan, std::span<const Moments> nodes, const Val
   return values;
 }
 
-/// Estimated interpolation error of each column of `values`: the sum of the omitted Chebyshev coefficients. It assumes
-/// that they fall as fast as the last known coefficients.
+/// Estimated interpolation error of each column of `values`: the sum of the omitted Chebyshev coefficients. The
+/// estimate assumes that the omitted coefficients fall as fast as the last known ones.
 Eigen::RowVectorXd tails(const ShapeAxis& axis, const Values& values) {
   if (!axis.is_interpolated()) return Eigen::RowVectorXd::Zero(values.cols());
   const Eigen::MatrixXd sizes = (axis.coefficients.bottomRows(2 * kLastShapeCoefficients) * values).cwiseAbs();
@@ -84,8 +84,8 @@ bool wants_whole_directions(const MomentsRequest& request) {
 }
 
 /// How to interpolate over x, which is sigma or q. The moments are analytic functions of ln(x - origin), up to the
-/// distance `strip` from the real axis. A larger `strip` needs fewer nodes. For q, the origin is the value at which the
-/// slope density becomes infinite or, if the masking depends on the mean slope, the value at which the mean slope does.
+/// distance `strip` from the real axis. A larger `strip` needs fewer nodes. For q, the origin is 1 or, if the moments
+/// depend on a finite mean slope, 1.5. Slopes have no density at q <= 1, and an infinite mean at q <= 1.5.
 struct ShapeParameter {
   double origin = 0.0;
   double strip = 1.0;
@@ -109,7 +109,7 @@ ShapeParameter sigma_parameter(Distribution distribution) {
   return {0.0, distribution == Distribution::kGaussian ? 0.78 : 1.15};
 }
 
-/// Domain: either all directions of the request are grazing, or none is.
+/// How to interpolate over q. Domain: either all directions of the request are grazing, or none is.
 ShapeParameter q_parameter(const MomentsRequest& request) {
   const bool needs_mean_slope =
       request.masking == Masking::kSmith ||
@@ -118,7 +118,7 @@ ShapeParameter q_parameter(const MomentsRequest& request) {
   return {needs_mean_slope && has_mean_slope ? 1.5 : 1.0, 1.45};
 }
 
-/// Nodes from which interpolation to `values` keeps `digits` decimal digits; `values` themselves if that saves little.
+/// Nodes from which `values` are interpolated with `digits` correct digits. No interpolation if it would save little.
 ShapeAxis shape_axis(const ShapeParameter& parameter, const std::vector<double>& values, double digits) {
   const auto [least, largest] = std::minmax_element(values.begin(), values.end());
   const double start = std::log(*least - parameter.origin);

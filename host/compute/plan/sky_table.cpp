@@ -57,7 +57,7 @@ Eigen::RowVectorXd middle_distances(const SkyBasis& basis, double cells) {
 
 struct Corner {
   double zenith_deg = 0.0;
-  Eigen::RowVectorXd bend;  // jump of the derivative over u, for each function
+  Eigen::RowVectorXd bend;  // for each function, the jump of its slope df/du
 };
 
 /// The corners (kinks) of the functions, the sharpest first.
@@ -84,7 +84,7 @@ Eigen::RowVectorXd bends_of(std::span<const Corner> corners, Eigen::Index functi
   return squares.cwiseSqrt();
 }
 
-/// Number of the sharpest corners that must split the integral, so that the others have little effect.
+/// How many corners, the sharpest first, must split the azimuths so that the remaining corners have little effect.
 std::size_t split_corners(std::span<const Corner> corners, Eigen::Index functions, double tolerance) {
   const std::size_t most = std::min<std::size_t>(corners.size(), DOLP_MOST_SKY_CORNERS);
   std::size_t split = 0;

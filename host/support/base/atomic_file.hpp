@@ -23,9 +23,9 @@ class AtomicFile {
  public:
   /// Errors: the errors of check_writable(); IoError if no file can be made.
   explicit AtomicFile(const std::filesystem::path& path);
-  /// Creates and locks a file with the name `under_way`, or opens it with its content. Only commit() renames the file
-  /// to `path`; without commit() it stays as it is. Errors: the errors of check_writable(); IoError if no file can be
-  /// made or `under_way` is a symbolic link; InputError if another process has locked the file.
+  /// Opens the file `under_way` with its content, or creates it, and locks it. Only commit() renames the file to
+  /// `path`; without commit() the name stays `under_way`. Errors: the errors of check_writable(); IoError if no file
+  /// can be made or `under_way` is a symbolic link; InputError if another process has locked the file.
   AtomicFile(const std::filesystem::path& path, const std::filesystem::path& under_way);
   AtomicFile(AtomicFile&&) noexcept;
   AtomicFile& operator=(AtomicFile&&) noexcept;
@@ -39,7 +39,7 @@ class AtomicFile {
   /// Reads bytes at an offset. Errors: IoError, also if the file ends before the last byte.
   void read_at(std::uint64_t offset, void* bytes, std::size_t size) const;
   void resize(std::uint64_t size);  ///< additional bytes are zero. Errors: IoError
-  /// Syncs the file and renames it to `path`. Errors: IoError, Cancelled. An error before the rename changes no file.
+  /// Syncs the file and renames it to `path`. Until the rename `path` is unchanged. Errors: IoError, Cancelled.
   void commit();
   /// Makes the destructor remove the file, even if the file has the name `under_way`.
   void discard();
@@ -49,8 +49,7 @@ class AtomicFile {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Writes text or bytes to standard output for "-", otherwise to an AtomicFile.
-/// Errors: IoError; Cancelled if interrupted().
+/// Writes `content` to an AtomicFile, or to standard output for "-". Errors: IoError; Cancelled if interrupted().
 void write_text_atomically(const std::filesystem::path& path, std::string_view content);
 
 }  // namespace dolp

@@ -12,7 +12,7 @@ namespace dolp {
 std::string_view trim(std::string_view text);  ///< removes blanks (space, tab) at both ends
 std::vector<std::string_view> split(std::string_view text, char separator);  ///< returns at least one piece
 
-/// The lines of a text without line ends (LF or CRLF), a UTF-8 byte order mark at its start, or blank lines at its end.
+/// The lines of a text without their ends (LF or CRLF). Skips a UTF-8 byte order mark, and blank lines after the text.
 std::vector<std::string_view> split_lines(std::string_view text);
 
 std::string lower_case(std::string_view text);  ///< changes only ASCII letters
@@ -25,7 +25,7 @@ std::optional<double> parse_number(std::string_view text);
 std::string number_text(double value);
 void append_number(std::string& text, double value);  ///< appends number_text(value)
 
-/// The shortest text that reads back as this double, for messages and scenes: 100000, where number_text() has 1e+05.
+/// Like number_text(), but writes 100000 instead of 1e+05. For messages and scenes.
 std::string format_number(double value);
 
 /// Number of letters to insert, delete or replace to turn `a` into `b`. Ignores case and the bytes after the 80th.

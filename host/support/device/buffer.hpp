@@ -20,7 +20,7 @@ class Buffer {
 
   /// Writes bytes to the start of a mapped buffer. Work that is submitted to the queue later sees these bytes.
   void write(std::span<const std::byte> bytes);
-  /// Reads bytes from the start of a mapped buffer. The work that wrote them must be complete and end with a barrier.
+  /// Reads bytes from the start of a mapped buffer. Before, the device must end its work with a barrier for the host.
   void read(std::span<std::byte> bytes) const;
 
  private:

@@ -15,7 +15,7 @@ constexpr std::array kValidationExtensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
 constexpr const char* kNoDriver =
     "no Vulkan driver was found (on Debian, mesa-vulkan-drivers has one that needs no GPU; VK_DRIVER_FILES and "
     "VK_ICD_FILENAMES override the search)";
-// The Vulkan loader reports "out of memory" for a malformed driver file, too. Real lack of memory shows up earlier.
+// If a driver file is malformed, the Vulkan loader reports "out of memory". Real lack of memory causes other errors.
 constexpr const char* kDriverNotLoaded =
     "no Vulkan driver could be loaded: its file (VK_DRIVER_FILES, VK_ICD_FILENAMES, vulkan/icd.d) is malformed";
 

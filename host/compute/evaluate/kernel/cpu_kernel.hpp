@@ -14,16 +14,17 @@ class CpuKernel {
  public:
   virtual ~CpuKernel() = default;
 
-  /// Replaces all masking tables by the tables of `shapes`: positions in KernelData::shapes, in ascending order. If the
-  /// masking needs tables, moments() accepts only entries with these shapes.
+  /// Builds a masking table for each of `shapes`, and drops all earlier tables. `shapes` are ascending positions in
+  /// KernelData::shapes. If the masking needs tables, moments() accepts only entries with these shapes.
   virtual void build_masking_tables(std::vector<std::uint32_t> shapes) = 0;
-  /// Returns the moments of `entry`. Adds further sums, which physics/columns.glsl explains, to `columns`.
+  /// Returns the moments of `entry`. Adds the sums of the columns (physics/columns.glsl) to `columns`.
   virtual kernel::MomentsNode moments(const MomentsEntry& entry, std::span<double> columns) = 0;
 
-  /// Returns the sums over the azimuths of the facets with one slope. Writes the further sums to `columns`.
+  /// Returns the sums over the azimuths of the facets with one slope. Writes the sums of the columns to `columns`.
   virtual kernel::AzimuthNode azimuths(const kernel::SlopeNode& slope, std::span<double> columns) = 0;
 
-  /// The product of the pBRDF (in 1/sr, with specular factor k_s = 1), cos(theta_i), cos(theta_r) and 2^-Beam::power.
+  /// Returns the pBRDF (in 1/sr, with specular factor k_s = 1) times cos(theta_i) cos(theta_r) / 2^Beam::power. The
+  /// division by a power of two prevents overflow and underflow of a float.
   virtual kernel::MuellerNode mueller(const kernel::BeamNode& beam) = 0;
 };
 

@@ -1,5 +1,5 @@
 // Compiles the kernel source as C++, in double if DOLP_DOUBLE is defined. The including file defines
-// DOLP_KERNEL_NAMESPACE. If it computes Moments::columns, it also defines DOLP_MOST_COLUMNS, their largest number.
+// DOLP_KERNEL_NAMESPACE. To compute Moments::columns, it also defines DOLP_MOST_COLUMNS, the largest number of columns.
 
 #include <algorithm>
 #include <bit>

@@ -21,29 +21,30 @@ namespace {
 constexpr double kWidthStep = 1.3;
 constexpr double kNodeWidthStep = 0.4;  // largest step of ln(m) between the widths m in corners_of()
 
-constexpr double kNoFacets = 80.0;  // a share of the facets below exp(-kNoFacets) counts as zero
+constexpr double kNoFacets = 80.0;  // skips pieces at slopes that less than exp(-kNoFacets) of the facets exceed
 
 struct SampleRequest {
-  double all = 0.0;  // estimate of the albedo, from weight_of_shape()
+  double all = 0.0;  // estimate of the light that all facets reflect upward, from weight_of_shape()
   double digits = 0.0;
 };
 
+// A slope at which a piece of the slope axis ends. Breakpoints are the slopes in ThetaNode::end.
 struct End {
   double slope = 0.0;
-  std::uint32_t direction_piece = 0;  // number of the last breakpoint at or before this end
-  bool is_breakpoint = false;         // true if this end is itself a breakpoint
+  std::uint32_t direction_piece = 0;  // position in ThetaNode::end of the last breakpoint that is not above `slope`
+  bool is_breakpoint = false;         // true if `slope` is itself a breakpoint
 };
 
 // In the moments of a shape, slope i has the weight common[i] * exp(-exponent_factor(shape) * exponent[i]), except for
 // a constant factor. The arrays depend only on the width m of the shape.
 struct SlopeWeights {
   double m = 0.0;
-  Eigen::ArrayXd exponent;  // common_exponent() of slope.glsl
+  Eigen::ArrayXd exponent;  // common_exponent(slope / m), see slope.glsl
   Eigen::ArrayXd common;
 };
 
-// Artificial shapes for the choice of the nodes, instead of all wanted shapes. Their widths m lie between the smallest
-// and the largest. There are two shapes for each width: with the heaviest and with the lightest tail.
+// Returns some artificial shapes. The nodes are chosen for them, because there may be very many wanted shapes. The
+// artificial widths m go from the smallest to the largest wanted m. Each occurs with the smallest and the largest q.
 std::vector<kernel::ShapeNode> corners_of(const KernelData& data, std::span<const std::uint32_t> shapes) {
   kernel::ShapeNode corner = data.shapes[shapes.front()];
   double widest = corner.m, lightest = corner.q_minus_1;
@@ -83,7 +84,7 @@ struct SlopeSampling::Impl {
   explicit Impl(const KernelData& of)
       : data(of), source(KernelSource::of(of)), rule(std::bit_cast<KernelSource::RuleNode>(of.rule)) {}
 
-  // The ends of the pieces of the slope axis: the breakpoints of the direction, and ends between them (kWidthStep).
+  // The pieces of the slope axis end at the breakpoints of the direction and at further slopes (see kWidthStep).
   std::vector<End> ends_of(std::uint32_t theta, std::span<const kernel::ShapeNode> corners) {
     const kernel::ThetaNode& node = data.thetas[theta];
     const double cut = corners.front().cut;
@@ -163,7 +164,7 @@ struct SlopeSampling::Impl {
   }
 
   SlopeWeights weights_of(const SlopeSamples& samples, KernelSource::ShapeNode shape) {
-    shape.q_minus_1 = 1.0;  // any value: weights for another q differ by a constant factor
+    shape.q_minus_1 = 1.0;  // any value: it only multiplies all weights by a constant, which sum_of() removes
     const auto count = static_cast<Eigen::Index>(samples.slopes.size());
     SlopeWeights weights{shape.m, Eigen::ArrayXd(count), Eigen::ArrayXd(count)};
     for (Eigen::Index i = 0; i < count; ++i) {
@@ -189,7 +190,7 @@ struct SlopeSampling::Impl {
     return std::bit_cast<kernel::AzimuthNode>(sums);
   }
 
-  // Adds four numbers per column to `sums`: i and q by the rule with more nodes, and how much the other rule differs.
+  // Adds four numbers per column to `sums`: the column's i and q by the finer rule, then differences between the rules.
   void add_columns(const SampledPiece& piece, const Eigen::ArrayXd& shape_weights, double share,
                    std::span<const double> azimuths, std::span<double> sums) {
     const auto functions = static_cast<Eigen::Index>(sums.size() / DOLP_COLUMN_PARTS);

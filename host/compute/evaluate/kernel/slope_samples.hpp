@@ -17,7 +17,8 @@ namespace dolp {
 
 bool has_slope_samples(const MomentsRequest& request);
 
-/// The wanted entries of one direction and one index. `theta` and `shapes` are positions in KernelData.
+/// The wanted entries of one direction and one refractive index. `direction` is the position among the directions of
+/// the request. The other members are positions in the lists of KernelData.
 struct SampledEntries {
   std::uint32_t direction = 0;
   std::uint32_t theta = 0;
@@ -39,7 +40,7 @@ struct SampledPiece {
   std::uint32_t first = 0;
   std::uint32_t fine = 0;
   std::uint32_t coarse = 0;
-  std::uint32_t direction_piece = 0;  ///< number of the piece between two breakpoints that contains this piece
+  std::uint32_t direction_piece = 0;  ///< number of the direction's piece (see Pieces) that contains this piece
 };
 
 /// The slopes at which the kernel samples one direction and one index, for all wanted shapes.
@@ -57,7 +58,7 @@ struct SampledAzimuths {
 
   std::vector<kernel::AzimuthNode> nodes;
   std::size_t per_slope;
-  std::vector<double> columns;  ///< for each slope, i and q of each column
+  std::vector<double> columns;  ///< for each slope, the two sums i and q of each column (physics/columns.glsl)
 };
 
 /// Plans slope samples and integrates over them. Any thread may use it. `data` must outlive the object.

@@ -55,7 +55,7 @@ class InputBuffer {
 
   VkBuffer get() const { return buffer_.get(); }
   VkBufferView texels() const { return buffer_.texels(); }
-  /// Writes to the start of the buffer. A staging copy is recorded in `stream`, which must be recording.
+  /// Writes to the start of the buffer. With staging, it adds a copy command to `stream`, so begin() must come first.
   void write(std::span<const std::byte> bytes, CommandStream& stream);
 
  private:

@@ -85,7 +85,6 @@ constexpr auto kInterruptInterval = std::chrono::milliseconds(20);
 constexpr double kDefaultCompilationLimitS = 120.0;  // SwiftShader on an idle processor needs at most 7 s
 constexpr const char* kCompilationLimit = "DOLP_COMPILATION_LIMIT_S";
 
-/// Seconds that a driver may take to compile a kernel, from the environment variable kCompilationLimit.
 double compilation_limit_s() {
   const char* const wish = std::getenv(kCompilationLimit);
   if (wish == nullptr) return kDefaultCompilationLimitS;

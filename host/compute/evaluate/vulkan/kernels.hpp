@@ -49,7 +49,8 @@ class Kernels {
     std::array<VkBuffer, kStorageCount> buffers{};
     std::array<VkBufferView, kTexelCount> texels{};  ///< for DOLP_BINDING_RULE_NODES and DOLP_BINDING_MASKING_NODES
   };
-  /// Binds some other buffer where one is null. No kernel reads it, but Vulkan forbids bindings to destroyed buffers.
+  /// Binds the buffers. Where one is null, binds any other buffer of `bindings`: no kernel reads it there, but the old
+  /// binding may be to a destroyed buffer, which Vulkan forbids.
   void bind(const Bindings& bindings);
 
   VkPipeline pipeline(const KernelVariant& variant);

@@ -53,7 +53,7 @@ class TiledRun {
   static bool goes_on(const Progress& progress, double share, std::size_t wanted) {
     return !progress || progress(static_cast<std::size_t>(share * static_cast<double>(wanted)), wanted);
   }
-  /// Runs the kernel on a tile whose inputs are recorded, waits for it, and reads the results to `scratch_`.
+  /// Runs the kernel on a tile, waits for its end, and reads the results to `scratch_`. upload() must come first.
   void run_kernel(std::size_t invocations, std::size_t result_bytes, const KernelData& data);
 
   KernelContext context_;

@@ -1,4 +1,4 @@
-// Divides a request into dispatches for a device, without calls of Vulkan. Runs and their forecasts use it.
+// Divides a request into dispatches. Calls no Vulkan function, so it can also count dispatches without a device.
 #pragma once
 
 #include <array>
@@ -18,11 +18,11 @@ namespace dolp::vulkan {
 
 using MaskingNode = std::array<double, 4>;
 
-/// Memory that a tile needs per shape and per invocation, which computes a piece of a kernel row, a slope or a beam.
+/// Memory that a tile needs per shape and per invocation. One invocation computes a piece of a row, a slope or a beam.
 struct TileCosts {
   std::uint64_t invocation_bytes = 0;  ///< bytes in all buffers that grow with the invocations of a tile
-  std::uint64_t shape_bytes = 1;       ///< bytes of a shape's node and masking table; a divisor, so 1 without tables
-  std::uint64_t shape_texels = 0;      ///< texels of a shape's masking table
+  std::uint64_t shape_bytes = 1;   ///< bytes of a shape's node and masking table; without tables 1, not to divide by 0
+  std::uint64_t shape_texels = 0;  ///< texels of a shape's masking table
 };
 
 /// Invocations per dispatch, and shapes whose masking tables are bound at a time; at least one each.
@@ -32,7 +32,7 @@ struct TileSizes {
 };
 
 /// The CPU driver lavapipe runs this many invocations in lockstep: each loop continues until the last of them is done.
-/// The driver counts the iterations and stops above a limit.
+/// After 65,535 iterations lavapipe stops the group without an error, so its invocations should have equal loop bounds.
 inline constexpr std::uint32_t kLockstep = 16;
 
 /// Consecutive shapes whose masking tables are on the device at a time, and the kernel rows with these shapes.
@@ -48,7 +48,7 @@ struct SlopeBatch {
   std::vector<SlopeSamples> samples;
   std::vector<std::size_t> first;  ///< for each of `samples`, the position of its first slope in `slopes`
   std::vector<kernel::SlopeNode> slopes;
-  std::vector<std::uint32_t> in_lockstep;  ///< positions in `slopes`, in groups of kLockstep with equal loop bounds
+  std::vector<std::uint32_t> in_lockstep;  ///< positions in `slopes`; each group of kLockstep has equal loop bounds
 };
 
 struct DispatchCount {
@@ -78,7 +78,6 @@ struct RowTiles {
 /// The dispatches of a request for moments, if the kernel computes slope samples. The request must outlive the object.
 struct SlopeTiles {
   SlopeTiles(const MomentsRequest& request, const dolp::Device& device, const VulkanOptions& options);
-  /// Number of directions in a batch; it limits the memory of a batch.
   std::size_t batch_directions() const;
   SlopeBatch batch(std::size_t first) const;
   DispatchCount count() const;

@@ -143,9 +143,9 @@ class VulkanEvaluator::Impl {
   VulkanOptions options_;
   vulkan::Context context_;
   std::optional<vulkan::Kernels> float_kernels_, double_kernels_;
-  std::future<void> prepared_;  ///< pipelines in preparation; the destructor waits for the thread
+  std::future<void> prepared_;  ///< the task of prepare(); its destructor waits for the end of the task
   vulkan::CommandStream stream_;
-  std::unique_ptr<vulkan::TiledRun> run_;  ///< a member, because the driver may use its buffers after a timeout
+  std::unique_ptr<vulkan::TiledRun> run_;  ///< a member, because its buffers must still exist after a timeout
 };
 
 VulkanEvaluator::VulkanEvaluator(const VulkanOptions& options) {

@@ -18,10 +18,9 @@ struct VulkanOptions {
   /// Any message of the validation layer makes `evaluate` throw DeviceError.
   ValidationMode validation = ValidationMode::kFromEnvironment;
   // The following options do not change results.
-  std::uint32_t max_tile_invocations = 65'536;  ///< largest dispatch; progress and cancelling wait for its end
-  std::uint32_t max_block_shapes = 4'096;       ///< most shapes whose masking tables are on the device at a time
-  /// Copies inputs through staging buffers even if the host can map the memory of the device.
-  bool staged_uploads = false;
+  std::uint32_t max_tile_invocations = 65'536;  ///< limit per dispatch; cancelling waits for the end of a dispatch
+  std::uint32_t max_block_shapes = 4'096;       ///< largest number of shapes with masking tables on the device
+  bool staged_uploads = false;  ///< uses staging buffers even if the host can map the memory of the device
   double tile_timeout_s = 600.0;
 };
 
@@ -35,18 +34,17 @@ class VulkanEvaluator : public ModelEvaluator {
   ~VulkanEvaluator() override;
 
   /// Errors:
-  /// - InputError if the lists of the request do not fit its layout.
-  /// - DeviceError if the request needs double precision and the device has none, if the device fails, if it is lost
-  ///   twice, if a tile exceeds the time limit (the object is useless then), or if the validation layer has a message.
-  /// - MemoryError if even small tiles do not fit.
+  /// - InputError if a list of the request has the wrong length.
+  /// - DeviceError if the request needs double precision and the device has none, if the device fails or is lost twice,
+  ///   if a tile exceeds tile_timeout_s (all later calls fail too), or if the validation layer has a message.
+  /// - MemoryError if the device has too little memory even for small tiles.
   /// - Cancelled if `progress`, called after each tile, returns false.
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
 
-  /// Creates the pipeline for `request` in the background. If this fails, `scatter` throws the error again.
+  /// Creates the pipeline for `request` in the background. If this fails, `scatter` tries again and throws the error.
   void prepare(const ScatteringRequest& request) override;
 
   std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override;
-
   bool has_double() const override;
 
   EvaluationReport report() const override;

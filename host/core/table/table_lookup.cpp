@@ -292,8 +292,8 @@ struct TableLookup::Lines {
   }
 
   /// Adds a change for a kink of the masking. There, the entries contain the ramp max(theta - kink, 0) times a slope.
-  /// The slope is about (second difference of the entries) / (second difference of the ramp). The kink causes the slope
-  /// times the interpolation error of the ramp. Of several kinks, takes the one whose ramp has the largest error.
+  /// The slope is about (second difference of the entries) / (second difference of the ramp). The kink's interpolation
+  /// error is this slope times the ramp's error. Of several kinks, takes the one whose ramp has the largest error.
   void add_kink(const LookupAxis& axis, double theta_deg, const Stencil& stencil, std::size_t start,
                 const std::vector<double>& kinks_deg) {
     const std::size_t last = stencil.first + stencil.count - 1;

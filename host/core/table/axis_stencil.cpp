@@ -62,7 +62,7 @@ Stencil LookupAxis::stencil(const Location& location, std::size_t count, int shi
       std::clamp<std::ptrdiff_t>(centred + shift, next + 1 - wanted, next - 1), 0, size - wanted);
   Stencil stencil{static_cast<std::size_t>(first), static_cast<std::size_t>(wanted), {}};
   const std::array<double, kMostStencil>& factors = factors_[stencil.count][stencil.first];
-  // Weight of value i: factors[i] times the product over the other values of the stencil of (location - value).
+  // Weight of value i: factors[i] times the product of (location - x_j) over the other values x_j of the stencil.
   double before = 1.0;
   for (std::size_t i = 0; i < stencil.count; ++i) {
     stencil.weights[i] = before * factors[i];

@@ -46,9 +46,9 @@ class LookupAxis {
   };
   Location locate(double value) const;
 
-  /// Lagrange interpolation at a location, from the `count` axis values around it, or from all values of a shorter
-  /// axis. At a value of the axis, uses only this value. `shift` moves the window of values up by so many ranks, as far
-  /// as the location stays inside. Domain: count from 2 to kMostStencil.
+  /// Lagrange interpolation at a location. Uses the `count` axis values around it, or all values of a shorter axis. At
+  /// a value of the axis, uses only this value. `shift` moves the window of used values up by this number of ranks,
+  /// but only while the window still contains the location. Domain: count from 2 to kMostStencil.
   Stencil stencil(const Location& location, std::size_t count, int shift = 0) const;
 
   /// The divided difference of data y_i at the coordinates x_i, with ranks i from first to first + count - 1, is the
@@ -56,7 +56,7 @@ class LookupAxis {
   std::span<const double> divided_difference(std::size_t first, std::size_t count) const {
     return std::span(factors_[count][first]).first(count);
   }
-  /// Product of (coordinate of the location - coordinate of rank i) for i from first to first + count - 1.
+  /// Product of (location.coordinate - coordinate_at(i)) over the ranks i from first to first + count - 1.
   double distances(const Location& location, std::size_t first, std::size_t count) const;
 
  private:
@@ -67,7 +67,6 @@ class LookupAxis {
   std::vector<double> values_;  ///< ascending
   std::vector<double> coordinates_;
   std::vector<std::size_t> positions_;  ///< position on the table's axis of each value
-  /// factors_[count][first] is divided_difference(first, count).
   std::array<std::vector<std::array<double, kMostStencil>>, kMostStencil + 1> factors_;
 };
 

@@ -165,9 +165,9 @@ std::string values_hash(const TableLayout& layout, const ValueSums& sums) {
   std::uint64_t hash = kHashStart;
   for (const Axis axis : kAllAxes) {
     const std::vector<double>& values = head.axes[axis];
-    if (description_of(axis).has_labels) {  // hashes texts: a label may have another number in a part of a table
+    if (description_of(axis).has_labels) {  // hashes the texts: a file with a part of a table numbers its labels anew
       for (const double value : values) hash = hashed(hashed(hash, head.label(axis, value)), std::uint64_t{0});
-    } else if (axis != Axis::kTemperature || !values.empty()) {  // an absent temperature axis is not hashed
+    } else if (axis != Axis::kTemperature || !values.empty()) {  // an old file, which lacks this axis, keeps its hash
       hash = hashed(hash, std::span(values));
     }
   }

@@ -15,7 +15,6 @@ namespace dolp {
 
 inline constexpr std::size_t kMostTableEntries = std::size_t{1} << 36U;
 
-/// Name and value of the attribute that names the metadata conventions of table files.
 inline constexpr const char* kConventions = "Conventions";
 inline constexpr const char* kConventionsOfFiles = "CF-1.8";
 
@@ -24,7 +23,7 @@ inline constexpr const char* kSpectralData = "spectral_data";
 
 std::string spectral_data_of(const TableHead& head);
 
-/// Parses the attribute kSpectralData into the curves of n, k and E0, and removes it. Errors: InputError about `name`.
+/// Moves n, k and E0 from the attribute kSpectralData to `head`'s curves. Errors: InputError that begins with `name`.
 void take_spectral_data(TableHead& head, const std::string& name);
 
 template <class Content>
@@ -33,7 +32,7 @@ const Content* find_attribute(const TableHead& head, std::string_view name) {
   return found == head.attributes.end() ? nullptr : std::get_if<Content>(&found->value);
 }
 
-/// Names of the coordinates that are no axes, such as wind speed and n, separated by blanks, for the file.
+/// Value of the CF attribute `coordinates`: names, separated by blanks, of coordinates that are no axes, such as n.
 std::string coordinates_of(const TableHead& head);
 
 /// The layout of a table: everything that is known before its values.

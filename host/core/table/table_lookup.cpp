@@ -18,24 +18,24 @@ namespace {
 
 constexpr auto kTheta = static_cast<std::size_t>(Axis::kTheta);
 constexpr auto kQ = static_cast<std::size_t>(Axis::kQ);
-// Number of values that an interpolation reads on each axis. The first two axes have labels and are not interpolated.
+// How many values an interpolation reads on each axis. The first two axes have labels and read one: 2 has no effect.
 constexpr std::array<std::size_t, kAxisCount> kWindow = {2, 2, 4, 4, 4, 4, 6, 6, 6};
-constexpr std::size_t kMostRows =
-    std::size_t{4} * 4 * 4 * 4 * 6 * 6;  // most rows that an interpolation reads; a row has the entries along q
+constexpr std::size_t kMostRows = std::size_t{4} * 4 * 4 * 4 * 6 * 6;  // most rows that an interpolation reads
 constexpr int kMostShift = 3;            // most values by which the read window moves away from unknown entries
 constexpr std::size_t kLeastValues = 4;  // an axis with fewer values gives no reliable error estimate
-// Tuned. The interpolation error is estimated from the change of the result if one more value of the axis is used. It
-// is kInside times this change, or kAtEnds times in the first and last interval and without a further value. Of 581,000
-// bistatic lookups, 147 err by more than stated at half of both factors, 2 at these values, 0 at double.
+// These five constants are tuned on 581,000 bistatic lookups. A failure is a lookup whose error exceeds the stated
+// error. The interpolation error is stated as a factor times the change of the result by one more value of the axis.
+// The factor is kAtEnds in the first and last interval, and if all values of the axis are read already. Otherwise it
+// is kInside. Failures: 147 with both factors halved, 2 with these values, 0 with both doubled.
 constexpr double kInside = 16.0;
 constexpr double kAtEnds = 37.0;
-// Tuned. The change may be small by chance. So it counts as at least kFastestFall times the change with one value fewer
-// and, on a short axis, as at least kFastestFallOfTwo times the change with two values fewer. Of these lookups, 44 err
-// by more than stated at half of both factors, 2 at these values, 0 at double.
+// The change may be small by chance. So it counts as at least kFastestFall times the change with one value fewer. On a
+// short axis (see is_short), it also counts as at least kFastestFallOfTwo times the change with two values fewer.
+// Failures: 44 with both factors halved, 2 with these values, 0 with both doubled.
 constexpr double kFastestFall = 0.2;
 constexpr double kFastestFallOfTwo = 0.25;
-// Tuned. A kink of the masking adds to the estimate this factor times the interpolation error of a ramp that begins at
-// the kink. Of these lookups, 38, 4, 2 and 2 err by more than stated with the factors 0, 1, 2 and 4.
+// For a kink of the masking, the stated error also contains kKinkMargin times the error that the kink causes.
+// Failures: 38 with the factor 0, 4 with 1, 2 with 2, 2 with 4.
 constexpr double kKinkMargin = 2.0;
 
 using enum Quantity;
@@ -49,7 +49,6 @@ bool has_error(Quantity quantity) {
   return std::ranges::find(kWithout, quantity) == kWithout.end();
 }
 
-/// Quantities that a table must have for lookup, in addition to the status.
 constexpr std::array kNeeded = {kDolp, kStokesI, kStokesQ, kStokesU, kStokesV, kErrorEstimate};
 
 const std::vector<double>& checked(const std::vector<double>& values, const char* axis, const std::string& name) {
@@ -101,7 +100,7 @@ std::vector<double> masking_kinks(const SceneModel& scene) {
   if (masking != Masking::kVCavity) return {};
   const CosSin view = cos_sin_deg(view_deg);
   const double cos_azimuth = cos_sin_deg(scene.geometry.relative_azimuth_deg).cos;
-  // The v-cavity masking is min(1, G). (1 - G) cos^2(beta), with the local angle beta, changes its sign at the kink.
+  // The v-cavity masking min(1, G) has a kink at G = 1. hidden() is (1 - G) cos^2(angle of incidence).
   const auto hidden = [&](double theta_deg) {
     const CosSin theta = cos_sin_deg(theta_deg);
     const double cos2_beta = 0.5 * (1.0 + theta.cos * view.cos + theta.sin * view.sin * cos_azimuth);
@@ -137,7 +136,7 @@ struct TableLookup::Window {
     return locations[axis].is_value ? locations[axis].next : locations[axis].next - 1;
   }
 
-  /// Table positions of the corners of the cell around the point, without the part that the axis `without` adds.
+  /// Table positions of the corners of the cell around the point. They have position 0 on the axis `without`.
   using Corners = boost::container::static_vector<std::size_t, std::size_t{1} << kAxisCount>;
   Corners corners(const TableLookup& lookup, std::size_t without) const {
     Corners corners = {0};
@@ -170,7 +169,7 @@ struct TableLookup::Rows {
     for (std::size_t axis = 0; axis < kQ; ++axis) {
       const Stencil& stencil = window.stencils[axis];
       const std::size_t before = rows.size();
-      for (std::size_t i = stencil.count; i-- > 0;) {  // i = 0 comes last: it overwrites the rows that every i reads
+      for (std::size_t i = stencil.count; i-- > 0;) {  // i = 0 is last, because it overwrites rows that each i needs
         const std::size_t begin = lookup.position(axis, stencil.first + i);
         for (std::size_t row = 0; row < before; ++row) {
           const Row next = {rows[row].begin + begin, rows[row].weight * stencil.weights[i]};
@@ -227,28 +226,30 @@ struct TableLookup::Rows {
   }
 };
 
-/// Estimates the interpolation error along an axis, from lines of entries along it through the corners of the cell.
+/// Estimates the interpolation error along one axis. Uses lines: a line has the entries that differ only in the value
+/// on this axis. Lines run through all corners of the cell around the point.
 struct TableLookup::Lines {
-  /// Change of the result if one more value, at either end, is used: a divided difference times distances().
+  /// Effect on the result of one more value, below or above the others. It is a divided difference times distances().
   struct Change {
-    std::size_t first = 0;  ///< number in the line of the first value that the change uses
+    std::size_t first = 0;  ///< the first value that the change uses, as an index into the line
     std::size_t count = 0;
-    /// Level 0: one value more than the window, or the whole axis; each next level: one fewer. A kink has kLevels.
+    /// A change of level 0 uses one value more than the window, or the whole axis if it has no more values. Each next
+    /// level uses one value fewer. The change for a kink has the level kLevels.
     std::size_t level = 0;
   };
-  static constexpr std::size_t kLevels = 3;  // levels on a short axis (see is_short); other axes have one level fewer
-  // On a short axis: one change at level 0, two at each of levels 1 and 2, and one for a kink. Other axes have fewer.
+  static constexpr std::size_t kLevels = 3;  // levels 0, 1 and 2; only a short axis (see is_short) has level 2
+  // On a short axis: one change of level 0, two of level 1, two of level 2 and one for a kink. Other axes have fewer.
   static constexpr std::size_t kMostChanges = 6;
   static constexpr std::size_t kMostValues = kMostStencil + 1;
   boost::container::static_vector<Change, kMostChanges> changes;
   std::array<std::array<double, kMostChanges>, kMostValues>
-      factors{};                                 ///< change j is the sum of factors[i][j] times value i of a line
-  std::array<std::size_t, kMostValues> along{};  ///< table offset of each value from the start of a line
+      factors{};                                 ///< change j is the sum over i of factors[i][j] * (value i of a line)
+  std::array<std::size_t, kMostValues> along{};  ///< value i of line c has the table position begin[c] + along[i]
   std::size_t count = 0;
   Window::Corners begin;
-  double factor = 1.0;  ///< error divided by change; includes the absolute weights of the other axes
+  double factor = 1.0;  ///< stated error / change: kInside or kAtEnds, times the sum of |weight| for each other axis
   bool has_error = false;
-  bool is_short = false;  ///< true if level 0 uses the whole axis
+  bool is_short = false;  ///< true if the axis has at most one value more than the window
   bool is_unknown = false;
 
   Lines(const TableLookup& lookup, const Window& window, std::size_t number) {
@@ -290,8 +291,9 @@ struct TableLookup::Lines {
     }
   }
 
-  /// Adds a change for the kink of the masking at which the ramp max(theta - kink, 0) has the largest interpolation
-  /// error. This error is scaled by the second difference of the table, divided by that of the ramp.
+  /// Adds a change for a kink of the masking. There, the entries contain the ramp max(theta - kink, 0) times a slope.
+  /// The slope is about (second difference of the entries) / (second difference of the ramp). The kink's interpolation
+  /// error is this slope times the ramp's error. Of several kinks, takes the one whose ramp has the largest error.
   void add_kink(const LookupAxis& axis, double theta_deg, const Stencil& stencil, std::size_t start,
                 const std::vector<double>& kinks_deg) {
     const std::size_t last = stencil.first + stencil.count - 1;
@@ -308,7 +310,7 @@ struct TableLookup::Lines {
       kink_deg = kink;
     }
     if (largest == 0.0 || stencil.count < 3) return;
-    std::size_t middle = stencil.first + 1;  // middle value of the second difference across the kink
+    std::size_t middle = stencil.first + 1;  // rank nearest to the kink, with a neighbour on each side
     while (middle + 1 < last && axis.coordinate_at(middle) + axis.coordinate_at(middle + 1) < 2.0 * kink_deg) ++middle;
     const std::span<const double> difference = axis.divided_difference(middle - 1, 3);
     const double of_ramp = difference[1] * std::max(axis.coordinate_at(middle) - kink_deg, 0.0) +
@@ -344,7 +346,7 @@ struct TableLookup::Lines {
 #pragma GCC unroll 6
         for (std::size_t j = 0; j < kMostChanges; ++j) sums[j] += of_value[j] * value;
       }
-      // A change that uses an unknown (NaN) entry is NaN and does not count: the comparison below is then false.
+      // A change that uses an unknown (NaN) entry is NaN. It does not count: `size > of_change[j]` is then false.
       if (!std::isfinite(sums[0])) known_changes(values, sums);
 #pragma GCC unroll 6
       for (std::size_t j = 0; j < kMostChanges; ++j) {
@@ -359,7 +361,7 @@ struct TableLookup::Lines {
     }
     if (largest[0] < 0.0) return kInfinity;
     if (largest[0] == 0.0) return 0.0;
-    // On a coarse axis all changes of level 0 may be small by chance. The next levels guard against this.
+    // On a coarse axis, all changes of level 0 may be small by chance. So the changes from fewer values count too.
     largest[0] = std::max(largest[0], kFastestFall * largest[1]);
     if (is_short) largest[0] = std::max(largest[0], kFastestFallOfTwo * largest[2]);
     return factor * (largest[0] + std::max(largest[kLevels], 0.0));
@@ -456,7 +458,7 @@ void TableLookup::finish(PointResult& result, const PointResult& change, double 
   // Error of the quotient `above` / `below`: (error of above + |quotient| * error of below) / least possible |below|.
   const auto over = [](double below, double below_error, double quotient, double above_error) {
     const double least = std::abs(below) - below_error;
-    // If the quotient is 0, an infinite error of the denominator does not matter.
+    // If the quotient is 0, of_below is 0 even if below_error is infinite: the product would be NaN.
     const double of_below = quotient == 0.0 ? 0.0 : std::abs(quotient) * below_error;
     return above_error + of_below == 0.0 ? 0.0 : least > 0.0 ? (above_error + of_below) / least : kInfinity;
   };

@@ -11,8 +11,8 @@
 
 namespace dolp {
 
-/// Zeniths of the source, in degrees, at which the masking in bistatic mode has a kink for all sigma and q. Kinks due
-/// to further bounces and total reflection are not included.
+/// Zeniths of the source, in degrees, at which the masking has a kink in bistatic mode. They do not depend on sigma and
+/// q. Kinks that come from total reflection, or from light that is reflected several times, are not included.
 std::vector<double> masking_kinks(const SceneModel& scene);
 
 /// Interpolates the results of a table at points between its entries.
@@ -24,8 +24,8 @@ std::vector<double> masking_kinks(const SceneModel& scene);
 /// grid. Between the values of an axis with fewer than four values the estimate is infinite.
 class TableLookup {
  public:
-  /// `table` must outlive the object. Errors: InputError that begins with `name` if an axis has equal values, or if the
-  /// table lacks dolp, its error, a Stokes parameter or the status, or has an error of rho without rho.
+  /// `table` must outlive the object. Errors: InputError that begins with `name` if an axis contains a value twice;
+  /// if dolp, its error, a Stokes parameter or the status is missing; or if the table has the error of rho but not rho.
   TableLookup(const TableValues& table, const SceneModel& scene, const std::string& name);
 
   const AxisLabels& labels() const { return table_.labels; }
@@ -36,8 +36,8 @@ class TableLookup {
 
   /// A value on each axis; values on axes that the table lacks are ignored.
   using Point = AxisArray<double>;
-  /// The result at a point inside the axes. Quantities that the table lacks are NaN. The interpolation reads no entries
-  /// outside the model's domain. If this is impossible, the result is NaN with status 4 (outside the domain).
+  /// The result at a point inside the axes. Quantities that the table lacks are NaN. The interpolation reads only
+  /// entries inside the model's domain. If these are too few, the result is NaN with status 4 (outside the domain).
   PointResult at(const Point& point) const;
   PointResult at(double theta_deg, double sigma, double q) const {
     Point point{};

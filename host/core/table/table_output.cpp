@@ -14,14 +14,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kConvertedRowsAtOnce = std::size_t{1} << 17U;  // rows in memory, for a .csv or .npy
+constexpr std::size_t kConvertedRowsAtOnce = std::size_t{1} << 17U;  // rows of a .csv or .npy in memory at a time
 constexpr std::string_view kIdentityEnd = "; ";
 
-// If `path` is a link, the partial file is beside the target of the link, which may be on another file system.
+// If `path` is a link, the partial file is beside the link's target: a rename works only within one file system.
 fs::path partial_path(const fs::path& path) { return follow_links(path).string() + ".partial"; }
 fs::path progress_path(const fs::path& path) { return partial_path(path).string() + ".txt"; }
 
-/// A line of a progress file: a hash and `text`. The hash starts from `hash` and covers `text`, so it reveals damage.
+/// A line of a progress file: a hash of `text`, then `text`. The hash reveals damage. Its start value is `hash`.
 std::string progress_line(std::uint64_t hash, std::string_view text) {
   return fmt::format("{:016x} {}\n", hashed(hash, text), text);
 }
@@ -115,7 +115,7 @@ std::uint64_t TableOutput::reuse_finished_parts() {
   return parts_done_ > 0 ? taken : 0;
 }
 
-/// The hash from which progress_line() starts for part number parts_done_. `of_part`: checksums of the part.
+/// Start value of the hash in the progress line of part number parts_done_. `of_part`: checksums of the part.
 std::uint64_t TableOutput::part_hash(const ValueSums& of_part) const {
   std::uint64_t hash = hashed(hashed(kHashStart, job_.identity), std::uint64_t{parts_done_});
   for (const std::uint64_t sum : of_part) hash = hashed(hash, sum);

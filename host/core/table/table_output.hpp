@@ -13,17 +13,17 @@
 
 namespace dolp {
 
-/// Writes a table file part by part. The file PATH appears when the table is complete. Before that, a resumable table
-/// with several parts is in PATH.partial, and PATH.partial.txt lists the finished parts; other tables have no name.
+/// Writes a table file part by part. The file PATH appears when the table is complete. Until then, a resumable table
+/// of several parts is in PATH.partial, and PATH.partial.txt lists the finished parts. Other tables have neither file.
 class TableOutput {
  public:
   struct Job {
     std::filesystem::path path;
     TableLayout layout;
-    std::vector<TableBox> parts = {};  ///< parts in the order of the calls of write(); empty: any part may come
+    std::vector<TableBox> parts = {};  ///< the parts that write() gets, in this order; empty: any parts in any order
     std::string identity = {};         ///< names and values that must be equal in a resumed run; empty: not resumable
     bool is_resumed = false;           ///< continues PATH.partial if this file exists
-    Progress progress = {};            ///< called while finished parts are read; reports 0 done entries
+    Progress progress = {};            ///< lets the user cancel while finished parts are read; called with done = 0
   };
   /// If `is_resumed`, reuses the finished parts of an earlier run, up to the first part that is missing or changed.
   /// Errors: errors of check_output_path; InputError if the partial file has another identity or is in use by another
@@ -42,7 +42,7 @@ class TableOutput {
   /// Adds the attributes `more` and makes the file at PATH. Errors: IoError, Cancelled; then PATH is unchanged.
   void finish(const std::vector<Attribute>& more);
 
-  /// Text that tells the user how to resume; nullopt if there is no partial file.
+  /// Text that tells the user how to resume the run; nullopt if there is no partial file.
   std::optional<std::string> rest() const;
 
  private:
@@ -54,7 +54,7 @@ class TableOutput {
 
   Job job_;
   TableFormat format_;
-  std::optional<AtomicFile> file_;  ///< contains the values; nullopt for a .csv or .npy of one part
+  std::optional<AtomicFile> file_;  ///< has the values; nullopt for a .csv or .npy of one part, see only_part_
   std::optional<TableStore> store_;
   std::optional<AtomicFile> progress_;  ///< the file PATH.partial.txt of a resumable table
   TableValues only_part_;
@@ -63,7 +63,8 @@ class TableOutput {
   std::string note_;
 };
 
-/// First difference of two texts "name value; ...", for example "evaluator cpu, not vulkan"; nullopt if they are equal.
+/// Compares two texts of the form "name value; name value; ...". Returns the first difference, for example "evaluator
+/// cpu, not vulkan", or nullopt if the texts are equal.
 std::optional<std::string> difference(const std::string& identity, const std::string& wanted);
 
 }  // namespace dolp

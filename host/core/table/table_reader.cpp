@@ -27,7 +27,7 @@ constexpr std::size_t kMostAngles = 1024;                      // most angles of
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostShrinking = 1032;  // largest compression factor of deflate, which other tools may use
-constexpr std::size_t kMostStoredTextBytes = 64U << 20U;  // the longest text, the scene, is shorter: at most 16 MiB
+constexpr std::size_t kMostStoredTextBytes = 64U << 20U;  // size limit of a text; a scene has at most 16 MiB
 
 constexpr const char* kPartHint =
     "as in a part of a table; in Python dolp.lookup(xarray.load_dataset(FILE), ...) takes parts";
@@ -163,7 +163,6 @@ std::vector<std::string> read_labels(const Reader& reader, const std::string& na
   });
 }
 
-/// The value of an attribute that is a text or a number; nullopt for any other attribute.
 std::optional<std::variant<std::string, double>> read_value(const Reader& reader, const Hdf5Handle& attribute,
                                                             const std::string& name) {
   const Hdf5Handle space = reader.take(H5Aget_space(attribute.id()), H5Sclose, name);

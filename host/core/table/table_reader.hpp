@@ -22,7 +22,7 @@ class TableReader {
   const TableHead& head() const { return layout().head; }
 
   TableValues read(const TableBox& box) const;
-  /// Reads the entries at the ascending `positions`, and checks the hash of the whole table. Further error: Cancelled.
+  /// Reads the entries at the ascending `positions`, and checks the hash of the whole table. May also throw Cancelled.
   TableValues read_entries(std::span<const std::size_t> positions, const Progress& progress) const;
 
   ValueSums sums_of(const TableValues& part, const TableBox& box) const;

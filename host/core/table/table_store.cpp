@@ -27,7 +27,7 @@
 namespace dolp {
 namespace {
 
-constexpr std::uint64_t kMostOverhead = 1U << 20U;  ///< most bytes of a file besides the values: shapes, names, units
+constexpr std::uint64_t kMostOverhead = 1U << 20U;  ///< bound of the bytes besides values: shapes, names, units
 
 /// A file in memory, without a name. Only the bytes that are written take memory; all other bytes read as zero.
 class MemoryFile {
@@ -131,7 +131,7 @@ class Writer {
   }
 
   /// Reserves space for the variable in the file. Values are not compressed, because compression takes longer than
-  /// writing. Values are contiguous, because chunks need pointers, which have no checksum.
+  /// writing. They are not in chunks either, because HDF5 finds chunks through an index that has no checksum.
   Hdf5Handle define(const char* name, hid_t type, const std::vector<hsize_t>& shape, const void* fill,
                     H5D_alloc_time_t allocation = H5D_ALLOC_TIME_EARLY) const {
     const Hdf5Handle creation = take(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
@@ -171,7 +171,7 @@ void put_long_text(const Writer& writer, const std::string& name, const std::str
   const std::vector<hsize_t> shape = {text.size()};
   const Hdf5Handle length =  // this variable is never written, so that it takes no space
       writer.define((name + "_length").c_str(), H5T_IEEE_F32BE, shape, nullptr, H5D_ALLOC_TIME_LATE);
-  // The netCDF library knows a dimension without coordinates by the text below, with the length in ten characters.
+  // For the netCDF library, this text marks a dimension without coordinates. It ends with the length in 10 characters.
   std::string digits = std::to_string(text.size());
   digits.insert(0, 10 - std::min<std::size_t>(digits.size(), 10), ' ');
   writer.check(H5DSset_scale(length.id(), ("This is a netCDF dimension but not a netCDF variable." + digits).c_str()));
@@ -198,7 +198,8 @@ void put_attributes(const Writer& writer, const TableHead& head) {
   if (const std::string data = spectral_data_of(head); !data.empty()) put_more(writer, {{kSpectralData, data}});
 }
 
-/// Writes a coordinate. `along`: its dimension, empty for a single value; null if the coordinate defines a dimension.
+/// Writes a coordinate. If `along` is null, the coordinate is an axis. Else its values lie along the axis `along`, or
+/// it has a single value and `along` is empty.
 template <class Described>
 Hdf5Handle put_coordinate(const Writer& writer, const Described& described, const std::vector<double>& values,
                           const Hdf5Handle* along = nullptr) {
@@ -267,7 +268,7 @@ std::uint64_t offset_of(const Writer& writer, const Hdf5Handle& variable) {
   return offset;
 }
 
-/// Defines a variable. Returns the offset of its values. `qualifiers`: names of the variables of its error and status.
+/// Defines a variable. Returns the offset of its values. `qualifiers`: names of variables with its error and status.
 template <class Described>
 std::uint64_t put_variable(const Writer& writer, const TableHead& head, const AxisVariables& axes,
                            const Described& described, const std::string& units, const char* qualifiers,

@@ -14,7 +14,7 @@ namespace dolp {
 class TableStore {
  public:
   /// `file` must outlive the object. The constructor writes nothing to it.
-  /// Errors: IoError, also if the system allows no file as long as the table; std::bad_alloc.
+  /// Errors: IoError, for example if the table is longer than the system allows for a file; std::bad_alloc.
   TableStore(const TableLayout& layout, AtomicFile& file);
   TableStore(const TableStore&) = delete;
   TableStore& operator=(const TableStore&) = delete;

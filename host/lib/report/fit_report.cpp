@@ -145,7 +145,7 @@ void add_misfit(ReportBuilder& report, const fit::Model& model, const FitResult&
                 "as many parameters as points: no interval can be given");
 }
 
-/// If the model has an error, adds how much of each parameter's range its 95 % interval covers, and how to narrow it.
+/// Adds the share of each parameter's allowed range that its 95 % interval covers, and how to narrow the interval.
 void add_model_error(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   if (!model.has_model_error()) return;
   const auto is_empty_95 = [](const auto& parameter) { return parameter.interval_95.is_empty; };
@@ -238,8 +238,8 @@ FitInterval hull(const std::vector<const FitResult*>& results, std::size_t j, Fi
   return hull.value_or(FitInterval{.is_empty = true});
 }
 
-/// Adds the models that the data cannot distinguish from the best one. For each parameter, adds the smallest interval
-/// that contains the intervals of all models that may be true.
+/// Adds the models within kAlike of the best AIC: the data cannot tell them apart. For each parameter, adds the
+/// smallest interval that contains the intervals of all models within kPossible of the best AIC.
 void add_alike(ReportBuilder& report, const std::vector<ComparedModel>& models, double least_aic) {
   std::vector<const FitResult*> possible;
   Json alike = Json::array(), ranges = Json::array();

@@ -99,7 +99,8 @@ PlannedRun planned_run(const SceneValues& scene, const std::string& device, Effe
                             {[&](const MomentsRequest& request) { add_request(planned, request, limits); },
                              [&](const ScatteringRequest& request) { add_request(planned, request, limits); }});
   if (planned.dispatches.row_width > 1) {
-    // The prediction counts the nodes of each entry. A device uses the largest number of a row for the whole row.
+    // The prediction counts the nodes of each entry. A device uses the same nodes for a row, that is, for entries that
+    // differ only in q: as many nodes as the most demanding entry needs.
     planned.run.first_evaluations *=
         static_cast<double>(planned.dispatches.rows) / static_cast<double>(planned.run.moments);
     planned.run.is_exact = false;

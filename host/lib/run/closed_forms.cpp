@@ -21,10 +21,8 @@ double steep_share(const Surface& surface, const SlopeShape& shape) {
 }
 
 constexpr double kRelativeError = 1e-12;
-// The quadrature stops if two successive approximations differ relatively by less than this.
-constexpr double kAgreement = 1e-13;
-// Bound of the rounding error of 1 - absorptance: a few roundings of numbers up to 1.
-constexpr double kReflectanceRounding = 8.0 * std::numeric_limits<double>::epsilon();
+constexpr double kAgreement = 1e-13;  // the quadrature stops if two successive approximations differ relatively by less
+constexpr double kReflectanceRounding = 8.0 * std::numeric_limits<double>::epsilon();  // error bound of 1 - absorptance
 
 // Below this cosine the integrand counts as 0: there it is negligible, and the square of the cosine may underflow.
 constexpr double kSmallestCosine = 1e-100;
@@ -40,9 +38,10 @@ double critical_angle(const FacetOptics& optics) {
 }
 
 constexpr double kHorizon_deg = 90.0;
-constexpr double kMirrorSpread_deg = 2.0 * kMirrorSlope * 180.0 / std::numbers::pi;  // deflection of the rays
+// A facet with a slope up to kMirrorSlope turns the reflected ray by at most this angle.
+constexpr double kMirrorSpread_deg = 2.0 * kMirrorSlope * 180.0 / std::numbers::pi;
 
-/// Adds r_i and r_q times each function of the sky at the zenith of the reflected rays, `zenith_deg` +- `spread_deg`.
+/// Adds r_i and r_q times each function of the sky at `zenith_deg`. Their errors cover zeniths up to `spread_deg` away.
 void add_sky(Moments& moments, const SkyBasis& sky, double zenith_deg, double spread_deg) {
   const Eigen::RowVectorXd at = sky.at(zenith_deg);
   const Eigen::RowVectorXd above = sky.at(std::max(zenith_deg - spread_deg, 0.0));
@@ -73,9 +72,9 @@ Moments closed_form(const Surface& surface, const Direction& direction, const Sl
 Moments grazing_limit_moments(const FacetOptics& index, double q) {
   boost::math::quadrature::tanh_sinh<double> integrator;
   const double critical = critical_angle(index);
-  // Integrates over psi = pi/2 - phi: near psi = 0, where the integrand is not smooth, x = sin(psi) is accurate.
+  // Integrates over psi = pi/2 - phi: near x = 0 the integrand is not smooth, and sin(psi) rounds less than cos(phi).
   const auto integral = [&](auto&& of_cosine) {
-    // With the unused second parameter (distance to an end), Boost accepts nodes that round to an end of the interval.
+    // Boost refuses nodes that round to an end of the interval, unless the integrand has this unused second parameter.
     const auto integrand = [&](double psi, double) {
       const double x = std::sin(psi);
       return x > kSmallestCosine ? std::pow(x, 4.0 - 2.0 * q) * of_cosine(x) : 0.0;

@@ -25,7 +25,7 @@ constexpr double kTolerance = 1e-3;
 constexpr std::size_t kBandWavelengths = 8;
 constexpr std::size_t kDrawnPoints = 24;  // number of entries that an estimate computes from a list of points
 
-/// Most values of an axis in an estimate. For sigma and q both ends are enough, because effects are largest at an end.
+/// How many values of an axis an estimate uses at most. For sigma and q, 2 suffice: effects are largest at an end.
 std::size_t most_values(Axis axis) {
   if (axis == Axis::kMaterial) return 64;
   if (axis == Axis::kTheta || axis == Axis::kBand) return 8;
@@ -66,7 +66,7 @@ struct Sample {
 
 Sample sample_of(const SceneValues& scene, const SceneEntries& entries) {
   Sample sample{scene, spread_entries(entries), {1.0}};
-  // Float is enough for an estimate. In double, entries that cannot meet the tolerance would cost more than the table.
+  // Float is enough for an estimate. Repeating inaccurate entries in double could take longer than the whole table.
   sample.scene.accuracy = {.tolerance = kTolerance, .precision = Precision::kFloat};
   if (sample.scene.emission) sample.scene.emission->has_bracket = false;
   if (spectral_samples(scene, entries) <= kBandWavelengths) return sample;

@@ -1,5 +1,5 @@
 // Estimates how much effects of a scene change DOLP, and how wrong the model may be. For this, the CPU computes a few
-// entries that are spread over the axes, in a wide band at a few wavelengths.
+// entries that are spread over the axes. For a wide band, it computes them at a few wavelengths only.
 #pragma once
 
 #include <cstddef>
@@ -24,9 +24,9 @@ struct Looked {
   std::string text() const;     ///< "32 entries and 8 wavelengths of the band"
 };
 
-/// Sets Effect::influence of each effect that the plan keeps: the largest change of the vector (Q/I, U/I) in a few
-/// entries if the effect is left out. It stays empty if the accuracy of DOLP is unknown in all of them. Accuracy:
-/// within a factor of 2 of the largest change in all entries (tests Estimates_*).
+/// Sets Effect::influence of each effect that the plan keeps: the largest change of the vector (Q/I, U/I) if a few
+/// entries are computed without the effect. If the accuracy of DOLP is unknown for all of these entries, the influence
+/// stays empty. Accuracy: within a factor of 2 of the largest change in all entries (tests Estimates_*).
 Looked add_influences(std::vector<Effect>& rows, const SceneValues& scene, const SceneEntries& entries);
 
 struct ScatteringGap {

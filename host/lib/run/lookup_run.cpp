@@ -112,13 +112,13 @@ void check_index(const TableLookup& lookup, const SceneValues& scene, const Poin
   }
 }
 
-constexpr std::size_t kLines = 3;        // number of lines of entries along an axis; their other coordinates differ
-constexpr std::size_t kParts = 4;        // an axis is divided into so many parts; the cells at their ends are examined
+constexpr std::size_t kLines = 3;        // lines of entries along an axis, each at other values of the remaining axes
+constexpr std::size_t kParts = 4;        // number of equal parts of an axis; the cells at their ends are examined
 constexpr std::size_t kStretch = 8;      // number of values around a cell that a lookup in the cell needs
 constexpr std::size_t kLeastValues = 4;  // smallest number of values for which a lookup states an error
-// A lookup reads six values along theta, sigma and q, and four along each other axis. kOrder...: in dense grids the
-// stated error is proportional to this power of the spacing. kWeights...: sum of the absolute weights in the middle of
-// a cell, by which the interpolation may increase the errors of the entries.
+// A lookup reads six values along theta, sigma and q (OfSix), and four along each other axis (OfFour). In dense grids,
+// the stated error is proportional to the spacing of the values to the power kOrder. In the middle of a cell, the
+// interpolation may increase the errors of the entries by the factor kWeights, the sum of the absolute weights.
 constexpr double kOrderOfSix = 5.0;
 constexpr double kOrderOfFour = 3.0;
 constexpr double kWeightsOfSix = 356.0 / 256.0;
@@ -157,7 +157,6 @@ class Forecast {
   }
 
  private:
-  /// Number of values with which the error is about `wanted`; 0 if this needs more than kMostForecastValues.
   std::size_t needed(Axis axis, double wanted, std::size_t lines) {
     const double order = is_read_with_four(axis) ? kOrderOfFour : kOrderOfSix;
     for (std::size_t values = 2 * kLeastValues; values <= kMostForecastValues; values *= 2) {
@@ -182,7 +181,7 @@ class Forecast {
       const std::size_t first = std::min(cell - std::min(cell, kStretch / 2 - 1), values - length);
       for (std::size_t k = 0; k < length; ++k) positions.insert(first + k);
     }
-    double largest = -1.0;  // an error that is NaN never counts as larger
+    double largest = -1.0;  // stays negative if all errors are NaN
     for (std::size_t line = 0; line < lines; ++line) {
       scene_.grid = values_of_line(line);
       scene_.grid[axis].clear();

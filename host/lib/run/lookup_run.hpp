@@ -22,8 +22,7 @@ std::vector<PointResult> lookup_points(const TableLookup& lookup, const SceneVal
 struct AxisForecast {
   Axis axis = Axis::kTheta;
   std::size_t values = 0;  ///< number of values of the axis in the grid
-  /// Largest error of DOLP in the examined cells if lookups interpolate along this axis only. Infinite with fewer than
-  /// four values.
+  /// Largest error of DOLP in the examined cells, interpolated along this axis only. Infinite if `values` is below 4.
   double error = 0.0;
   double wanted = 0.0;  ///< largest acceptable `error`: the share of the tolerance for this axis
   /// Number of values of the axis for which the error is at most `wanted`; 0 if it is above kMostForecastValues.
@@ -32,10 +31,10 @@ struct AxisForecast {
 inline constexpr std::size_t kMostForecastValues = 10'000;
 
 /// A forecast for each axis of the grid that has more than one value and no labels. The CPU computes the table around a
-/// few cells of the axis; a lookup in the middle of each cell states the error. This is repeated with 8, 16, 32, ...
+/// few cells of the axis. A lookup in the middle of each cell states an error. The forecast then tries 8, 16, 32, ...
 /// values of the axis until the error is at most `wanted`. Features narrower than the distance between the cells are
-/// missed. Accuracy: with half of needed_values on each axis, most points miss the tolerance (test
-/// LookupForecast_TablesOfTheAdvisedDensity_*).
+/// missed. Accuracy: with needed_values on each axis, most points meet the tolerance. With half as many values, most
+/// points miss it (test LookupForecast_TablesOfTheAdvisedDensity_*).
 std::vector<AxisForecast> lookup_forecast(const SceneValues& scene, const EffectPlan& plan);
 
 }  // namespace dolp

@@ -70,7 +70,7 @@ void add_diffuse(MuellerMatrix& f, const Surface& surface, const MuellerPoint& p
   f[5] += scale * out.q * in.q;
 }
 
-/// True if the error exceeds the usual error of a pBRDF, because bounces that contribute were not computed.
+/// True if specular.error exceeds the usual bound, because bounces that contribute were not computed.
 bool is_inaccurate(const ScatteringMatrix& specular, Precision precision) {
   constexpr double kRounding = 1e-3;  // relative rounding error of specular.error, which is a sum
   const double accuracy = precision == Precision::kFloat ? kScatteringErrorFloat : kScatteringErrorDouble;

@@ -16,8 +16,8 @@ struct MuellerPoint {
 };
 
 /// The directions, slope distribution and index of each point. Values that a point lacks come from the scene. Errors:
-/// InputError for points that check_surface() refuses, and for measured reflectances. In a band also for a coating, and
-/// for a material that depends on the wavelength if points do not give n and k.
+/// InputError if check_surface() refuses a point, if the scene has measured reflectances, or if it has both a band and
+/// a coating. Unless points give n and k, also if it has both a band and a material that depends on the wavelength.
 std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points& points);
 
 /// The precision for a run. kAuto becomes float if float meets the tolerance or double is missing, otherwise double.

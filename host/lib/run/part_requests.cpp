@@ -39,10 +39,10 @@ std::vector<std::uint32_t> compact_used_values(const std::vector<double>& values
   return positions;
 }
 
-// Chosen. Fewest entries per index for which responses are used. With fewer, combining them saves too little time.
+// A grid uses responses (see run_basis) only if it has this many entries per index. With fewer, they save little.
 constexpr std::size_t kLeastEntries = 24;
-// Responses cover all combinations of direction, slope distribution and index, but points need only some. The run uses
-// responses if the number of combinations is at most this times the number of moments that the points need.
+// Responses serve every index at every direction and slope distribution of the points, but points may need few of these
+// combinations. Points use responses only if they need at least one combination in kMostOfPoints.
 constexpr std::size_t kMostOfPoints = 2;
 
 std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const SceneEntries& entries) {
@@ -266,7 +266,7 @@ void PartRequests::request_points(const Selection& selection) {
     const double zenith_deg =
         zenith_before_limit_deg(scene_.surface.masking, moment_zenith_deg(scene_, entry.theta_deg));
     const SlopeShape shape = normalised(scene_, entry.shape);
-    // An entry without its own n and k gets the number of its variant as key, with k = -1, which no real index has.
+    // An entry without its own n and k has the key (number of its variant, -1). No real index has k = -1.
     const OpticalConstants key = entry.index.value_or(OpticalConstants{static_cast<double>(entry.variant), -1.0});
     const double films_at = has_films() ? entry.variant : -1.0;
     const auto [known_span, is_new] =

@@ -18,7 +18,7 @@
 
 namespace dolp {
 
-/// Some or all entries of a part of a run. A member is the number of an entry in the selection.
+/// All or some entries of one part of a run. The functions take a `member`: the number of an entry in the selection.
 struct Selection {
   const SceneEntries& part;
   std::span<const std::size_t> chosen = {};  ///< position of each member in the part; empty: all entries are selected
@@ -44,14 +44,14 @@ Scattered beam_without_evaluator(const SceneValues& scene, double theta_deg);
 using SpectralIndices = std::vector<std::vector<FacetOptics>>;
 SpectralIndices spectral_indices(const SceneValues& scene, const SceneEntries& entries);
 
-/// Returns `samples` with n and k of the surface replaced by `index`; films stay. Without films this is one sample,
-/// because all samples would be equal. If `index` is empty, returns `samples`.
+/// Replaces n and k of the surface by `index` in each of `samples`, and keeps the films. If there are no films, all
+/// samples become equal, so the result has only one. An empty `index` replaces nothing.
 std::vector<FacetOptics> with_index(const std::vector<FacetOptics>& samples,
                                     const std::optional<OpticalConstants>& index);
 
 /// What an evaluator must compute for a selection at one level of refinement. For a grid, the request for moments has
-/// all slope distributions of the part, so that the result of an entry does not depend on the rest of the selection. In
-/// a list of points, points with the same direction, slope distribution and index share their moments.
+/// all slope distributions of the part, selected or not. The evaluator shares work between them, so with fewer of them
+/// the result of an entry would change. In a list, points with equal direction, distribution and index share moments.
 class PartRequests {
  public:
   PartRequests(const SceneValues& scene, const SpectralIndices& samples, const EffectPlan& plan,
@@ -87,16 +87,17 @@ class PartRequests {
   const Selection selection_;
   MomentsRequest moments_;
   ScatteringRequest beams_;
-  // For a grid: positions in moments_ of the values of theta, sigma and q of the part, and of the first index (n, k) of
-  // each index set. An index set has the indices of one variant (such as a band), or one index from the axes n and k.
+  // For a grid: theta_at_[i], sigma_at_[i] and q_at_[i] are the positions in moments_ of the value i of the part's
+  // axis, and index_set_offset_[i] is that of the first index (n, k) of the index set i. An index set has the indices
+  // of one variant (such as a band). In a grid with axes n and k it has one value of each, with the films of a variant.
   std::vector<std::uint32_t> theta_at_, sigma_at_, q_at_, index_set_offset_;
   std::vector<MomentsSpan> spans_of_points_;  ///< for points: where the evaluator returns the moments of each point
   std::vector<std::size_t> first_beam_;
 };
 
-/// The responses (moments with polynomials instead of reflectances) from which a run combines the moments of many
-/// indices. A run of a part of a grid uses the responses of the whole grid. Null if responses would save nothing, for
-/// example with few indices or if several bounces count.
+/// The responses of a run. A response is a moment with a polynomial instead of the reflectance. The moments of many
+/// indices are weighted sums of a few responses. Each part of a grid uses the responses of the whole grid. Null if the
+/// run integrates the moments themselves, for example because it has few indices or follows several bounces.
 std::shared_ptr<const ResponseBasis> run_basis(const SceneValues& scene, const SceneEntries& entries,
                                                const EffectPlan& plan);
 

@@ -14,8 +14,8 @@
 namespace dolp {
 namespace {
 
-/// The entries of a few directions, spread evenly over the grid. With `has_responses`, keeps all wavelengths and
-/// indices, which share responses. Otherwise keeps one wavelength and one index.
+/// The entries of a few directions, spread evenly over the grid. If `has_responses`, all wavelengths and indices stay,
+/// because the same responses (see run_basis) serve them all. Otherwise one wavelength and one index stay.
 SceneEntries entries_of_drawn_directions(const SceneEntries& grid, bool has_responses) {
   Axes axes = grid.axes();
   std::vector<double>& theta_deg = axes[Axis::kTheta];
@@ -155,7 +155,7 @@ RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries,
     }
     run.beams += beams;
     if (beams > 0) visit.beams(first.requests.beams());
-    // Memory of this part: its results and columns, and the columns of the previous part, which is still being written.
+    // Table columns (values and status) take memory twice: those of the previous part are still being written.
     const std::size_t columns = part.size() * (kQuantityCount * sizeof(double) + sizeof(std::uint32_t));
     largest = std::max(largest, part.size() * sizeof(PointResult) + columns + columns_before +
                                     first.moments.size() * sizeof(Moments) + largest_step +

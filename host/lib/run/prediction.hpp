@@ -13,7 +13,7 @@ namespace dolp {
 /// Largest number of entries that the prediction computes. If the run has more, a sample of this size represents them.
 inline constexpr std::size_t kCountedEntries = 256;
 
-/// If the entries of a direction share work, the prediction computes whole directions instead, at most so many.
+/// Largest number of directions that the prediction computes. It computes whole directions if their entries share work.
 inline constexpr std::size_t kCountedDirections = 6;
 
 struct RunPrediction {
@@ -30,7 +30,7 @@ struct RunPrediction {
   bool counts_directions = false;
   bool is_exact = true;     ///< the prediction counted all moments and beams, without estimates
   double cpu_s = 0.0;       ///< time of all levels on this CPU, extrapolated from the computed entries
-  double host_bytes = 0.0;  ///< memory for the largest part of the run and for the columns that are being written
+  double host_bytes = 0.0;  ///< host memory for the largest block of entries and for table columns still being written
 };
 
 /// Functions that predict_run() calls with each request of the first level.
@@ -39,10 +39,10 @@ struct RequestVisitor {
   std::function<void(const ScatteringRequest&)> beams;
 };
 
-/// Predicts the work of a run. For this, the CPU computes up to kCountedEntries entries, or all entries of up to
-/// kCountedDirections directions. `has_double`: the device of the run supports double. Accuracy: exact for up to
-/// kCountedEntries entries, if the device rounds like the CPU. Otherwise a few percent, or a fifth if whole directions
-/// are computed (tests Plan.FewEntries_*, Plan.ManyEntries_*, Plan.Device_*).
+/// Predicts the work of a run. For this, the CPU computes a sample: up to kCountedEntries entries, or up to
+/// kCountedDirections whole directions. `has_double`: the device of the run supports double. The prediction is exact if
+/// the sample is the whole run and the device rounds like the CPU. Otherwise its error is a few percent, or a fifth if
+/// the sample consists of directions (tests Plan.FewEntries_*, Plan.ManyEntries_*, Plan.Device_*).
 RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
                           bool has_double, const RequestVisitor& visit);
 

@@ -27,13 +27,14 @@ namespace {
 constexpr std::size_t kBetaAngles = kMostResponses;
 constexpr double kResponseC0 = 0.01;                // cosine near which abscissa() changes from linear to logarithmic
 constexpr OpticalConstants kUnusedIndex{1.5, 0.0};  // a request needs an index; its moments are not used
-// Ratio of the first tolerance of the quadrature to the tolerance of the table. Tuned for 64 x 16 x 16 entries at 1e-4.
-// Million evaluations at half, this and double: with smith masking 21.0, 22.5, 24.1; with integral 3.24, 3.00, 2.90.
+// Ratio of the first tolerance of the quadrature to the tolerance of the table. Tuned for 64 x 16 x 16 entries at the
+// tolerance 1e-4. Million evaluations at half this value, at this value and at double: 21.0, 22.5, 24.1 with smith
+// masking; 3.24, 3.00, 2.90 with integral masking.
 constexpr double kFirstShare = 0.1;
-// Ratio of the tolerance of a refinement level to that of the level before. Chosen: half and double change nothing.
+// Ratio of the tolerance of a refinement level to that of the level before. Half or double makes no difference.
 constexpr double kFinerBy = 0.03;
 constexpr int kMostLevels = 6;
-constexpr std::size_t kColumnsAtOnce = std::size_t{1} << 20U;  // number of columns in a part, which limits its memory
+constexpr std::size_t kColumnsAtOnce = std::size_t{1} << 20U;  // moments computed at once; this limits the memory
 
 /// The variable x of the Chebyshev polynomials: -1 at cos(beta) = 0, 1 at cos(beta) = 1.
 double abscissa(double cosine) { return 2.0 * std::asinh(cosine / kResponseC0) / std::asinh(1.0 / kResponseC0) - 1.0; }
@@ -47,7 +48,7 @@ Eigen::VectorXd chebyshev_at(double x) {
 
 /// The angles of incidence beta at which a response table has weights, and functions of these angles.
 struct Nodes {
-  Eigen::MatrixXd polynomials;  ///< T_m(x_j), one row per polynomial, one column per angle
+  Eigen::MatrixXd polynomials;  ///< the Chebyshev polynomial T_m at angle j, in row m and column j
   Eigen::ArrayXd sin2;          ///< sin^2 of beta
   std::vector<double> beta_deg;
 
@@ -73,9 +74,9 @@ struct Weights {
   double error = 0.0;
 };
 
-/// The weights that follow from the moments with Chebyshev polynomials, `columns`. `whole_error` is the error bound of
-/// the moment with 1 instead of a polynomial. It also bounds the error with any of the polynomials, whose absolute
-/// value is at most 1. It is used because differences between quadrature rules in `columns` may cancel by chance.
+/// Weights of an entry. `columns` are its moments with a Chebyshev polynomial T_m instead of the reflectance.
+/// `whole_error` is the error bound of the moment with 1 instead of T_m. It holds for each T_m too, because |T_m| <= 1.
+/// It is needed because i_apart, the difference of two quadrature rules, may be too small by chance.
 Weights weights_of(const std::vector<ColumnMoments>& columns, double whole_error) {
   Weights own{Eigen::ArrayXd::Zero(kBetaAngles), Eigen::ArrayXd::Zero(kBetaAngles)};
   for (std::size_t m = 0; m < columns.size(); ++m) {
@@ -84,7 +85,7 @@ Weights weights_of(const std::vector<ColumnMoments>& columns, double whole_error
         (m == 0 ? 1.0 : 2.0) / kBetaAngles * nodes().polynomials.row(static_cast<Eigen::Index>(m));
     own.i += sum.i * share;
     own.q += sum.q * share / nodes().sin2;
-    // The difference of the quadrature rules for q may cancel by chance too. So the bound of i is added to that of q.
+    // q_apart may be too small by chance, like i_apart. So the error bound of i is added to the error bound of q.
     const double of_i = std::abs(sum.i_apart) + sum.relative_error * std::abs(sum.i) + sum.error;
     const double of_q = std::abs(sum.q_apart) + sum.relative_error * std::abs(sum.q) + sum.error;
     own.error += std::ldexp(std::max(of_i, whole_error) + of_q, -static_cast<int>(m));
@@ -92,7 +93,7 @@ Weights weights_of(const std::vector<ColumnMoments>& columns, double whole_error
   return own;
 }
 
-/// The moments of a mirror. The columns in it are the values of the polynomials at beta = theta, without an integral.
+/// The moments of a mirror. They need no integral, because beta (the angle of incidence) is theta on all of the mirror.
 Moments mirror_of(const MomentsRequest& request, const Direction& direction, const SlopeShape& shape) {
   Surface surface;
   surface.distribution = request.distribution;
@@ -140,7 +141,7 @@ EntryResponses nothing_of(const MomentsRequest& request) {
   return none;
 }
 
-/// Sets the weights of mirrors, or leaves them NaN if rho has no value. Returns 1 for entries that need the evaluator.
+/// Sets the weights of mirrors. Other weights stay NaN. Returns a flag per entry: 1 if the entry needs the evaluator.
 std::vector<char> set_closed_forms(const MomentsRequest& request, EntryResponses& to) {
   std::vector<char> wanted(request.size(), 1);
   for (std::size_t i = 0; i < wanted.size(); ++i) {

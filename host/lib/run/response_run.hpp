@@ -21,15 +21,15 @@ struct EntryResponses {
 };
 
 /// Computes the weights and their error bounds. Weights are NaN where rho has no value. Entries whose response_error
-/// exceeds the tolerance times the albedo are computed again with more nodes.
+/// exceeds the tolerance times the albedo are computed again with finer quadrature.
 EntryResponses responses_of(MomentsRequest request, const Accuracy& accuracy, ModelEvaluator& evaluator,
                             const Progress& progress);
 
 MomentsRequest response_request(const Surface& surface);
 
-/// Distance between weights a and b of an entry, which response_error bounds if b is exact. Equation: the sum over m of
-/// 2^-m |sum over j of T_m(x_j) f_j (a_j - b_j)|, with Chebyshev polynomials T_m at the positions x_j of the angles
-/// beta_j. With `is_of_q` (weights of Q), f_j is sin^2(beta_j); otherwise it is 1.
+/// The distance between weights a and b: the sum over m of 2^-m |sum over j of T_m(x_j) f_j (a_j - b_j)|. T_m is a
+/// Chebyshev polynomial, and x_j is its variable at the angle beta_j. For weights of Q (`is_of_q`), f_j is
+/// sin^2(beta_j), otherwise 1. If b is exact, the distance is at most response_error.
 double response_distance(std::span<const double> a, std::span<const double> b, bool is_of_q);
 
 struct ResponseOutcome {

@@ -22,7 +22,7 @@ constexpr double kHotSky = 2.0;  // a sky hotter than this times the surface get
 constexpr double kGapRatio = 2.0;
 constexpr double kNoGapRatio = 1.5;
 constexpr double kUsualSpacings = 10.0;
-// Rows are coarse if CoarseRows::change is at least kCoarseChange. kLeastPart replaces a smaller divisor in `change`.
+// Rows are coarse if CoarseRows::change is at least kCoarseChange. The divisor in `change` is at least kLeastPart.
 constexpr double kCoarseChange = 0.05;
 constexpr double kLeastPart = 0.01;
 
@@ -47,7 +47,7 @@ double least_gap_ratio(const std::vector<double>& wavelength_um) {
   return std::clamp(std::exp(kUsualSpacings * *median), kNoGapRatio, kGapRatio);
 }
 
-/// The widest gap between rows of a file that contains wavelengths of the scene. The program interpolates across it.
+/// The widest gap between rows, among those gaps that contain wavelengths of the scene. dolp interpolates in such gaps.
 std::optional<Interval> bridged_gap(const SpectralTable& table, const std::vector<Interval>& used) {
   const std::vector<double>& um = table.wavelength_um;
   if (um.size() < 2 || table.formula.number != 0) return std::nullopt;
@@ -73,8 +73,8 @@ double normal_reflectance(const OpticalConstants& index) {
   return (std::pow(index.n - 1.0, 2) + std::pow(index.k, 2)) / (std::pow(index.n + 1.0, 2) + std::pow(index.k, 2));
 }
 
-/// Finds the row with the largest `change`. Compares R of a row with R on the line between the neighbouring rows. A
-/// quarter of the difference estimates the error, because neighbours are twice as far apart as successive rows.
+/// Compares the reflectance R of each row with R for n and k interpolated between the two neighbouring rows. These two
+/// are twice as far apart as successive rows, so the difference is about four times the error between successive rows.
 CoarseRows coarsest_rows(const Material& material, const std::vector<Interval>& used) {
   CoarseRows worst;
   const std::vector<double>& um = material.n.wavelength_um;
@@ -187,7 +187,7 @@ class Remarks {
 
   void add_hot_sky(const SkyProfile* profile) {
     const double surface_K = scene_.emission ? scene_.emission->temperature_K : 0.0;
-    if (surface_K < kLikelyCelsius_K) return;  // no emission, or a temperature with another remark
+    if (surface_K < kLikelyCelsius_K) return;  // no emission, or probably degrees Celsius
     bool is_hot = !profile && scene_.surroundings->temperature_K > kHotSky * surface_K;
     const std::vector<Interval> used = used_um(scene_);
     for (const double um : {used.front().first, used.back().second}) {

@@ -185,7 +185,8 @@ bool is_better(const PointResult& a, const PointResult& b) {
                                       std::max(b[Quantity::kErrorEstimate], b[Quantity::kRhoErrorEstimate]);
 }
 
-/// True if `level` can make an entry more accurate. It makes a beam more accurate only if the precision changes.
+/// True if `level` can make the entry more accurate. It always can if the entry has moments. A beam (a value of the
+/// pBRDF) is computed without a tolerance, so only another precision can make it more accurate.
 bool would_improve(const RunContext& context, const RefinementLevel& level, const RefinementLevel& last,
                    const SceneEntry& entry) {
   return wants_moments(context.scene, entry, context.plan) ||
@@ -194,9 +195,9 @@ bool would_improve(const RunContext& context, const RefinementLevel& level, cons
 
 using EntriesByLevel = std::map<RefinementLevel, std::vector<std::size_t>>;
 
-/// The level for a whole direction, made from `next`, the level of one entry. With responses, the level has double
-/// precision, because float rounding disturbs responses. Its tolerance is lowered by whole decades, so that more
-/// indices get the same level and share responses.
+/// The level for a whole direction, made from `next`, the level of one entry. If the run uses responses (integrals that
+/// many refractive indices share), the level has double precision if possible, because float rounding disturbs them.
+/// Its tolerance is then the scene's, lowered by whole decades, so that more indices get the same level.
 RefinementLevel level_of_direction(RefinementLevel next, const RunContext& context) {
   next.may_interpolate = true;
   if (!context.basis) return next;
@@ -207,8 +208,9 @@ RefinementLevel level_of_direction(RefinementLevel next, const RunContext& conte
   return next;
 }
 
-/// Queues entries of a direction (`members`) for later refinement levels. If many entries miss the tolerance, queues
-/// all, with interpolation. Otherwise queues only the entries that miss it, without interpolation.
+/// Queues entries of a direction (`members`) for later refinement levels. If `last` may interpolate and many entries
+/// miss the tolerance, all entries are queued for one level, which may interpolate. Otherwise only the entries that
+/// miss the tolerance are queued, each for its own level without interpolation.
 void queue_refinement(const RunContext& context, const SceneEntries& part, const RefinementLevel& last,
                       std::span<const std::size_t> members, std::span<const PointResult> results,
                       EntriesByLevel& by_level) {

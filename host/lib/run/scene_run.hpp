@@ -22,16 +22,14 @@ namespace dolp {
 SceneEntries grid_entries(const SceneValues& scene);
 
 /// The entries of scattered points. Values that a point lacks come from the scene. Points whose only column is
-/// theta_deg form a grid. Errors: InputError that names the file and line of the point, the column, and what is
-/// allowed.
+/// theta_deg form a grid. Errors: InputError that names the file, the line, the column, and what is allowed.
 SceneEntries point_entries(const SceneValues& scene, const Points& points);
 
 /// Refuses points whose slope distribution or films do not fit the scene's surface, for example wind speeds without the
 /// gaussian distribution. Errors: InputError, as for point_entries().
 void check_surface(const SceneValues& scene, const Points& points);
 
-/// Throws InputError if the scene's grid has several materials, or several bands, and no column of the points chooses
-/// among them.
+/// Throws InputError if the scene's grid has several materials or bands, and no column of the points chooses one.
 void check_labels_chosen(const SceneValues& scene, const Points& points = {});
 
 /// A receiver of the results of a run, part by part.
@@ -96,9 +94,9 @@ class Run {
   std::vector<SceneEntries> parts() const;
 
   /// Computes all parts and passes their results to `sink`. Results that miss the tolerance are computed again.
-  /// Progress counts entries. As a check, some entries of a grid are computed a second time. If an error bound proves
-  /// wrong, all entries in the direction of this entry get the status bits of missed tolerances. Errors: errors of the
-  /// evaluator, Radiometry and the sink; Cancelled.
+  /// Progress counts entries. As a check, some entries of a grid are computed a second time. If the two results of an
+  /// entry differ by more than their error bounds, all entries in its direction get the status bits of missed
+  /// tolerances. Errors: errors of the evaluator, Radiometry and the sink; Cancelled.
   RunOutcome compute(Sink& sink);
 
   double wall_s() const;  ///< time in s since the object was made

@@ -29,7 +29,7 @@ constexpr std::array kCutAxes = {Axis::kTheta,       Axis::kMaterial, Axis::kBan
                                  Axis::kTemperature, Axis::kN,        Axis::kK};
 using Cuts = std::array<std::size_t, kCutAxes.size()>;
 
-/// Finds into how many parts to cut each axis, to get `count` shards. Cuts the first axes most. False if none fit.
+/// Finds into how many parts to cut each axis for `count` shards. Cuts the first axes most. False if it is impossible.
 bool find_cuts(const PerAxis& counts, std::size_t count, std::size_t number, Cuts& cuts) {
   if (number == kCutAxes.size()) return count == 1;
   for (std::size_t parts = std::min(count, counts[kCutAxes[number]]); parts > 0; --parts) {
@@ -40,7 +40,7 @@ bool find_cuts(const PerAxis& counts, std::size_t count, std::size_t number, Cut
   return false;
 }
 
-/// The axes of `table`. Labels (of materials and bands) get their positions in the lists of the scene.
+/// The axes of `table`. On the axes of materials and bands, the values become positions in the lists of the scene.
 Axes scene_axes(TableHead table, const SceneValues& scene, const std::string& name) {
   use_scene_labels(table, scene, name);
   return table.axes;

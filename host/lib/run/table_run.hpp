@@ -17,8 +17,8 @@ namespace dolp {
 /// The path of the file of a shard: "table.2-of-8.nc" for "table.nc". Without a shard, `path` itself.
 std::filesystem::path shard_path(const std::filesystem::path& path, const Shard& shard);
 
-/// The entries of a shard. Shards divide the values of theta and, if these are too few, of all axes but sigma and q,
-/// along which entries share work. Errors: InputError for a wrong shard number or too many shards.
+/// The entries of a shard. Shards divide theta and, if it has too few values, other axes too. They never divide sigma
+/// and q, because entries along these axes share work. Errors: InputError for a wrong shard number or too many shards.
 SceneEntries shard_entries(const SceneValues& scene, const Shard& shard);
 
 struct TableJob {
@@ -32,7 +32,7 @@ struct TableJob {
 /// Errors: errors of Run and TableOutput; Cancelled. Their messages tell which parts are already on disk.
 RunOutcome write_table(const SceneValues& scene, const TableJob& job, const EvaluatorMaker& make_evaluator);
 
-/// True if the file of the job is complete and undamaged, and has the entries of this shard and the same kIdentity.
+/// True if the file of the job is complete and undamaged, and has the entries and the kIdentity that the job asks for.
 bool is_there(const SceneValues& scene, const TableJob& job);
 
 class ShardSet {

@@ -10,8 +10,7 @@
 
 namespace dolp {
 
-/// The text of the attribute "scene_overrides" of a table: one setting KEY=VALUE per line, which may have line ends in
-/// VALUE.
+/// The text of the attribute "scene_overrides": settings KEY=VALUE, each on a new line. VALUE may contain line ends.
 std::string settings_text(const std::vector<Setting>& settings);
 std::vector<Setting> settings_of(const std::string& text);
 

@@ -40,11 +40,11 @@ struct BandPiece {
 
 struct PointIntegral {
   SceneEntry entry;
-  SceneVariant variant;        ///< variant of the entry, without a wavelength
+  SceneVariant variant;        ///< variant of the entry; the quadrature sets its wavelength
   std::vector<double> breaks;  ///< wavelengths in um at which the integrand is not smooth
   std::vector<BandPiece> intervals;
   std::size_t first_new = 0;  ///< position of the first interval that is not integrated yet
-  PointResult last;           ///< result at the last wavelength, for quantities that are not integrated
+  PointResult last;           ///< result at the last node, for quantities that are not integrated
 };
 
 std::vector<double> band_breaks_um(const SceneModel& scene) {
@@ -103,7 +103,7 @@ Integrals total_of(const std::vector<BandPiece>& intervals, Integrals BandPiece:
   return sum;
 }
 
-/// The larger of two errors of the quadrature: that of DOLP, and that of the mean rho over the band.
+/// The error of the quadrature: the error of DOLP or the error of the mean rho, whichever is larger.
 double quadrature_error(const Integrals& value, const Integrals& error) {
   const double of_means = error.segment(kWeight + 1, 2).sum() / std::abs(value[kWeight + 1]);
   return std::max(error.head(kWeight).sum() / std::abs(value[0]), of_means + error[kWeight] / value[kWeight]);

@@ -1,4 +1,4 @@
-// Compares stored reference moments with the moments of an evaluator, and the DOLP of both.
+// Compares moments from an evaluator, and the DOLP that follows from them, with stored reference values.
 #pragma once
 
 #include <cstdint>
@@ -20,14 +20,14 @@ struct StoredCase {
   double theta_deg = 0.0;
   SlopeShape shape;
   OpticalConstants index;
-  Moments moments;     ///< reference moments, times cos(theta), with bounds of their errors
-  std::string name;    ///< name, which the case shares with other distributions and maskings
-  std::string origin;  ///< source of the reference moments
+  Moments moments;     ///< reference values and bounds of their errors; r_i is rho_I cos(theta)
+  std::string name;    ///< cases that differ only in distribution and masking have the same name
+  std::string origin;  ///< how the reference moments were computed
 };
 
-/// Cases that are hard to compute, for all maskings and distributions: for example at the ends of ranges, and with
-/// indices that reflect nothing or everything. Accuracy: the errors of the reference r_i and r_q are at most 1.5e-13
-/// r_i; for the index 1.0001, at most 3e-11 r_i (test HardCases_References_AreAsGoodAsStated).
+/// Cases that are hard to compute, for all maskings and distributions. Examples: ends of ranges, and indices that
+/// reflect nothing or everything. Accuracy: the errors of the reference r_i and r_q are at most 1.5e-13 r_i. For the
+/// index 1.0001 they are at most 3e-11 r_i (test HardCases_References_AreAsGoodAsStated).
 std::vector<StoredCase> hard_cases();
 
 /// Reads the text of a file that dolp-reference-values wrote. Lines that begin with # are comments. Errors: InputError.
@@ -35,12 +35,12 @@ std::vector<StoredCase> parse_stored_cases(std::string_view text, const std::str
 
 std::vector<StoredCase> read_stored_cases(const std::string& path);
 
-/// The distance of a result from its reference, and the bound of the error that the result states.
+/// The error of a result, and the error bound that the result states.
 struct ErrorCheck {
-  double error = 0.0;      ///< distance to the reference
-  double estimate = 0.0;   ///< bound that the result states; infinite if it states none
+  double error = 0.0;      ///< distance between the result and its reference
+  double estimate = 0.0;   ///< error bound that the result states; infinite if it states none
   double reference = 0.0;  ///< bound of the error of the reference, in the unit of `error`
-  /// (error - reference) / estimate; above 1, the stated bound is wrong. At most 1 if reference > error.
+  /// (error - reference) / estimate. If error <= reference, the smaller of 1 and error / estimate.
   double ratio() const;
   bool is_within_estimate() const { return ratio() <= 1.0; }
   bool is_above(double tolerance) const { return error > tolerance + reference; }
@@ -50,7 +50,7 @@ struct CaseOutcome {
   StoredCase stored;
   ErrorCheck rho;              ///< largest error of rho_I and rho_Q, relative to rho_I
   ErrorCheck dolp;             ///< absolute error of DOLP
-  bool promises_dolp = false;  ///< the accuracy of the DOLP is known
+  bool promises_dolp = false;  ///< no bit of `status` makes the accuracy of DOLP unknown
   std::uint32_t status = 0;
   /// What is wrong: an error above its bound, or a missed tolerance without its status bit. Empty if nothing.
   std::string complaint;
@@ -61,9 +61,9 @@ struct CaseOutcome {
 /// A scene for stored cases: the surface only emits, at 300 K and 10.6 um. So DOLP = |rho_Q| / (1 - rho_I).
 SceneValues emission_scene(Distribution distribution, Masking masking, double tolerance);
 
-/// Evaluates all cases and compares each with its reference, in the order of `cases`. At 90 degrees, where rho is
-/// infinite, only DOLP is compared, with |r_q / r_i|. Domain: cases at 90 degrees have masking `none` or `integral` and
-/// finite reference moments. Errors: errors of evaluate_scene.
+/// Evaluates all cases and compares each with its reference, in the order of `cases`. At 90 degrees rho is infinite. So
+/// only DOLP is compared there; its reference is |r_q / r_i|. Domain: cases at 90 degrees have masking `none` or
+/// `integral` and finite reference moments. Errors: errors of evaluate_scene.
 std::vector<CaseOutcome> qualify(const std::vector<StoredCase>& cases, ModelEvaluator& evaluator,
                                  const Accuracy& accuracy, const Progress& progress);
 

@@ -24,7 +24,7 @@ namespace {
 // The tolerance of the reference is a hundredth of the table's tolerance, but not below this value.
 constexpr double kReferenceTolerance = 1e-11;
 
-/// How the error bound of a quantity follows from the columns error_estimate and rho_error_estimate of a table.
+/// Ways in which the error bound of a quantity follows from the columns error_estimate and rho_error_estimate.
 enum class Bound { kDolp, kReflectance, kPolarisedRadiation, kRadiation, kEmissivity, kAlbedo };
 
 struct Compared {
@@ -47,13 +47,14 @@ constexpr std::array<Compared, 13> kCompared{{
     {Quantity::kEmissivityP, Bound::kEmissivity},
 }};
 
-/// Bound of an error that tables do not state, divided by the largest of both stated errors and the tolerance.
+/// Tables state no errors of emissivities and albedo, nor of I where DOLP is 0. Their relative bound is assumed to be
+/// this factor times the largest of error_estimate, rho_error_estimate and the tolerance.
 constexpr double kUnstatedOverStated = 10.0;
 
 /// Terms of the error bounds that all entries of one variant (material, band, wavelength, temperature) share.
 struct BoundTerms {
   double tolerance = 0.0;
-  double radiation = 0.0;  ///< largest Stokes I: emission and path radiance, with all incident light reflected
+  double radiation = 0.0;  ///< largest possible Stokes I: full emission and reflection, plus path radiance
 };
 
 BoundTerms bound_terms(const SceneModel& scene) {
@@ -71,7 +72,7 @@ std::vector<BoundTerms> bound_terms(const SceneValues& scene, const std::vector<
   return terms;
 }
 
-/// The error bound of a quantity. The two estimates are the stated errors of the table or of the reference.
+/// The error bound of a quantity. Both estimates come from the table, or both from the reference.
 double bound_of(Bound bound, double dolp_estimate, double rho_estimate, const PointResult& reference,
                 const BoundTerms& terms) {
   const double radiation = dolp_estimate * std::abs(reference[Quantity::kStokesI]);
@@ -85,7 +86,7 @@ double bound_of(Bound bound, double dolp_estimate, double rho_estimate, const Po
     case Bound::kPolarisedRadiation:
       return radiation;
     case Bound::kRadiation:
-      // An error of I changes DOLP in proportion to DOLP. So if DOLP is 0, its error does not bound the error of I.
+      // A relative error e of I changes DOLP by e DOLP. So the error of DOLP bounds the error of I, unless DOLP is 0.
       return std::min(dolp > 0.0 ? radiation / dolp : kInfinity, unstated * terms.radiation);
     case Bound::kEmissivity:
       return unstated;
@@ -95,7 +96,7 @@ double bound_of(Bound bound, double dolp_estimate, double rho_estimate, const Po
   return kInfinity;
 }
 
-/// Tells what is wrong with a value. `allowed` is the largest error within the tolerance; infinite without a tolerance.
+/// Tells what is wrong with a value. `allowed` is the largest error that the tolerance allows, or infinity.
 std::string complaint_about(const CheckedValue& value, double allowed) {
   if (std::isnan(value.stored) && std::isnan(value.reference)) return {};
   if (std::isnan(value.stored)) return "is NaN in the table";
@@ -135,7 +136,7 @@ CheckedValue compare(const TableSample& sample, const Compared& compared, std::s
   value.stated = bound_of(compared.bound, dolp_estimate, rho_estimate, reference, terms);
   value.reference_error = bound_of(compared.bound, reference[Quantity::kErrorEstimate],
                                    reference[Quantity::kRhoErrorEstimate], reference, {0.0, terms.radiation});
-  // Without an error estimate in table and reference, for example because I overflows, any error is allowed.
+  // If neither the table nor the reference has an error bound, for example because I overflows, any error is allowed.
   if (std::isnan(value.stated) && !std::isfinite(value.reference_error))
     value.stated = value.reference_error = kInfinity;
   const std::uint32_t status = table.status.empty() ? kAnyToleranceNotMet : table.status[i];
@@ -201,8 +202,7 @@ std::vector<std::size_t> sample_positions(std::size_t entries, const TableCheckO
     for (std::size_t i = 0; i < entries; ++i) chosen.insert(i);
     return {chosen.begin(), chosen.end()};
   }
-  // Floyd's sampling (Bentley, Programming Pearls, Comm. ACM 30, 1987). std::sample may give other entries with other
-  // standard libraries. The remainder of a 64-bit number by at most 2^24 entries is uniform to 1e-12.
+  // Floyd's sampling (Bentley, Comm. ACM 30, 1987). The choice of std::sample depends on the standard library.
   std::mt19937_64 engine(options.seed);
   for (std::size_t last = entries - options.samples; last < entries; ++last) {
     const std::size_t candidate = engine() % (last + 1);

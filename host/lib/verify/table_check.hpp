@@ -25,7 +25,7 @@ struct CheckedValue {
   double stored = 0.0;
   double reference = 0.0;
   double stated = 0.0;           ///< error bound that the table states, in the unit of `stored`
-  double reference_error = 0.0;  ///< error bound of `reference`, in the same unit
+  double reference_error = 0.0;  ///< error bound of `reference`, in the unit of `stored`
   std::string complaint;         ///< what is wrong; empty if nothing is wrong
   double error() const;
   /// error() divided by the sum of `stated` and `reference_error`; 0 if the table states no bound.
@@ -42,7 +42,7 @@ struct QuantityCheck {
 struct TableCheck {
   std::size_t entries = 0;
   std::size_t checked = 0;
-  std::size_t missed = 0;  ///< checked entries whose status says that DOLP or rho misses its tolerance
+  std::size_t missed = 0;  ///< checked entries that miss the tolerance, according to the table
   double tolerance = 0.0;
   std::vector<QuantityCheck> quantities;
   std::vector<CheckedValue> failures;
@@ -60,24 +60,24 @@ struct TableSample {
   std::vector<std::size_t> positions;
 };
 
-/// Compares a sample of a table with results from the adaptive quadrature of ReferenceEvaluator (over a band, of
-/// integrate_band). A value is wrong in three cases: its error exceeds the stated bound plus the bound of the
-/// reference; only one of table and reference has a number; or rho or DOLP misses the tolerance without a status bit.
-/// bound_of() gives the stated bound of each quantity. Closed forms of mirrors and limits are not checked
-/// independently, because every evaluator takes them from the same code. Errors: InputError that begins with `name` if
-/// the table has nothing to compare or has axes out of range; Cancelled.
+/// Compares a sample of a table with results of ReferenceEvaluator; integrate_band() integrates these over a band.
+/// A value is wrong if its error exceeds the bound of the table plus the bound of the reference. It is also wrong if
+/// only the table or only the reference has a number, or if rho or DOLP misses the tolerance without a status bit.
+/// Values from closed forms, such as those of a mirror, are not checked independently, because every evaluator takes
+/// them from the same code.
+/// Errors: InputError that begins with `name` if the table has nothing to compare or has axes out of range; Cancelled.
 TableCheck check_table(const TableSample& sample, const SceneValues& scene, const std::string& name,
                        const Progress& progress);
 
-/// Compares the weights in a sample of a response table with weights from ReferenceEvaluator. They are wrong if their
-/// response_distance() exceeds the response_error of the table plus that of the reference. Errors: InputError that
-/// begins with `name` if the table has no response_error; Cancelled.
+/// Compares the weights in a sample of a response table with weights from ReferenceEvaluator. The weights of an entry
+/// are wrong if their response_distance() to the reference exceeds the sum of the two error bounds response_error.
+/// Errors: InputError that begins with `name` if the table has no response_error; Cancelled.
 TableCheck check_responses(const TableSample& sample, const SceneValues& scene, const std::string& name,
                            const Progress& progress);
 
 /// Results at points of a scene with a band. An adaptive Gauss-Kronrod quadrature integrates over the wavelength. Its
-/// remaining error is part of the error estimates. Quantities that are no integrals over the wavelength, such as the
-/// bounds of the bracket, come from the spectral rule that a run uses.
+/// remaining error is part of the error estimates. Two bounds of DOLP, dolp_low and dolp_high, are no such integrals.
+/// evaluate_scene() computes them, and all results at points where the integrals give no DOLP.
 std::vector<PointResult> integrate_band(const SceneValues& scene, const SceneEntries& points, ModelEvaluator& evaluator,
                                         const Progress& progress);
 

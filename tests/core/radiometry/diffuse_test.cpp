@@ -1,4 +1,4 @@
-// Polarised diffuse reflection, compared with sums over directions that share no code with it.
+// Polarised diffuse reflection, compared with sums over directions that this file computes itself.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -55,8 +55,8 @@ TEST(Radiometry, ErrorOfTheDeficit_CancelsInIsothermalIntensityWhereItCannotMatt
   const PointResult cold = evaluate(scene, direction, moments);
   scene.surroundings->temperature_K = 289.0;
   const PointResult warm = evaluate(scene, direction, moments);
-  // I = pi B + (X - pi B) rho, where pi B is emitted by a black body and X comes from the surroundings. If both
-  // temperatures differ by 1 K instead of 50 K, X - pi B is much smaller, and so is the effect of an error of rho.
+  // I = pi B + (X - pi B) rho. A black body as warm as the surface emits pi B; the surroundings emit X. They are 50 K
+  // or 1 K colder than the surface. With 1 K, X - pi B is much smaller, and so is the effect of an error of rho.
   EXPECT_LT(warm[Quantity::kErrorEstimate], 1e-3 * cold[Quantity::kErrorEstimate]);
 }
 

@@ -46,7 +46,7 @@ TEST(Radiometry, RandomScenes_AgreeWithPrintedFormulas) {
       continue;
     }
     const auto expected_dolp = static_cast<double>(std::abs(expected.q) / expected.i);
-    // With total reflection the emission is 0. The program finds exactly 0; the printed formula 1 - R rounds.
+    // With total reflection the emission is 0. The program gives exactly 0, but 1 - R in the expected value is rounded.
     const double printed_rounding = 16.0 * static_cast<double>(std::numeric_limits<Real>::epsilon()) *
                                     Radiometry(scene).rule().samples[0].emitted / std::abs(actual[Quantity::kStokesI]);
     const double bound =

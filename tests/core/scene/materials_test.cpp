@@ -57,7 +57,7 @@ TEST(Material_BuiltIn, IsLinearBetweenTheRowsOfTheFile) {
       {"iron", 20.0, {13.13127, 53.12441}},            // last row
       {"sapphire o", 10.0, {0.89, 0.094}},             // a row inside the table
       {"Kapton", 13.36, {1.749865, 0.03707}},          // half way between the rows at 13.34 and 13.38 um
-      {"carbon", 1.24, {2.204, 1.04}},                 // a row outside of 2 to 20 um
+      {"carbon", 1.24, {2.204, 1.04}},                 // most tables begin at 2 um, this one below
   };
   for (const Case& row : cases) {
     const double um = row.wavelength_um;
@@ -69,7 +69,8 @@ TEST(Material_BuiltIn, IsLinearBetweenTheRowsOfTheFile) {
 }
 
 TEST(Material_BuiltIn, IsWithinTheThinningOfTheWholeRecord) {
-  constexpr double kThinning = 1e-3;  // largest error of thinned tables, over |n + ik|; see host/data/materials.csv
+  // host/data/materials.csv omits rows of the database. This changes N = n + ik by at most kThinning |N|.
+  constexpr double kThinning = 1e-3;
   struct Case {
     const char* name;
     double n, k;
@@ -198,7 +199,7 @@ std::string formula(const std::string& range, const std::string& coefficients, i
          "\n    coefficients: " + coefficients + "\n";
 }
 
-// Published coefficients. The last column is the index that the formula gives; the comments have published indices.
+// Coefficients from publications. The comments name the material and, if published, its index at the wavelength.
 TEST(Dispersion_Formulas, HaveThePublishedValues) {
   struct Case {
     int number;
@@ -234,7 +235,7 @@ TEST(Dispersion_Formulas, HaveThePublishedValues) {
       // urea, Rosker 1985
       {9, "2.51527 0.0240 0.0300 0.0202 1.52 0.8771", 0.5893, 1.6062783},
   };
-  constexpr double kShownDigits = 1e-7;  // accuracy of the indices above
+  constexpr double kShownDigits = 1e-7;  // the indices above have seven decimals
   for (const Case& row : cases) {
     const double um = row.wavelength_um;
     const std::string range = std::to_string(0.99 * um) + " " + std::to_string(1.01 * um);
@@ -318,7 +319,7 @@ TEST(MaterialFile_Wrong, NamesFileAndLine) {
   }
 }
 
-// Ways in which database records may differ from two tidy columns. All these records must give the same material.
+// Ways in which a file may differ from tidy.yml. All these files must give the same material.
 TEST(MaterialFile_UntidyRecord, IsTheTidyOne) {
   const OpticalConstants half_way{1.75, 0.2};
   const std::string nk = "DATA:\n  - type: tabulated nk\n    data: |\n";

@@ -298,7 +298,7 @@ TEST(Scene_EveryWord, NamesTheAllowedWords) {
     if (key.type != Key::Type::kWord) continue;
     const std::string error = error_of(kMinimal, {key.key + "=nonsense"});
     for (const std::string& word : key.words) EXPECT_TRUE(contains(error, word)) << error;
-    // With v-cavity masking a key accepts each of its words.
+    // The scene has v-cavity masking, because some words are allowed only with it.
     for (const std::string& word : key.words) {
       EXPECT_EQ(error_of(kMinimal, {"surface.masking=v-cavity", key.key + "=" + word}), "no error");
     }
@@ -346,7 +346,7 @@ TEST(SceneAxis_Linear, IsExactForWholeDegreesAndDescends) {
 
 TEST(SceneAxis_Log, HasExactEndsAndEqualRatios) {
   const SceneValues scene = parse(kMinimal + "[grid]\nsigma = { from = 0.01, to = 1, count = 3, spacing = \"log\" }\n");
-  // rounding of two powers, each accurate to 1 ulp, and of their product
+  // The value in the middle is 0.01^0.5 * 1^0.5. Both powers and their product have a rounding error.
   constexpr double kTwoPowers = 3.0 * 2.3e-16;
   ASSERT_EQ(scene.grid[Axis::kSigma].size(), 3U);
   EXPECT_EQ(scene.grid[Axis::kSigma][0], 0.01);

@@ -111,7 +111,8 @@ TEST(SkyProfile, BuiltInSkies_FollowTheirFormulas) {
   for (const BuiltInSky& sky : built_in_skies()) EXPECT_TRUE(built_in_sky(sky.name)) << sky.name;
 }
 
-// The means over mu = cos(zenith) have the weight mu^(c + 1), so that the mean of mu^p is (c + 2) / (c + 2 + p).
+// mu is cos(zenith). Means over the sky have the weight mu^(c + 1): the projected area times a reflectance mu^c. So the
+// mean of mu^p is (c + 2) / (c + 2 + p).
 TEST(SkyNodes, Means_OfPowersOfTheCosine_AreTheirClosedForms) {
   const SkyNodes nodes({0.0, 25.0, 60.0, 85.0, 90.0});
   for (const double c : {-0.9, -0.5, 0.0}) {
@@ -127,7 +128,7 @@ TEST(SkyNodes, Means_OfPowersOfTheCosine_AreTheirClosedForms) {
   }
 }
 
-// A column of w cm of vapour has the vapour pressure e = w T / 46.5 hPa. Here w is 1 cm and T is 290 K.
+// Precipitable water of w cm at T kelvin means a vapour pressure of (w T / 46.5) hPa. Here w = 1 and T = 290.
 TEST(BuiltInSky, VapourAndTemperature_GiveTheEmittancesOfIdso) {
   const SkyProfile sky = *built_in_sky("clear-sky", {1.0, 290.0});
   const double vapour = std::pow(290.0 / 46.5, 2.0) * std::exp(3000.0 / 290.0);
@@ -150,7 +151,7 @@ TEST(BuiltInSky, WithoutVapourAndTemperature_IsTheStandardAtmosphere) {
 
 TEST(BuiltInSky, MoreVapourThanTheAirHolds_IsRefused) {
   EXPECT_THROW(built_in_sky("clear-sky", {2.0, 273.15}), InputError);
-  EXPECT_NO_THROW(built_in_sky("clear-sky", {1.0, 273.15}));  // air of 273.15 K holds 6.11 hPa, which is 1.04 cm
+  EXPECT_NO_THROW(built_in_sky("clear-sky", {1.0, 273.15}));  // air of 273.15 K holds at most 1.04 cm of water
   EXPECT_THROW(parse(kMinimal + "[surroundings]\ntemperature_K = 240\nvapour_cm = 1\n"), InputError);
 }
 

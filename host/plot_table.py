@@ -148,7 +148,7 @@ class Slice:
             return data[np.ix_(rows, columns)]
 
         self.dolp = 100.0 * values("dolp", np.nan)
-        if "stokes_i" in dataset.variables:  # not drawn: limits of DOLP at 90 degrees where I has no limit
+        if "stokes_i" in dataset.variables:  # if I is NaN, DOLP is only its limit toward 90 degrees: not drawn
             self.dolp[np.isnan(values("stokes_i", np.nan))] = np.nan
         status = values("status", 0) if "status" in dataset.variables else np.zeros(self.dolp.shape, int)
         self.status = status & ~RHO_TOLERANCE_NOT_MET  # the picture shows DOLP, not rho

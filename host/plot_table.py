@@ -3,10 +3,10 @@
 
 Usage: plot_table.py TABLE.nc OUT.png [--q Q] [--wavelength UM] [--temperature K] [--n N] [--k K] [--material NAME] [--band FROM-TO]
        plot_table.py TABLE.nc OUT.png --rank THETA ...   ranks the materials of a table by DOLP at this zenith
-The picture shows one value of every further axis, such as q: the value nearest to the number in the option, here --q Q.
-Without the option it shows the value nearest to the scene's value, or the middle value if the scene has no value, or
-the first material or band. One curve has the scene's sigma. If the table has winds, winds replace sigma. Entries with a
-nonzero status are faint in curves, hatched in maps. Needs python3-netcdf4, python3-numpy and python3-matplotlib.
+Of each axis except theta and sigma the picture shows one value. An option such as --q Q chooses the value nearest to Q.
+Without an option the picture shows the value nearest to the scene's value (the middle value if the scene has none), and
+the first material or band. One curve has the scene's sigma. In a table of wind speeds, wind replaces sigma. Entries
+with nonzero status are faint in curves, hatched in maps. Needs python3-netcdf4, python3-numpy and python3-matplotlib.
 Exit status: 0 done, 2 usage or a file that is not such a table, 4 the picture could not be written.
 """
 import argparse
@@ -31,7 +31,7 @@ import picture_file  # noqa: E402
 COLOURS = "viridis"
 MOST_CURVES = 6
 CONTOURS_PERCENT = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50)
-SHOWN_SHARE_PERCENT = 97  # share of the entries for which the DOLP scale is long enough; a steep rise may exceed it
+SHOWN_SHARE_PERCENT = 97  # share of the entries that fit on the DOLP scale; a few much larger values may not fit
 FEW_ANGLES = 25  # a curve of at most this many zeniths has a dot at each entry
 # Least number of values of theta and of sigma for a map. A smaller map would suggest structure that the table lacks.
 FEWEST_OF_MAP = 6
@@ -46,9 +46,9 @@ STATUS_MEANINGS = {
 RHO_TOLERANCE_NOT_MET = 16
 
 
-# The axes of numbers from which the picture shows one value, and the symbol of each axis.
+# The picture shows one value of each of these numeric axes. The texts are the symbols of the axes.
 SYMBOLS = {"q": "q", "wavelength": "λ", "temperature": "T", "n": "n", "k": "k"}
-NAMED = ("material", "band")  # the axes of names from which the picture shows one name
+NAMED = ("material", "band")  # axes whose values are names; the picture shows one of the names
 UNITS = {"wavelength": " µm", "temperature": " K", "band": " µm"}
 KEYS = {"temperature": ("emission", "temperature_K"), "q": ("surface", "q"), "wavelength": ("spectrum", "wavelength_um"), "n": ("surface", "n"), "k": ("surface", "k"),
         "sigma": ("surface", "sigma"), "wind_m_s": ("surface", "wind_m_s")}  # the scene's key for each axis
@@ -88,7 +88,7 @@ def index_in_scene(dataset, axis):
 
 
 def title_of(dataset):
-    """The scene's title with the scene's spectrum. Without the scene's wind if the table has an axis of winds."""
+    """The scene's title and spectrum. If the table has a wind axis, the wind speed is removed from the title."""
     title = re.sub(r"[, ]*[\d.]+( *[-–] *[\d.]+)? *[uµ]m$", "", text_of(dataset, "title"))
     if "wind_m_s" in dataset.variables:
         title = re.sub(r"[, ]*wind [\d.]+ m/s", "", title)
@@ -100,7 +100,7 @@ class NotATable(Exception):
 
 
 def position_of(dataset, axis, name):
-    """Position of a material or band on its axis. A part of its name is enough if no other name contains this part."""
+    """Position of a material or band on its axis. `name`: its name, or a part that no other name contains."""
     names = [str(own) for own in dataset[axis][:]]
     alike = [i for i, own in enumerate(names) if name.lower() in own.lower()]
     same = [i for i in alike if names[i].lower() == name.lower()]
@@ -110,11 +110,11 @@ def position_of(dataset, axis, name):
 
 
 class Slice:
-    """The part of a table at one value of every axis except theta and sigma. Theta and sigma are sorted, DOLP is in
-    percent. If the table has winds, `sigma` contains the winds instead."""
+    """A table's entries over theta and sigma, at one value of each other axis. Theta and sigma are sorted, DOLP is in
+    percent. In a table of wind speeds, `sigma` contains the wind speeds."""
 
     def __init__(self, dataset, wanted):
-        """`wanted` has a value for each axis in SYMBOLS and NAMED. None means the scene's value, or the first name."""
+        """`wanted`: a value for each axis in SYMBOLS and NAMED. None: the scene's value; in NAMED the first name."""
         for name in ("theta", "sigma", "q", "dolp"):
             if name not in dataset.variables:
                 raise NotATable(f"has no variable {name}; a table with DOLP is expected")
@@ -148,7 +148,7 @@ class Slice:
             return data[np.ix_(rows, columns)]
 
         self.dolp = 100.0 * values("dolp", np.nan)
-        if "stokes_i" in dataset.variables:  # not drawn: limits of DOLP at 90 degrees where I has no limit
+        if "stokes_i" in dataset.variables:  # if I is NaN, DOLP is only its limit toward 90 degrees: not drawn
             self.dolp[np.isnan(values("stokes_i", np.nan))] = np.nan
         status = values("status", 0) if "status" in dataset.variables else np.zeros(self.dolp.shape, int)
         self.status = status & ~RHO_TOLERANCE_NOT_MET  # the picture shows DOLP, not rho

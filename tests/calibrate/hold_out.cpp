@@ -19,8 +19,8 @@ constexpr std::size_t kAtOnce = 2000;  // entries per call of an evaluator; limi
 constexpr std::size_t kClimbSteps = 40;
 constexpr std::size_t kNeighbours = 16;
 
-/// Moments of some entries. `stated` come from the rule under test, with its error bounds. `exact` come from a far more
-/// accurate rule.
+/// Moments of some entries, with error bounds. `stated` come from the rule under test. `exact` come from a far more
+/// accurate rule or from the reference.
 struct Answers {
   std::vector<Moments> stated;
   std::vector<Moments> exact;
@@ -98,7 +98,8 @@ MomentsPoint neighbour(Draw& draw, const MomentsPoint& entry, Domain domain, dou
   return next;
 }
 
-/// True if random_entry may return this entry. A search for entries with larger errors (a climb) stays in this domain.
+/// True if a climb may continue at `entry`. In a climb sigma and q stay below the upper ends of their ranges in
+/// random_entry(). In the ordinary domain sigma, q and n also stay above the lower ends.
 bool is_in(Domain domain, const MomentsPoint& entry, double q_end) {
   if (domain == Domain::kCorners) return entry.shape.sigma <= 10.0 && entry.shape.q <= q_end + 20.0;
   return entry.shape.sigma >= 0.01 && entry.shape.sigma <= 2.0 && entry.shape.q >= q_end + 0.1 &&

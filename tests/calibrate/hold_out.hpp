@@ -1,6 +1,6 @@
-// Tests the error bounds with random entries that were not used to fit the rules. Compares the moments with moments by
-// finer rules or by the independent reference. Then searches near the entries with the largest ratio of error to bound
-// for a larger ratio. Such a search is called a climb.
+// Tests the error bounds of moments with random entries that were not used to fit the rules. A finer rule or the
+// independent reference computes each moment again, which gives the error. Then climbs start from the entries with the
+// largest ratio of error to bound. A climb is a random search, near an entry, for a larger ratio.
 #pragma once
 
 #include <cstddef>
@@ -16,10 +16,10 @@ struct HoldOutOptions {
   double tolerance = 1e-4;
   std::size_t entries = 1000;
   std::uint64_t seed = 1;
-  std::size_t climbs = 0;          ///< number of climbs; they start from the random entries with the largest ratios
+  std::size_t climbs = 0;          ///< number of searches for a larger ratio, each near one of the worst random entries
   bool against_reference = false;  ///< compare with the reference, which takes a second per entry on one core
-  /// Factor of all error bounds of the rules. The smallest factor at which all bounds still hold shows how far the
-  /// bounds are above the errors.
+  /// The test multiplies all error bounds of the rules by this number. If the bounds hold even with a small number,
+  /// they are far above the errors.
   double bound_share = 1.0;
 };
 
@@ -29,7 +29,7 @@ struct CheckedEntry {
   double ratio = 0.0;
 };
 
-/// Result of the hold-out test of one model.
+/// Result of hold_out().
 struct HoldOut {
   std::size_t entries = 0;
   std::size_t understated = 0;  ///< number of entries where the error of at least one moment exceeds its bound
@@ -37,11 +37,11 @@ struct HoldOut {
   double flagged_share = 0.0;
   double mean_evaluations = 0.0;
   CheckedEntry worst;    ///< the random entry with the largest ratio
-  CheckedEntry climbed;  ///< the entry with the largest ratio, including the entries that climbs found
+  CheckedEntry climbed;  ///< the entry with the largest ratio among the random entries and those that climbs found
 };
 
-/// Tests the rules of `model`, a request without entries, on the CPU. Computes in double if the tolerance is too small
-/// for float.
+/// Tests, on the CPU, the rules for the masking, scattering and distribution of `model`, which is a request without
+/// entries. Computes in double if the tolerance is too small for float.
 HoldOut hold_out(const MomentsRequest& model, const HoldOutOptions& options);
 
 }  // namespace dolp

@@ -16,11 +16,12 @@ struct RuleFitOptions {
   int rounds = 4;  ///< passes over all constants; each pass halves the steps
 };
 
-/// Mean of ln(weighted evaluations per entry) over random entries, both distributions and tolerances from 1e-2 to 1e-8.
-/// Entries that miss a tolerance are computed again, as in a run. `integrand` is a request without entries.
+/// Mean of ln(work) over random entries, both distributions and tolerances from 1e-2 to 1e-8. The work of an entry is
+/// its number of evaluations. Entries that miss a tolerance are computed again, and these evaluations have a larger
+/// weight. `integrand` is a request without entries.
 double mean_log_work(const MomentsRequest& integrand, const RuleModel& model, const RuleFitOptions& options);
 
-/// The starting point of every search.
+/// The constants at which fit_rule() starts.
 inline constexpr RuleModel kFitStart = {.margin_digits = 2.0,
                                         .t_nodes = 2.0,
                                         .t_digits = 0.0,

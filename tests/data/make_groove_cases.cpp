@@ -1,5 +1,5 @@
-// make_groove_cases FILE.csv: writes reference moments with all bounces in V-grooves, for hard cases and random
-// entries. Tests compare the kernels with them. Takes minutes.
+// make_groove_cases FILE.csv: writes moments that the reference computes for V-grooves with all bounces. The entries
+// are hard cases and random entries. Tests compare the kernels with these moments. The program takes minutes.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -17,10 +17,10 @@ namespace {
 
 using namespace dolp;
 
-// Relative tolerance of the reference: a tenth of the tightest tolerance in the tests of grooves. The reference misses
-// it near q = 1.
+// Relative tolerance of the reference: a tenth of the smallest tolerance in the tests of grooves. The reference misses
+// this tolerance for some steep surfaces and for some with q near 1. So the file contains the error of each moment.
 constexpr double kTolerance = 1e-7;
-// Random entries for which the reference has a larger relative error are left out.
+// A random entry is left out if the reference gives its r_i with a relative error above this number.
 constexpr double kLeastKnown = 1e-3;
 constexpr std::uint64_t kSeed = 20261122;
 constexpr int kOrdinary = 12;  // random entries per distribution

@@ -24,10 +24,10 @@ COMMANDS = {"table": (["table", "scene.toml"], "out.nc"),
             "eval": (["eval", "scene.toml", "--points", "points.csv"], "out.csv"),
             "lookup": (["lookup", "in.nc", "--points", "points.csv"], "out.csv")}
 CPU = ("--evaluator", "cpu")
-# A table of many tiles, which takes about a second on one core.
+# A table that takes about a second on one core. A Vulkan device computes it in several submissions.
 LARGE = ("--set", "grid.theta_deg={from=0, to=89, count=60}", "--set", "grid.sigma={from=0.05, to=1, count=20}")
 SLOW = (*CPU, "--tolerance", "1e-6", "--precision", "double", *LARGE)
-# A table in more than one part, which takes about a second.
+# A table of 3 million entries, which takes about a second. The program writes such a table in several parts.
 PARTS = (*CPU, "--tolerance", "1e-2", "--set", "surface.masking=none", "--set", "surface.distribution=gaussian",
          "--set", "grid.theta_deg={from=0, to=89, count=90}", "--set", "grid.sigma={from=0.05, to=1, count=400}",
          "--set", "grid.q={from=2, to=4, count=90}")
@@ -125,7 +125,7 @@ class Attempt:
 
     def start(self):
         def prepare():
-            # If a shell starts this script in the background, the script and its children ignore these signals.
+            # A shell may start this script with SIGINT or SIGHUP ignored. The program under test must not inherit this.
             for number in (signal.SIGINT, signal.SIGHUP):
                 signal.signal(number, signal.SIG_DFL)
             if self.limit:

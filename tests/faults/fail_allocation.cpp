@@ -1,6 +1,5 @@
-// A preloaded library that makes one allocation of a program fail, or one and all later ones. Environment:
-//   DOLP_FAIL_ALLOCATION   number of the allocation, counted from 1 at the program's start, for example 17; 17+ also
-//                          fails all later ones
+// A preloaded library that makes one allocation of a program fail, or this allocation and all later ones. Environment:
+//   DOLP_FAIL_ALLOCATION   17 makes the 17th allocation of the program fail; 17+ makes all later ones fail, too
 //   DOLP_COUNT_ALLOCATIONS a file that receives the number of allocations when the program ends
 #include <dlfcn.h>
 

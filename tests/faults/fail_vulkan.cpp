@@ -121,7 +121,8 @@ extern "C" VKAPI_ATTR VkResult VKAPI_CALL vkQueueSubmit(VkQueue queue, uint32_t 
   return fault == VK_SUCCESS ? next<PFN_vkQueueSubmit>("vkQueueSubmit")(queue, count, submits, fence) : fault;
 }
 
-// Waits in the real function before it reports a fault: the work of a device that is reported as lost must have ended.
+// Calls the real function before it reports a fault. After a fault the program frees the memory of the submitted work.
+// So the real device must have finished this work.
 extern "C" VKAPI_ATTR VkResult VKAPI_CALL vkWaitForFences(VkDevice device, uint32_t count, const VkFence* fences,
                                                           VkBool32 all, uint64_t timeout) {
   const VkResult result = next<PFN_vkWaitForFences>("vkWaitForFences")(device, count, fences, all, timeout);

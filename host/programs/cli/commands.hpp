@@ -62,8 +62,8 @@ int run_merge(const Options& options);
 int run_eval(const Options& options);
 int run_mueller(const Options& options);
 int run_plan(const Options& options);
-/// Returns kExitAccuracy if an error exceeds its error bound. It does so too if DOLP or rho of an entry misses its
-/// tolerance and the status of the entry does not report this.
+/// Returns kExitAccuracy if a value is wrong: for example, if its error exceeds its error bound, or if it misses its
+/// tolerance and the status of its entry does not say so.
 int run_verify(const Options& options);
 int run_lookup(const Options& options);
 int run_fit(const Options& options);  ///< returns kExitAccuracy if the fit finds no minimum

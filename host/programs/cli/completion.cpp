@@ -31,7 +31,7 @@ Words names_of(const CLI::Option& option) {  // for example "--output" and "-o"
 Words settings_for(const std::string& option) {
   Words all;
   for (const Key& key : dolp::keys()) {
-    if (key.layer > 1) continue;  // the keys of the first film stand for the keys of all films
+    if (key.layer > 1) continue;  // all films of a coating have the same keys; the first film is enough
     if (option == "--vary" && key.type != Key::Type::kNumber) continue;
     if (option == "--compare" && key.words.empty()) continue;
     if (key.words.empty() || option == "--compare") {
@@ -59,8 +59,8 @@ Words choices_of(const CLI::Option& option) {
   return words;
 }
 
-/// The words that may complete a command line. Each line has a word, a tab and a description. `line` contains the words
-/// after `dolp`. The shell script puts a colon before the last word, because this word may be empty.
+/// A text with a line for each word that may complete `line`: the word, a tab and a description. `line` has the words
+/// after `dolp`. The shell script puts a colon before the last word, so that an empty word is an argument, too.
 std::string completing_words(const CLI::App& app, const Words& line) {
   const std::string current = line.empty() ? "" : line.back().substr(1);
   std::string found;

@@ -75,8 +75,8 @@ int parse_and_run(int argc, char** argv) {
   return status;
 }
 
-/// Prints a message and ends the program. `new` calls this function if there is no memory. An output file that is not
-/// complete never has its final name.
+/// Prints a message and ends the program. `new` calls this function if there is no memory. The program may end at any
+/// moment, because an incomplete output file does not have its final name yet.
 [[noreturn]] void end_out_of_memory() {
   static std::atomic_flag is_ending;
   while (is_ending.test_and_set()) ::pause();  // another thread is printing the message

@@ -1,7 +1,6 @@
 #include "methods/arithmetic_peak.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "device/buffer.hpp"
 #include "evaluate/vulkan/kernels.hpp"

@@ -1,6 +1,5 @@
 // The evaluators of dolp as methods of the benchmark.
 #include <algorithm>
-#include <cmath>
 #include <dolp/errors.hpp>
 
 #include "evaluate/cpu/cpu_evaluator.hpp"

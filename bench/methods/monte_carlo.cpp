@@ -2,7 +2,6 @@
 // the integrand without this factor.
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numbers>
 #include <random>
 

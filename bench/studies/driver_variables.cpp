@@ -4,7 +4,6 @@
 
 #include <cstdlib>
 #include <dolp/errors.hpp>
-#include <filesystem>
 
 #include "base/temporary_folder.hpp"
 #include "methods/method.hpp"

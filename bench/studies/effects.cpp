@@ -5,7 +5,6 @@
 #include <cmath>
 #include <dolp/errors.hpp>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include <dolp/status.hpp>
 #include "evaluate/vulkan/vulkan_evaluator.hpp"

@@ -1,7 +1,6 @@
 #include "reference/moments.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <complex>
 #include <cstdint>

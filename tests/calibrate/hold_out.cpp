@@ -1,7 +1,6 @@
 #include "calibrate/hold_out.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 

@@ -1,7 +1,6 @@
 // Random entries from the range of the model. A seed gives the same entries on every machine.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <random>
 

@@ -1,7 +1,6 @@
 // Dense tables, in which the program interpolates most entries: their values and errors, and the reports about them.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include "cli_support.hpp"
 #include "table/table_file.hpp"
 

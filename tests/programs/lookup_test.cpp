@@ -1,7 +1,6 @@
 // `dolp lookup` as a user runs it: its results and error estimates, compared with `dolp eval`, and its messages.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <random>
 
 #include <dolp/status.hpp>

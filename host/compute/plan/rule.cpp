@@ -7,7 +7,6 @@
 #include <map>
 #include <mutex>
 #include <numbers>
-#include <utility>
 
 #include "base/numbers.hpp"
 #include "base/parallel_ranges.hpp"

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <dolp/errors.hpp>
 #include <string>
 #include <vector>
 

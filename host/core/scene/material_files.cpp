@@ -3,7 +3,6 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <dolp/errors.hpp>
 #include <optional>

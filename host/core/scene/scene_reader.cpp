@@ -7,7 +7,6 @@
 #include <dolp/errors.hpp>
 #include <iterator>
 #include <numeric>
-#include <utility>
 
 #include "base/text.hpp"
 #include "scene/scene_keys.hpp"

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <dolp/errors.hpp>
 #include <filesystem>
 #include <memory>
 #include <span>

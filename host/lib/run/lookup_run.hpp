@@ -1,6 +1,5 @@
 #pragma once
 
-#include <dolp/errors.hpp>
 #include <vector>
 
 #include <cstddef>

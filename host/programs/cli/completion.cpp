@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <boost/algorithm/string/replace.hpp>
-#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -10,7 +10,6 @@
 #include <dolp/errors.hpp>
 #include <limits>
 #include <memory>
-#include <new>
 #include <string>
 #include <vector>
 

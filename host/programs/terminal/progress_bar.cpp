@@ -5,9 +5,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdio>
-#include <dolp/errors.hpp>
 #include <string>
 
 namespace dolp {

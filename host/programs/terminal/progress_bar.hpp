@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <cstddef>
-#include <dolp/errors.hpp>
 #include <string>
 
 namespace dolp {

@@ -1,7 +1,6 @@
 #include "base/interrupt.hpp"
 
 #include <csignal>
-#include <initializer_list>
 
 namespace dolp {
 namespace {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <dolp/errors.hpp>
 #include <functional>
 
 namespace dolp {

@@ -10,7 +10,6 @@
 #include <dolp/errors.hpp>
 #include <filesystem>
 #include <memory>
-#include <vector>
 
 #include "base/atomic_file.hpp"
 

@@ -2,7 +2,6 @@
 
 #include <vulkan/vulkan.h>
 
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>

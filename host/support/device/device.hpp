@@ -3,7 +3,6 @@
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
-#include <optional>
 
 #include "device/devices.hpp"
 

@@ -2,7 +2,6 @@
 // groups its entries. The scenes are drawn at random from the whole range, with fixed seeds.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numeric>

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <boost/multiprecision/cpp_complex.hpp>
 #include <cmath>
 #include <cstdio>

@@ -1,7 +1,6 @@
 // Functions of compute/plan/, one by one: cosines of directions, loop iterations, Gauss nodes, rows, levels, tables.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <dolp/status.hpp>

@@ -6,7 +6,6 @@
 #include <boost/math/constants/constants.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <cmath>
 
 namespace dolp {
 namespace {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <iostream>
 #include <limits>
-#include <vector>
 
 #include <dolp/status.hpp>
 #include "radiometry_support.hpp"

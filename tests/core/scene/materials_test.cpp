@@ -3,7 +3,6 @@
 #include <sys/stat.h>
 
 #include <cmath>
-#include <dolp/errors.hpp>
 
 #include "error_text.hpp"
 #include "scene/csv.hpp"

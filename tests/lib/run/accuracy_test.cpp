@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <memory>
 #include <numbers>
 #include <string>
 #include <vector>

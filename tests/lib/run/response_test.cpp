@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <memory>
 #include <numbers>
 #include <span>
 

@@ -1,7 +1,6 @@
 // Whole runs give the exact results that shaders/physics/README.md lists in section 6.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 #include <numbers>

@@ -1,7 +1,6 @@
 // A merge notices that files of shards change while it reads them.
 #include <gtest/gtest.h>
 
-#include <dolp/errors.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>

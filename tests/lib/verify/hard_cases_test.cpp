@@ -6,7 +6,6 @@
 #include <cstdio>
 
 #include <dolp/errors.hpp>
-#include <map>
 #include <memory>
 #include <string>
 #include <tuple>

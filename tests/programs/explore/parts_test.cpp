@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <functional>
 
 #include "base/text.hpp"
 #include "explore/scene_edits.hpp"

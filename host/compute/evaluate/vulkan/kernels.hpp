@@ -7,8 +7,6 @@
 #include <map>
 #include <mutex>
 #include <span>
-#include <utility>
-#include <vector>
 
 #include "device/device.hpp"
 #include "device/result.hpp"

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <dolp/errors.hpp>
 #include <memory>
 #include <optional>
 #include <vector>

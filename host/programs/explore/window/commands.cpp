@@ -2,8 +2,6 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include <algorithm>
-
 #include "base/atomic_file.hpp"
 #include "base/python_picture.hpp"
 #include "base/stopwatch.hpp"

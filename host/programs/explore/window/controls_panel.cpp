@@ -4,7 +4,6 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/text.hpp"
 #include "explore/window/style.hpp"

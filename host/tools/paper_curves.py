@@ -30,10 +30,10 @@ VIEW_DEG = 60.0  # zenith of the view in bistatic mode
 PAPER_ANGLES_DEG = [*range(0, 60, 6), *range(60, 91, 3)]
 STEPS_PER_DEGREE = 10
 ANGLES_DEG = np.arange(90 * STEPS_PER_DEGREE + 1) / STEPS_PER_DEGREE
-MODEL_FAILS = 1 | 4 | 8  # status bits: rho outside [0, 1], outside the domain, I <= 0
+MODEL_FAILS = 1 | 4 | 8  # status bits: rho outside [0, 1], entry outside the model's domain, I <= 0
 
 FIGURE4_SIGMA, FIGURE4_Q, FIGURE4_THETA_I_DEG = 0.3, 2.0, 30.0
-GRAZING_THETA_I_DEG = 85.0  # angle of incidence at which the curve of G (`integral`) over the view zenith has a corner
+GRAZING_THETA_I_DEG = 85.0  # angle of incidence at which G with `integral` masking has a corner over the view zenith
 GRAZING_DEG = 90.0 - 1e-6  # used instead of 90 degrees, where G would be a ratio of two infinite pBRDFs
 
 
@@ -93,8 +93,8 @@ class Curve:
         return float(self.dolp[round(theta_deg * STEPS_PER_DEGREE)])
 
     def peak(self):
-        """Angle and value of the largest DOLP. None at 0 or 90 degrees, or if the model fails at the next larger
-        one."""
+        """Angle and value of the largest DOLP. None if this DOLP is no peak: its angle is 0 or 90 degrees, or
+        the model fails at the next larger angle."""
         held = np.where(self.holds(), self.dolp, -np.inf)
         top = int(np.argmax(held))
         is_inside = 0 < top < held.size - 1 and np.isfinite(held[top + 1])
@@ -186,7 +186,7 @@ class Attenuation:
 
 
 def attenuation(program, masking, distribution, theta_i_deg):
-    """The masking G: element m00 of the Mueller matrix with masking, divided by m00 without. Sets k_d = 0 for both."""
+    """G: Mueller element m00 with masking, divided by m00 without. k_d is 0, because the diffuse part has no G."""
     view = np.minimum(ANGLES_DEG, GRAZING_DEG)
     points = {"theta_i_deg": np.full(view.size, theta_i_deg), "theta_r_deg": view,
               "delta_phi_deg": np.full(view.size, 180.0)}

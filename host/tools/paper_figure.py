@@ -28,7 +28,6 @@ class Parser(argparse.ArgumentParser):
 
 
 def unprinted(text):
-    """Splits KEY=VALUE of --set into a pair."""
     key, _, value = text.partition("=")
     if key not in model.UNPRINTED:
         raise argparse.ArgumentTypeError(f"{text}: the key must be one of {', '.join(model.UNPRINTED)}")

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Draws the picture of `dolp fit --plot`, which runs this program: data, fit and bracket, residuals, contours.
+"""Draws the result of a fit. `dolp fit --plot` runs this program.
 
 Usage: plot_fit.py .png|.pdf|.svg < REPORT.json > PICTURE
+Shows data, model, residuals, contours of chi^2, and the bracket: a range that contains the DOLP with all bounces.
 Needs python3-matplotlib. Exit status: 0 done, 2 usage or no report of a fit as input, 4 the picture cannot be written.
 """
 import json
@@ -97,7 +98,7 @@ def names_in(points):
 
 
 def zeniths_of_a_spectrum(report):
-    """Zeniths for plots of DOLP over wavelength. Empty if so few wavelengths are measured that one plot is enough."""
+    """Zeniths that get a plot over wavelength. Empty for few wavelengths: draw_data() then plots over zenith."""
     zeniths = sorted({point["theta_deg"] for point in report["points"]})
     wavelengths = {point["wavelength_um"] for point in report["points"]}
     if len(wavelengths) <= max(len(COLOURS), len(zeniths)):
@@ -135,7 +136,7 @@ def draw_spectrum(panels, lower, report, zeniths):
 
 
 def draw_pair(axes, report):
-    """Draws chi^2 minus its minimum as contours over two parameters. At each point, all others are fitted."""
+    """Draws chi^2 minus its minimum as contours over two parameters. At each point, all other parameters are fitted."""
     contours = report.get("contours")
     if contours is None:
         axes.set_axis_off()
@@ -185,7 +186,7 @@ def alike(report):
 
 
 def title_of(report):
-    """The scene's title without its wavelengths. Adds the scene's spectrum if the data have no wavelengths."""
+    """The scene's title, then its spectrum. If the data have their own wavelengths, the title names none."""
     title = re.sub(r"[, ]*[\d.]+( *[-–] *[\d.]+)? *[uµ]m$", "", report["title"])
     if all(point["wavelength_um"] is None for point in report["points"]):
         ends = dict.fromkeys(f"{end:g}" for end in report["spectrum_um"])

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Draws the plots of the window of `dolp explore`, which runs this program: curves, measured points and map.
+"""Draws the plots of the window `dolp explore`: curves, measured points and map. The window runs this program.
 
 Usage: plot_view.py .svg|.pdf|.png < PLOTS.json > PICTURE
-Needs python3-matplotlib. Exit status: 0 done, 2 usage or no such plots as input, 4 the picture cannot be written.
+Needs python3-matplotlib. Exit status: 0 done, 2 usage or wrong input, 4 the picture cannot be written.
 """
 import json
 import sys
@@ -24,7 +24,7 @@ FAILING = {"color": "0.6", "linewidth": 0.8, "linestyle": "--"}
 BAND = "all bounces lie between"
 MODEL_FAILS = "the model fails here (status)"
 CONTOURS = 7
-MOST_CONTRAST = 1e3  # largest divided by smallest value of a logarithmic colour scale, as in the window
+MOST_CONTRAST = 1e3  # a logarithmic colour scale spans at most this factor, as in the window
 
 
 def numbers(values):
@@ -57,7 +57,7 @@ def draw_curves(axes, plots):
                       markerfacecolor="none", elinewidth=0.8, label="measured")
     set_axes(axes, plots["x"], plots["y"])
     axes.grid(alpha=0.25, linewidth=0.6)
-    entries = {}  # one legend entry per curve, one for all areas BAND, one for all parts MODEL_FAILS
+    entries = {}  # of the legend; all areas labelled BAND share one entry, and so do all lines labelled MODEL_FAILS
     for handle, label in zip(*axes.get_legend_handles_labels()):
         entries[label if label in (MODEL_FAILS, BAND) else handle] = (handle, label)
     axes.legend(*zip(*entries.values()), frameon=False, fontsize=8)

@@ -27,7 +27,6 @@ class CannotGenerate(Exception):
 
 
 def markdown_files():
-    """The Markdown files among the sources, without build folders and hidden folders."""
     return sorted(path for path in ROOT.rglob("*.md")
                   if not any(part == "build" or part.startswith(".") for part in path.relative_to(ROOT).parts))
 

@@ -16,7 +16,7 @@
 namespace dolp {
 namespace {
 
-/// True if lack of memory caused `error`. For example, std::thread throws such an error if a stack needs more memory.
+/// True if lack of memory caused `error`, for example if std::thread found no memory for the stack of a new thread.
 bool is_of_memory(const std::system_error& error) {
   return error.code() == std::errc::not_enough_memory || error.code() == std::errc::resource_unavailable_try_again;
 }

@@ -29,7 +29,7 @@ class Actions {
   const Preferences& preferences() const { return preferences_; }
 
   void finish();  ///< calls BackgroundTask::finish() of all tasks
-  /// Path of the picture to save with this frame. Empty if no picture is wanted, or while the dialog still disappears.
+  /// Path of the picture to save with this frame. Empty if there is none, or if a closed dialog is still visible.
   std::string due_picture() const { return Clock::now() < picture_time_ ? "" : picture_path; }
   bool is_true_error_old() const;  ///< the true error belongs to an earlier curve
 
@@ -44,7 +44,7 @@ class Actions {
   // Table and fit have separate evaluators, so that neither waits for the other.
   Evaluator table_evaluator_, fit_evaluator_;
   BackgroundTask plot_task_;
-  std::string true_error_key_;  ///< key of the curve in the last call of find_true_error()
+  std::string true_error_key_;  ///< Curve::key() of the curve at the last call of find_true_error()
   Clock::time_point picture_time_;
 };
 
@@ -60,7 +60,7 @@ struct Ui {
   PathDialog dialog = {};
   std::pair<std::string, std::filesystem::path> saved = {};  ///< scene file, and the folder in which it was saved last
   bool is_narrow = false;
-  std::string page = "curve";  ///< page of a narrow window: "curve", "effects", "accuracy"; empty: View::panel
+  std::string page = "curve";  ///< page of a narrow window: "curve", "effects", "accuracy"; "" shows View::panel
   bool shows_help = false;
 };
 

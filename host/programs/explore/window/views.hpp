@@ -19,8 +19,8 @@ struct NamedLine {
   std::vector<double> values;
 };
 
-/// Draws the current curve, the overlay, pins and measured points. A click or drag in the plot moves the cursor. In the
-/// legend, a click hides the overlay, or hides or shows a pin.
+/// Draws the current curve, the overlay, pins and measured points. A click or drag in the plot moves the cursor. A
+/// click on the overlay in the legend hides the overlay. A click on a pin in the legend hides or shows the pin.
 class CurveView {
  public:
   void draw(Session& session, AxisEditor& editor, ImVec2 size);
@@ -29,7 +29,8 @@ class CurveView {
   const Scale& y() const { return y_; }
 
  private:
-  /// Sets x_ and y_ to the ranges that the user chose, `zoom`, or else to the automatic ranges `zeniths` and `values`.
+  /// Sets x_ and y_ to the ranges in `zoom`, if the user chose such ranges. Otherwise sets x_ to `zeniths`, and y_ to
+  /// `values`, or to a wider range while the user drags a slider. At the end, sets `values` to y_.
   void choose_axes(const Session& session, Zoom& zoom, const Scale& zeniths, Scale& values);
   void edit_axes(View& view, AxisEditor& editor, const Plot& plot, const std::string& values);
 
@@ -67,7 +68,7 @@ class ShapeView {
   void draw(Session& session, ImVec2 size);  ///< a drag sets azimuth and zenith of the plate's normal
 
  private:
-  double azimuth_deg_ = 30.0;  ///< direction of the plate's tilt, from the right
+  double azimuth_deg_ = 30.0;  ///< direction to which the plate's normal tilts: 0 is right, 90 is up
 };
 
 /// Draws minima, intervals and explanations of the last fit. A click on a minimum calls Session::visit_minimum().
@@ -105,7 +106,7 @@ class MapView {
   bool is_log_ = false;
   std::optional<Scale> typed_colours_;
 
-  Scale colour_scale_;  ///< values of the first and the last colour; may be equal
+  Scale colour_scale_;  ///< values of the first and the last colour; may be equal if the map is constant
   MapField field_;
   Texture cells_;
   std::vector<Contour> contours_;

@@ -80,7 +80,7 @@ std::optional<std::size_t> draw_list(const std::string& id, float width, const s
                                      const std::string& note, std::optional<std::size_t> chosen,
                                      const std::vector<ListEntry>& entries) {
   ImGui::SetNextItemWidth(width);
-  const ImVec2 corner = ImGui::GetCursorScreenPos();  // taken before, because ImGui's last item may be the open list
+  const ImVec2 corner = ImGui::GetCursorScreenPos();  // name_item() could name the open list instead
   name_area(id, {corner, {corner.x + ImGui::CalcItemWidth(), corner.y + ImGui::GetFrameHeight()}});
   std::optional<std::size_t> clicked;
   if (!ImGui::BeginCombo(("##" + id).c_str(), shown(current).c_str(), ImGuiComboFlags_HeightLarge)) {
@@ -245,7 +245,7 @@ void PathDialog::draw() {
     enter(fs::absolute(path()).lexically_normal());
     name_.clear();
   }
-  // A refused name stays in the field, so that the user can correct it.
+  // For a folder or a missing file, the dialog stays open, so that the user can type another name.
   wants_focus_ = is_accepted && (is_folder || is_missing);
   is_accepted = is_accepted && !wants_focus_ && !name_.empty();
   if (is_accepted || is_cancelled) ImGui::CloseCurrentPopup();

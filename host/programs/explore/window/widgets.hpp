@@ -15,7 +15,7 @@ class NumberFields {
   using Apply = std::function<std::string(const std::string& text)>;
   using ApplyEnds = std::function<std::string(const std::string& low, const std::string& high)>;
 
-  /// Draws a field with `value`, or with the text that the user types. The name of the field's area is "field ID".
+  /// Draws a field with `value`, or with the text that the user types. Tests find it by the name "field " + `id`.
   void draw(const std::string& id, double value, const Apply& apply);
   /// Draws the field for one end of a range. `end` is 0 or 1; the ID of the field is `id` with " 0" or " 1". `apply`
   /// gets the texts of both ends, because one new end may be allowed only together with the other.
@@ -46,13 +46,13 @@ struct ListEntry {
   bool is_enabled = true;
 };
 
-/// Draws a list that opens on a click. The closed list shows `current`, and has the tooltip `note`. The area of the
-/// list has the name `id`. Returns the entry that the user clicks, unless it is the entry `chosen`.
+/// Draws a list that opens on a click. The closed list shows `current`, and has the tooltip `note`. Tests find the list
+/// by the name `id`. Returns the index of the entry that the user clicks, unless this index is `chosen`.
 std::optional<std::size_t> draw_list(const std::string& id, float width, const std::string& current,
                                      const std::string& note, std::optional<std::size_t> chosen,
                                      const std::vector<ListEntry>& entries);
 
-void row_label(const std::string& text);  ///< draws a label, and the next control beside it
+void row_label(const std::string& text);  ///< draws a label; the next control that is drawn stands beside it
 
 /// After a right click on the last item, draws a field with the item's name. Returns the name if the user changes it.
 std::optional<std::string> typed_name(std::string name, const std::string& hint = {});
@@ -94,7 +94,7 @@ class PathDialog {
 
  private:
   void enter(const std::filesystem::path& folder);
-  bool draw_list();  ///< true if the user clicks on the file that is already chosen
+  bool draw_list();  ///< draws the list; true if the user clicks again on the chosen file
   std::filesystem::path path() const { return folder_ / name_; }
 
   Request request_;

@@ -49,7 +49,7 @@ auto interruptible(const Body& body) {
   return result.get();
 }
 
-constexpr const char* kOtherBytes = "surrogateescape";  // Python's way to keep bytes in a str that are not UTF-8
+constexpr const char* kOtherBytes = "surrogateescape";  // Python's way to keep bytes that are not UTF-8 in a str
 
 py::str text_of(const std::string& text) {
   PyObject* const decoded = PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), kOtherBytes);
@@ -109,7 +109,7 @@ dolp::Value value_of(const std::string& key, const py::handle& value) {
   if (py::isinstance<py::float_>(value)) return value.cast<double>();
   if (py::isinstance<py::str>(value)) return bytes_of(value);
   if (py::isinstance<py::list>(value) && py::len(value) > 0 && !py::isinstance<py::float_>(value[py::int_(0)]))
-    return dolp::TomlText{bytes_of(py::module_::import("json").attr("dumps")(value))};  // a list of texts or of pairs
+    return dolp::TomlText{bytes_of(py::module_::import("json").attr("dumps")(value))};  // a list of names or of bands
   if (!py::isinstance<py::dict>(value)) return value.cast<std::vector<double>>();
   const auto range = value.cast<std::map<std::string, py::object>>();
   for (const auto& [name, item] : range) {
@@ -286,7 +286,7 @@ py::tuple responses_of(const dolp::TableValues& table) {
 
 std::vector<double> vector_of(const Array& values) { return {values.data(), values.data() + values.size()}; }
 
-/// For each column of points with materials or bands: their names. The column has positions in this list of names.
+/// Maps the column names of materials and bands to their lists of labels. A column has positions in its list of labels.
 py::dict labels_of(const dolp::AxisLabels& labels) {
   py::dict all;
   for (const dolp::Axis axis : dolp::kAllAxes) {
@@ -464,7 +464,7 @@ PYBIND11_MODULE(_native, module) {
     });
   });
   module.def("keys", [] {
-    const auto is_first = [](const dolp::Key& key) { return key.layer <= 1; };  // omits further films: same keys
+    const auto is_first = [](const dolp::Key& key) { return key.layer <= 1; };  // each further film has the same keys
     return list_of(dolp::keys() | std::views::filter(is_first), [](const dolp::Key& key) {
       return py::make_tuple(key.key, key.unit, key.allowed(), key.fallback, key.meaning);
     });

@@ -41,7 +41,7 @@ class PackageCase(unittest.TestCase):
         subprocess.run([os.environ["DOLP_PROGRAM"], *words, "--quiet"], cwd=self.folder, check=True)
 
     def assert_same(self, table, expected):
-        """Expects equal values, attributes and encodings of two Datasets."""
+        """Expects equal values, attributes and encodings of two Datasets. Only history and wall_time_s may differ."""
         run = ("history", "wall_time_s")
         self.assertEqual(set(table.attrs), set(expected.attrs))
         for name, value in expected.attrs.items():

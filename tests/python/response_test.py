@@ -24,7 +24,10 @@ class Response(PackageCase):
         self.assert_same(dolp.response(self.scene, evaluator="cpu"), xr.load_dataset(self.folder / "r.nc"))
 
     def test_moments_of_a_response_are_those_of_tables(self):
-        """Compares indices like water, aluminium, glass and silver, within the sum of the stated errors."""
+        """Moments of a response differ from those of a table by at most the sum of the stated errors.
+
+        The indices are like those of water, aluminium, glass and silver.
+        """
         axes = {"theta_deg": [0, 30, 60, 80, 89.5], "sigma": [0.05, 0.3, 1], "q": [1.75, 3], "evaluator": "cpu"}
         indices = [1.2 + 0.05j, 27 + 90j, 1.5 + 0j, 0.5 + 3j]
         for masking in ("none", "v-cavity", "integral", "smith"):

@@ -40,8 +40,8 @@ Errors: InputError (a ValueError) with one line that states what is allowed; Mis
 FileNotFoundError) if a file to read does not exist; DeviceError (a RuntimeError); IoError (an OSError); TypeError for
 an argument of a wrong type; MemoryError. Results have no mask, so masked arrays give an InputError: fill or compress
 them.
-Warnings: InputWarning for input that you probably meant differently (percent, Celsius, nanometres), and for a file
-without k; ModelWarning, once for each scene, if single scattering is not enough (status 32).
+Warnings: InputWarning for input that you probably meant differently (percent, Celsius, nanometres), and for a material
+file without values of k; ModelWarning, once for each scene, if single scattering is not enough (status 32).
 """
 from __future__ import annotations
 

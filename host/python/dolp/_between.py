@@ -12,7 +12,7 @@ from ._native import InputError
 
 _MOST = 5  # values of the key that a lookup uses: four give the result, the fifth gives the error estimate
 _LEAST = 3  # with fewer values of the key the error estimate is infinite
-_SAFETY = 16.0  # error estimate divided by the change of the result due to the fifth value; as kInside in core/table
+_SAFETY = 16.0  # ratio of error estimate to the change of the result by the fifth value; kInside in core/table is equal
 _MISSED, _RHO_MISSED = 2, 16  # status bits: DOLP, or rho, misses its tolerance
 _SMOOTH = ("stokes_i", "stokes_q", "stokes_u", "stokes_v", "rho_i", "rho_q", "albedo", "emissivity_s", "emissivity_p",
            "dolp_low", "dolp_high")
@@ -22,8 +22,8 @@ def between_tables(table: xr.Dataset, key: str, at: Any, look_up: Callable[[xr.D
     """The results at the value `at` of the scene key `key`, a dimension of the table. A polynomial interpolates
     between the results that `look_up` returns at the four nearest values of the key.
 
-    The error estimate includes `_SAFETY` times the change of the result by the fifth nearest value. Errors:
-    InputError if `at` is outside the table.
+    A polynomial through five values would give another result. The error estimate includes `_SAFETY` times the
+    difference of the two results. Errors: InputError if `at` is outside the table.
     """
     value = floats(key, at)
     if value.ndim > 0:

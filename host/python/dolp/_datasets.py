@@ -61,7 +61,7 @@ def concatenated(tables: list[xr.Dataset], key: str, values: np.ndarray) -> xr.D
     joined.attrs.pop("scene_hash", None)
     computed = _attributes_of(first).get(_COMPUTED)
     _set_attribute(joined, _COMPUTED, "\n".join(filter(None, [computed, f"{key}={values.tolist()}"])))
-    if "scene_overrides" in first.attrs:  # removes the value of `key`, which native_table sets for each lookup
+    if "scene_overrides" in first.attrs:  # removes the override of `key`, which is the value of the first table only
         before, _, after = f"\n{first.attrs['scene_overrides']}\n".rpartition(f"\n{key}=")
         rest = after.partition("\n")[2]
         joined.attrs["scene_overrides"] = f"{before}\n{rest}".strip("\n")

@@ -108,13 +108,13 @@ def fit(scene: Scene, data: Any, vary: Mapping[str, tuple[float, ...]], *, compa
         evaluator: str = "vulkan", device: str = "") -> Fit:
     """Fits values of a scene's keys to measured data. Also computes confidence intervals.
 
-    `data`: a CSV file, or columns by name (a dictionary, a Dataset, a pandas DataFrame). Needs theta_deg (theta_i_deg)
-    and one of dolp, q_over_i (signed) and the emissivities (emissivity_s, emissivity_p). May have uncertainty (one
-    standard deviation) and wavelength_um. For several data sets, `data` is a list. Each item of the list is the data,
-    or a pair (data, overrides of the scene for these data).
+    `data`: a CSV file, or columns by name (a dictionary, a Dataset, a pandas DataFrame). A data set needs a zenith
+    (theta_deg, or theta_i_deg of a bistatic scene) and one quantity: dolp, q_over_i (signed), or emissivities
+    (emissivity_s, emissivity_p, or both). It may have uncertainty (one standard deviation) and wavelength_um. `data`
+    can be a list of data sets. An item of the list can be a pair (data set, overrides of the scene for this set).
     `vary`: (low, high) or (low, high, start) for each key to fit.
     `compare`: lists of values for other keys. One model for each combination of these values is fitted and ranked.
-    `loss`: squares, or for data with outliers one of huber, soft-l1, cauchy and tukey.
+    `loss`: squares. For data with outliers: huber, soft-l1, cauchy or tukey.
     `model_error`: none, or bracket. With bracket, the true value at each point may lie anywhere between dolp_low and
     dolp_high. With none, dolp.ModelWarning appears if single scattering is not accurate enough (status 32).
     `plot`: a .png, .pdf or .svg file, to which the fit draws data, model, residuals and contours.

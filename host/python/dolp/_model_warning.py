@@ -13,7 +13,8 @@ _MODEL_INACCURATE = 32  # status bit
 
 
 class ModelWarning(UserWarning):
-    """Light that single scattering loses, or that a masking creates, changes I by more than about 5 % (status 32)."""
+    """Warns that the estimated error of the intensity I is above 5 % (status 32), because single scattering loses light
+    or the masking function creates light."""
 
 
 def warn_of_model(scene: Scene, status: Any, change: float | None = None, stacklevel: int = 3) -> None:

@@ -15,13 +15,13 @@ _ANGLES = 256  # number of angles at which _distance compares reflectances with 
 
 
 def response(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **axes: Array) -> xr.Dataset:
-    """The response table over the scene's grid, from which `moments` gets the reflectances of any material. The Dataset
-    has the contents of the table's file.
+    """The response table over the scene's grid, with the contents of its file. `moments` converts it to reflectances.
 
     `axes` (theta_deg, sigma or wind_m_s, q) replace axes of the scene. Material, wavelength and radiation of the scene
-    do not matter. The dimension beta has angles of incidence on a facet. response_i and response_q are weights at these
-    angles, by which you multiply the reflectances of a smooth surface. With masking smith or v-cavity, emission_i and
-    emission_q are weights for direct emission. albedo and response_error do not depend on beta.
+    do not matter. The dimension beta has angles of incidence on a facet. Let r_s and r_p be reflectances of a smooth
+    surface at beta. Without a diffuse part and with k_s = 1, the sum of response_i (r_s + r_p) / 2 over beta is rho_i,
+    and the sum of response_q (r_s - r_p) / 2 is rho_q. With masking smith or v-cavity, emission_i and emission_q are
+    weights for the direct emission.
 
     >>> r = dolp.response(scene, theta_deg=[0, 60], sigma=[0.1, 0.2])
     >>> r.response_i.dims, bool(abs(r.response_i.sum("beta") - r.albedo).max() < 1e-12)
@@ -42,13 +42,13 @@ def response(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **axe
 
 def moments(response: xr.Dataset, *, n: Array | None = None, k: Array = 0.0, r_s: xr.DataArray | None = None,
             r_p: xr.DataArray | None = None) -> xr.Dataset:
-    """Computes rho_i, rho_q, albedo and rho_error of materials from a response table or a part of one. The specular
-    weight k_s is 1, and there is no diffuse part.
+    """Computes the reflectances rho_i and rho_q of rough materials, their error bound rho_error, and the albedo. The
+    specular weight k_s is 1, and there is no diffuse part. `response` is a response table or a part of a table.
 
     Give n and k of the materials, as for `evaluate`, or the reflectances r_s and r_p of smooth surfaces. r_s and r_p
-    are DataArrays over the response's beta and may have more dimensions. rho_error is a bound of the errors of rho_i
-    and rho_q. The calculation replaces the reflectances by polynomials through their values at beta. If you give n and
-    k, rho_error includes the error of these polynomials at 256 angles. Otherwise you must add this error yourself.
+    are DataArrays over the beta of `response` and may have more dimensions. Between the values of beta, polynomials
+    replace the smooth reflectances. If you give n and k, rho_error includes the error of these polynomials, which is
+    computed at 256 angles. If you give r_s and r_p, you must add this error, multiplied by the albedo, yourself.
 
     >>> r = dolp.response(scene, theta_deg=60)
     >>> m = dolp.moments(r, n=[1.3, 1.5, 4], k=0.05)
@@ -97,14 +97,14 @@ def _coefficients(beta: xr.DataArray) -> xr.DataArray:
 
 
 def _size(mean: xr.DataArray, half: xr.DataArray) -> xr.DataArray:
-    """The factor for response_error. It is the largest 2^m |a_m|, where a_m are Chebyshev coefficients of a curve."""
+    """Factor of response_error: largest 2^m |a_m| of the Chebyshev coefficients a_m of mean and half / sin^2 beta."""
     growth = xr.DataArray(2.0 ** np.arange(mean.sizes["beta"]), dims="m")
     curves = mean, half / np.sin(np.deg2rad(mean.beta)) ** 2
     return np.maximum(*((growth * abs(curve.dot(_coefficients(mean.beta), "beta"))).max("m") for curve in curves))
 
 
 def _distance(response: xr.Dataset, index: xr.DataArray, r_s: xr.DataArray, r_p: xr.DataArray) -> xr.DataArray:
-    """Largest error, at _ANGLES angles, if polynomials in beta replace (r_s + r_p) / 2 and (r_s - r_p) / 2."""
+    """Largest error of the polynomials for (r_s + r_p) / 2 and (r_s - r_p) / 2 through the values at beta."""
     beta, c0 = response.beta, float(response.attrs["c0"])
     x = np.polynomial.chebyshev.chebpts1(_ANGLES)
     cosine = xr.DataArray(c0 * np.sinh(0.5 * (1 + x) * np.arcsinh(1 / c0)), dims="angle")

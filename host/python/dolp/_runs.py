@@ -111,9 +111,9 @@ def lookup(table: Path | xr.Dataset, **points: Array) -> xr.Dataset:
     `table`: the file of a table, or a Dataset with a table or a part of one. A part may have fewer values of an axis,
     such as `t.sel(k=0.1)`, and fewer variables. It must have dolp, the Stokes parameters, error_estimate, status and
     the attribute `scene`. Dimensions may have any names and order, for example after `t.swap_dims(sigma="wind_m_s")`.
-    Axis values that were not computed, such as after `t.interp(theta=33)`, give an InputError. A lookup in a file
-    compares its values with its attribute values_hash, the hash of the whole table. A lookup in a Dataset does not: so
-    read a file with a part of a table by `xarray.load_dataset`.
+    Axis values that were not computed, such as after `t.interp(theta=33)`, give an InputError. The attribute
+    values_hash is the hash of the whole table. A lookup in a file compares the values with this hash, so it refuses a
+    file with a part of a table. Read such a file by `xarray.load_dataset`: a lookup in a Dataset ignores the hash.
     `points`: as for `evaluate`. You can leave out an axis of the table that has only one value.
     The file of the last lookup stays in memory. A Dataset is copied in each call.
 
@@ -153,8 +153,7 @@ def mueller(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **poin
 
 
 class Plan:
-    """The plan of a table: what the program would compute and leave out, why, and at what cost. `print` shows it as a
-    report.
+    """The plan of a table: what the program would compute or leave out, why, and the cost. `print` shows a report.
 
     `values`: the report of `dolp plan --json` as a dictionary.
     """

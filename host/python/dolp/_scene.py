@@ -15,10 +15,10 @@ from ._native import InputError
 class Scene:
     """A surface, its radiation and surroundings, and the accuracy of results, from a scene file or from its text.
 
-    Parameters: a path or `text`, and `overrides`, a dict with values for any keys. The value None removes a key or a
-    whole table of keys. The text "none" also removes it, unless words are allowed values of the key. A complex
-    surface.n gives n and k. `scene[key]` is the value of a key, or None if the scene has no value. You can copy and
-    pickle a scene and send it to another process, which reads the files of the scene from the same paths.
+    Parameters: `path` or `text`, and `overrides`, a dict with values for any keys. `path` can also be another Scene.
+    The value None removes a key or a whole table of keys. The text "none" does so too, except for keys that hold a word
+    or a text. A complex surface.n gives n and k. `scene[key]` is the value of a key, or None if the scene has no value.
+    You can copy and pickle a scene and send it to another process, which reads the scene's files from the same paths.
 
     >>> smooth = dolp.Scene(scene, {"surface.sigma": 0.01, "title": "a mirror", "surface.n": 1.5 + 0.1j})
     >>> smooth.title, smooth["surface.k"], smooth["surface.masking"], smooth["grid.q"], smooth["path.radiance"]
@@ -47,7 +47,7 @@ class Scene:
             raise TypeError(f"text: must be a str, not {type(text).__name__}")
 
     def with_(self, values: Mapping[str, Any]) -> Scene:
-        """A copy of the scene with other values of keys.
+        """A copy of the scene with new values of the given keys. Other values stay, such as the empty title here.
 
         >>> scene.with_({"surface.q": 4, "grid.sigma": {"from": 0.1, "to": 1, "count": 5, "spacing": "log"}}).title
         ''

@@ -37,7 +37,8 @@ std::vector<double> brute_growth(Residuals& residuals, const FitResult& result, 
 
 class FitContours : public FitTest {
  protected:
-  /// Fits n, k and sigma, and compares the contours with brute_growth. `off` is the tolerance of sqrt(growth of chi^2).
+  /// Fits n, k and sigma, and compares the growth that contours_of computes with brute_growth. The growth is chi^2
+  /// minus chi^2 of the fit. `off` is the tolerance of its square root.
   void expect_true(int points, std::uint64_t seed, double off) {
     const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0), number("surface.k", 0.0, 5.0),
                                               number("surface.sigma", 0.02, 1.0)};
@@ -76,10 +77,12 @@ class FitContours : public FitTest {
   }
 };
 
-// The tolerance is 0.1, because residuals are not linear between grid nodes, and descents stop before the minimum.
+// The tolerance is 0.1, because contours_of interpolates the residuals linearly between the nodes of its grid, and its
+// descents stop shortly before the minimum.
 TEST_F(FitContours, EightPoints_AreWhereTheLeastOfTheThirdParameterSays) { expect_true(8, 7, 0.1); }
 
-// The tolerance is larger: four points cannot distinguish n, k and sigma. So the valley of chi^2 is bent.
+// Four points hardly distinguish n, k and sigma, so that chi^2 has a bent valley. In a bent valley, linear
+// interpolation of the residuals has larger errors. So the tolerance is larger.
 TEST_F(FitContours, FourPoints_AreWhereTheLeastOfTheThirdParameterSays) { expect_true(4, 7, 0.4); }
 
 }  // namespace

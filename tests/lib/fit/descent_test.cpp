@@ -4,8 +4,9 @@
 namespace dolp::fit {
 namespace {
 
-// If a step would cross the bound of a parameter, predict_step puts this parameter on the bound and computes the other
-// parameters again by least squares. It returns only half of the step to the bound. The tiny kScale damps no step.
+// If a step would cross the bound of a parameter, predict_step ends the step of this parameter on the bound and
+// computes the other parameters again by least squares. Then it halves the step of this parameter. The damping of a
+// step is proportional to kScale. Here kScale is tiny, so that damping does not change the steps.
 TEST(PredictStep, ParametersLeaveTheBounds_OthersAreSolvedAgain) {
   constexpr double kScale = 1e-14;
   constexpr double kRounding = 1e-6;  // rounding error of normal equations with almost parallel columns

@@ -28,8 +28,8 @@ TEST_F(FitTest, IntervalEnds_LieWhereTheBestOfTheOthersHasGrownSo) {
       ASSERT_TRUE(end.has_value());
       const FitResult held =
           fitted(data, {number("surface.n", 1.1, 4.0)}, {}, {"surface.sigma=" + std::to_string(*end)});
-      // At an end, sqrt(growth) has an error of up to 0.5 %, so the growth of chi^2 has 1 %. The tolerance is 1.5 %,
-      // because to_string writes only six digits.
+      // The growth is chi^2 minus its minimum. The search for an end allows an error of 0.5 % of sqrt(growth), which is
+      // 1 % of the growth. The tolerance is 1.5 %, because to_string writes only six digits.
       EXPECT_NEAR(held.chi_square - result.chi_square, is_95 ? 3.841 : 1.0, 0.015 * (is_95 ? 3.841 : 1.0));
     }
   }
@@ -44,7 +44,8 @@ TEST_F(FitTest, DoubtfulFit_ScaledIntervalsAreThoseOfLargerUncertainties) {
   for (Measurement& one : data.measurements) *one.uncertainty *= std::sqrt(*result.reduced_chi_square);
   const FitResult wider = fitted(data, parameters);
   EXPECT_EQ(fit_quality(wider.p_value), "good");
-  // Tolerance of an end, as a share of its distance from the best value. Ends have errors of 0.5 % of sqrt(growth).
+  // Tolerance of an end, as a share of its distance from the best value. The search for an end allows an error of 0.5 %
+  // of sqrt(growth), where the growth is chi^2 minus its minimum.
   constexpr double kRoot = 0.02;
   for (std::size_t j = 0; j < 2; ++j) {
     const FitParameter &one = result.parameters[j], &other = wider.parameters[j];

@@ -1,4 +1,5 @@
-// Fits that allow for the bracket of DOLP as an error of the model.
+// Fits with the model error "bracket". The bracket of a quantity is the range that is possible with all bounces of
+// light. These fits assume that the true value lies anywhere in the bracket.
 #include "fit_support.hpp"
 
 namespace dolp::fit {
@@ -7,8 +8,8 @@ namespace {
 constexpr double kQuantile68 = 22.436339987;  // 68.27 % and 95 % quantiles of chi^2 for 20 degrees of freedom
 constexpr double kQuantile95 = 31.410432844;
 
-// Some data lie between both ends of the bracket, where the residual is 0. Others lie outside, where the residual is
-// the distance from the nearer end. This holds for Q/I and for DOLP.
+// The residual of a value in the bracket is 0. The residual of a value outside is the distance from the nearer end of
+// the bracket. The test has data of both kinds, first of Q/I and then of DOLP.
 TEST_F(FitTest, ModelErrorOfTheBracket_ResidualIsTheDistanceFromTheInterval) {
   const SceneValues scene = parse_scene(kScene, "scene");
   const std::vector<FitRange> n = {number("surface.n", 1.1, 4.0)};
@@ -68,8 +69,8 @@ TEST_F(FitTest, ModelErrorOfTheBracket_IntervalsEndAtTheQuantileOfChiSquared) {
                InputError);
 }
 
-// Every second measured value is far outside the bracket, so no value of n agrees with the data. If the uncertainties
-// are scaled to the scatter of the data, some values of n agree.
+// Every second measured value is far outside the bracket. So no value of n agrees with the data, and the intervals of n
+// are empty. The scaled intervals are not empty: they use uncertainties that are enlarged to the scatter of the data.
 TEST_F(FitTest, ModelErrorOfTheBracket_ThatExplainsNothing_LeavesEmptyIntervals) {
   MeasuredData data = measured(0.0);
   for (std::size_t i = 0; i < 20; i += 2) data.measurements[i].value += 20.0 * kNoise;

@@ -234,7 +234,7 @@ TEST_F(TableFiles, PartialFile_NoMemoryForItsWriter_IsNotLeft) {
       const TableOutput output(std::move(own));
       has_failed = failing.has_failed();
     } catch (const std::bad_alloc&) {
-      // Some allocations fail without an exception, because library calls succeed without the memory.
+      // Not every failed allocation throws, because some library calls succeed without the memory.
     }
     ASSERT_EQ(names(), std::vector<std::string>{}) << before;
   }

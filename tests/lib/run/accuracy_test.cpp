@@ -1,5 +1,5 @@
-// The main promise of the program: 2,000 random points, computed by the Vulkan evaluator and the radiometry as in `dolp
-// eval`, meet each tolerance or report that they miss it. Exact values come from the reference.
+// The main promise of the program: each result meets the tolerance, or reports that it misses it. The test computes
+// 2,000 random points with the Vulkan evaluator, as `dolp eval` does. Exact values come from the reference.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,14 +21,13 @@
 namespace dolp {
 namespace {
 
-// Largest share of points that may miss the tolerance at the finest level: kTightMissedShare for tolerances below
-// kTight, otherwise kMissedShare. The causes are rounding and, at 1e-9, the largest order of the quadrature rules.
+// Largest share of points that may miss the tolerance: kTightMissedShare for tolerances below kTight, otherwise
+// kMissedShare. Points miss it because of rounding and, at 1e-9, because the order of quadrature rules is limited.
 constexpr double kMissedShare = 0.01;
 constexpr double kTightMissedShare = 0.04;
 constexpr double kTight = 1e-8;
-// Largest median of the ratio of stated to true error. The stated error is 10^0.5 times the difference between two
-// rules, one of which is coarser and has a fifth fewer digits. At six digits this difference is 10^1.5 times the true
-// error.
+// Largest median of the ratio of stated to true error. The stated error is at least 4 times the difference between two
+// quadrature rules. The result comes from the finer rule. Its true error is far smaller than this difference.
 constexpr double kMedianPessimism = 100.0;
 // Errors below these limits do not count in the median, because they are rounding. In float the limit is 16 units in
 // the last place of 24 bits. In double it is ten times 1e-12, the error of the reference.
@@ -78,7 +77,6 @@ struct Compared {
   }
 };
 
-/// All points, computed with one setting.
 struct Sweep {
   std::vector<Compared> points;
   double rounding = 0.0;

@@ -1,5 +1,5 @@
-// Bistatic mode, compared with a second implementation of shaders/physics/README.md, section 4. This implementation
-// takes the pBRDF f from explicit vectors, and the moments from the reference.
+// Bistatic mode, compared with a second implementation of shaders/physics/README.md, section 4. The second one
+// is in this test. It takes the pBRDF and the moments from the reference.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -106,7 +106,7 @@ TEST_P(BistaticByEvaluator, RandomScenes_AgreeWithTheModelWrittenOut) {
     const SlopeShape shape{scene.surface.sigma, scene.surface.q};
     const PointResult r = evaluate_scene(scene, {{theta_i_deg, shape, {}}}, *evaluator, {}).front();
     const Radiance l = model_radiance(scene, theta_i_deg);
-    // The stated error of DOLP bounds the errors of Q/I and U/I. Here the exact I divides Q and U, hence the factor 2.
+    // The stated error of DOLP bounds the errors of Q/I and U/I. The factor 2 allows for I, because l.i is the exact I.
     const double bound = 2.0 * r[Quantity::kErrorEstimate] + 1e-9;
     EXPECT_NEAR(r[Quantity::kStokesQ] / l.i, l.q / l.i, bound) << n;
     EXPECT_NEAR(r[Quantity::kStokesU] / l.i, l.u / l.i, bound) << n;
@@ -121,7 +121,7 @@ TEST_P(BistaticByEvaluator, RandomScenes_AgreeWithTheModelWrittenOut) {
   std::printf("worst DOLP difference %.1e\n", worst);
 }
 
-/// An evaluator that states an error of 1 % of m[0] for each beam in float, and the usual error in double.
+/// An evaluator of beams. In float it states the error 1 % of the first matrix element, in double the usual error.
 class BiasedBeams final : public ModelEvaluator {
  public:
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {

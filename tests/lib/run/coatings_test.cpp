@@ -1,4 +1,4 @@
-// Films and measured reflectances, compared with closed forms and with the reference, and scenes that use them.
+// Films and measured reflectances, alone and in scenes. Closed forms and the reference give the expected values.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -94,7 +94,7 @@ TEST(Films, Amplitudes_AgreeWithCharacteristicMatrices) {
 
 // ---- Moments and beams ---------------------------------------------------------------------------------------------
 
-/// Compares moments of random coatings with the reference. Coating i has the distribution and masking i modulo 8.
+/// Compares moments of random coatings with the reference. The coatings take the models of kModels in turn.
 void expect_within_bounds_of_reference(Precision precision, double tolerance, std::uint64_t seed, std::size_t draws) {
   Random random(seed);
   FixedPrecision evaluator(precision);

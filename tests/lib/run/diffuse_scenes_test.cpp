@@ -1,4 +1,4 @@
-// Polarised diffuse reflection in scenes: beams, skies, Mueller matrices, and equal temperatures.
+// Polarised diffuse reflection in scenes: of beams, of skies, in Mueller matrices, and if all temperatures are equal.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -47,7 +47,7 @@ TEST(DiffuseScenes, BistaticBeam_IsTheFirstColumnOfTheMuellerMatrix) {
   const double incident = 2.0 * std::cos(std::numbers::pi / 3.0);
   EXPECT_NEAR(seen[kStokesI], incident * f[0], 1e-5 * incident * f[0]);
   EXPECT_NEAR(seen[kStokesQ], incident * f[4], 1e-5 * incident * f[0]);
-  // not equal bit for bit, because the specular part of the matrix is no product of vectors
+  // The diffuse part has f[0] f[5] = f[1] f[4]. The specular part does not, so the tolerance is wide.
   EXPECT_NEAR(f[0] * f[5], f[1] * f[4], 0.1);
 }
 
@@ -77,7 +77,7 @@ TEST(DiffuseScenes, SkyBrighterAtTheHorizon_AddsWhatTheDiffusePartSees) {
   const TemporaryFile sky("sky.csv", "zenith_deg,temperature_K\n0,200\n60,240\n90,300\n");
   const std::vector<std::string> scene = {"surface.specular=0", "surroundings.profile=" + sky.path()};
   const PointResult all = result_of(scene);
-  // Radiance of the sky at 10 um by Planck's law. The diffuse part reflects the sky's `mean`.
+  // Radiance of the sky at 10 um by Planck's law. The diffuse part reflects its weighted `mean` over all zeniths.
   const auto radiance = [](double zenith_deg) {
     const double kelvin = zenith_deg < 60.0 ? 200.0 + zenith_deg / 60.0 * 40.0 : 240.0 + (zenith_deg - 60.0) * 2.0;
     return 1.191042972e8 / 1e5 / std::expm1(14387.76877 / (10.0 * kelvin));

@@ -1,4 +1,4 @@
-// Effects that a plan drops. Results without them must agree with results with them within the stated errors.
+// Effects that a plan drops. Results with and without these effects must agree within the stated errors.
 #include <gtest/gtest.h>
 
 #include <iostream>
@@ -15,7 +15,7 @@ namespace {
 using namespace effects_support;
 
 constexpr std::uint64_t kSeed = 20250901;
-/// Parts of a scene for which the plan can state a finite bound above 0 of their effect on DOLP.
+/// Parts of a scene whose effect on DOLP the plan can bound by a number that is finite and above 0.
 constexpr std::array kBounded = {Part::kSource, Part::kSurroundings, Part::kEmission, Part::kPathRadiance};
 // Rounding error of a quotient of two sums of Stokes parameters.
 constexpr double kRounding = 1e-11;
@@ -60,7 +60,7 @@ TEST(Dropping, RandomScenes_TheAnswerWithEverythingIsWithinTheEstimates) {
       EXPECT_LE(std::abs(a[Quantity::kRhoQ] - b[Quantity::kRhoQ]), allowed) << name;
     }
   }
-  // The random scenes must drop each effect several times, or the test shows nothing.
+  // Unless the plans drop each of these parts in several scenes, the test shows nothing.
   for (const Part part : kBounded) EXPECT_GE(dropped[part], 5) << static_cast<int>(part);
   EXPECT_GE(without_moments, 50);
   std::cout << without_moments << " scenes without moments\n";

@@ -1,4 +1,5 @@
-// The quotient r_q / r_i at 90 degrees, where r_q and r_i diverge, compared with an integral and the kernel just below.
+// The quotient r_q / r_i at 90 degrees, where r_q and r_i are infinite. The tests compare it with an integral, and with
+// the kernel's quotient just below 90 degrees.
 #include "run/closed_forms.hpp"
 
 #include <gtest/gtest.h>
@@ -26,9 +27,8 @@ constexpr std::array kAllIndices = {
 // Accuracy of grazing_limit_moments(), as run/closed_forms.hpp states it.
 constexpr double kRelativeAccuracy = 1e-12;
 constexpr double kAlbedoAccuracy = 2e-15;
-// Just below 90 degrees, the difference between r_q / r_i and its limit is a power series in cos(theta)^(3 - 2q). The
-// test removes the first term by extrapolation. This term is at most 2 % of r_q / r_i at q = 1.3; the second is about
-// its square.
+// Just below 90 degrees, r_q / r_i minus its limit is a power series in cos(theta)^(3 - 2q). Extrapolation removes the
+// first term, which is at most 2 % of r_q / r_i at q = 1.3. The second term remains. It is about (2 %)^2.
 constexpr double kExtrapolationAccuracy = 4e-4;
 
 /// Ends of integration panels, whose widths halve toward both ends of [from, to].
@@ -43,8 +43,8 @@ std::vector<Real> graded_panels(Real from, Real to) {
   return ends;
 }
 
-/// Integral of `part` times cos(phi)^(4 - 2q) over 90 degrees of phi. Panels shrink toward the ends and critical
-/// angles.
+/// Integral of `part` times cos(phi)^(4 - 2q) over phi from 0 to 90 degrees, in psi = 90 degrees - phi. The panels get
+/// narrower toward 0, 90 degrees and the critical angle of total reflection, where the integrand is not smooth.
 Real integral(double q, const OpticalConstants& index, const std::function<Real(const SmoothReflectance&)>& part) {
   const Real quarter = 0.5L * std::numbers::pi_v<Real>;
   const Real squared = 1.0L - (Real(index.n) * index.n - Real(index.k) * index.k);
@@ -83,7 +83,7 @@ TEST(GrazingLimit_EveryIndex, AgreesWithAnotherQuadrature) {
       const Moments limit = grazing_limit_moments(index, q);
       const Real albedo = integral(q, index, [](const auto&) { return 1.0L; });
       const Real r_i = integral(q, index, [](const SmoothReflectance& r) { return 0.5L * (r.s + r.p); });
-      // Facets are vertical. So the rotation by eta, from the plane of incidence to the meridian, has cos(2 eta) = -1.
+      // In this limit facets are vertical. So the plane of incidence is normal to the meridian, and Q changes its sign.
       const Real r_q = integral(q, index, [](const SmoothReflectance& r) { return -0.5L * (r.s - r.p); });
       const double bound = kRelativeAccuracy * limit.r_i + kAlbedoAccuracy * limit.albedo;
       EXPECT_NEAR(limit.albedo, static_cast<double>(albedo), kRelativeAccuracy * limit.albedo);
@@ -96,7 +96,7 @@ TEST(GrazingLimit_EveryIndex, AgreesWithAnotherQuadrature) {
   }
 }
 
-/// r_q / r_i by the kernel in double, `short_deg` below 90 degrees.
+/// r_q / r_i at `short_deg` degrees below 90 degrees. The kernel integrates both moments in double.
 double quotient_before(Masking masking, const OpticalConstants& index, double q, double short_deg) {
   MomentsRequest request;
   request.masking = masking;

@@ -1,4 +1,4 @@
-// Axes of materials, bands and temperatures: tables, points, files, and lookups by name.
+// Axes of materials, bands and temperatures, in tables, files and lists of points. Lookups find materials by name.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -103,8 +103,8 @@ TEST(GridAxes, FileReadBack_HasItsLabelsAndVerifiesWithoutTheMaterials) {
   EXPECT_TRUE(check.passed());
   EXPECT_EQ(check.checked, 6U);
 
-  // The file of a shard lists only its materials. use_scene_labels replaces positions in this list by those in the
-  // scene.
+  // A shard lists only its own materials, and its axis has positions in this short list. use_scene_labels replaces them
+  // by positions in the list of the scene.
   TableHead part = reader.head();
   part.axes[Axis::kMaterial] = {0.0};
   part.labels[Axis::kMaterial] = {"PET"};

@@ -1,4 +1,4 @@
-// A run keeps the best result that an entry gets in several levels. Its check with another rule finds wrong bounds.
+// A run keeps the best result that an entry gets in the refinement levels. It checks itself to find wrong bounds.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -24,7 +24,7 @@ SceneValues scene() {
   return result;
 }
 
-/// Moments that miss the tolerance, and are worse at each call.
+/// Moments that miss the tolerance, with errors that grow at each call.
 class Worsens final : public MomentsOnly {
  public:
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress&) override {
@@ -45,7 +45,7 @@ TEST(EvaluateScene_Levels, ThatWorsen_LeaveTheFirst) {
   EXPECT_EQ(result[Quantity::kRhoQ], 0.1);
 }
 
-/// Moments with wrong bounds: in the check of the run, r_q differs by `bounds` times the sum of both stated errors.
+/// Returns a larger r_q when the run checks itself, by `bounds` times the sum of the stated errors of both values.
 class Contradicts final : public MomentsOnly {
  public:
   explicit Contradicts(double bounds) : bounds_(bounds) {}

@@ -22,7 +22,7 @@ constexpr std::uint64_t kSeed = 2;
 constexpr std::size_t kPoints = 80;  // points per table
 constexpr double kExact = 1e-7;      // tolerance of the exact values
 
-/// Values of an axis with equal steps, or with equal ratios of their distances from `origin`.
+/// Values of an axis with equal steps. If `in_ratios`, the distances from `origin` grow by equal factors instead.
 std::vector<double> axis(double first, double last, std::size_t count, double origin, bool in_ratios) {
   std::vector<double> values;
   for (std::size_t i = 0; i < count; ++i) {
@@ -202,20 +202,20 @@ TEST(LookupEstimates, RandomPointsAcrossTotalReflection_ErrorsAreWithinThem) {
   expect_honest(scene_across_total_reflection);
 }
 
-// In these tables the true error would be 1.8 to 5.7 times the stated error if lookups ignored kinks, or if they
-// trusted a change of the result that is small only by chance.
+// A lookup estimates its error from changes of the result when it uses more entries. In these tables the true error
+// would be 1.8 to 5.7 times the estimate if lookups ignored kinks, or trusted changes that are small only by chance.
 TEST(LookupEstimates, TablesWithKinksOrShortAxes_ErrorsAreWithinThem) {
   const struct {
     NextScene next_scene;
     std::uint64_t seed;
     std::size_t table;
   } rows[] = {
-      // v-cavity masking has a kink in one of the last two cells of theta.
+      // Tables with v-cavity masking and a kink in one of the last two intervals of theta:
       {bistatic_scene, 101, 207},
       {bistatic_scene, 203, 65},
       {bistatic_scene, 211, 159},
       {bistatic_scene, 208, 61},
-      // The axis of sigma has four to seven values.
+      // Tables with four to seven values of sigma:
       {bistatic_scene, 2, 140},
       {bistatic_scene, 102, 69},
       {bistatic_scene, 104, 1},

@@ -1,4 +1,4 @@
-// A plan recommends how many values an axis needs for accurate lookups. Tables with these numbers test the advice.
+// A forecast recommends how many values each axis of a table needs for accurate lookups. The tests build such tables.
 #include "run/lookup_run.hpp"
 
 #include <gtest/gtest.h>

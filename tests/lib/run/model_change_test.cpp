@@ -16,7 +16,6 @@ namespace {
 using enum Quantity;
 using Overrides = std::vector<std::string>;
 
-// Rough aluminium at 10.6 um.
 const std::string kScene = R"toml(
 [surface]
 material = "aluminium (Ordal)"

@@ -1,4 +1,4 @@
-// What `dolp mueller` makes of a scene: diffuse part, k_s, mirrors, 90 degrees, precision and wavelength.
+// Mueller matrices of scenes: diffuse part, factor k_s, mirrors, directions at 90 degrees, precision and wavelength.
 #include "run/mueller_run.hpp"
 #include "error_text.hpp"
 
@@ -94,7 +94,8 @@ TEST(MuellerRun, Mirror_HasTheDiffusePartButInItsSpecularDirection) {
   EXPECT_EQ(elements(scene, {90.0, 40.0, 180.0}, 0.0), expected);
 }
 
-// For an almost perfect conductor the program would have to follow more bounces than it can. For a paint few suffice.
+// With equal zeniths, light may bounce any number of times in a groove. An almost perfect conductor absorbs too little
+// to end the sum in time. Fewer bounces contribute with zeniths of 40 and 43 degrees, or with a paint, which absorbs.
 TEST(MuellerRun, MoreBouncesThanAreFollowed_AreNan) {
   SceneValues scene = scene_with(Masking::kVCavity);
   scene.surface.scattering = Scattering::kMultiple;

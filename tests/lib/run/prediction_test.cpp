@@ -1,4 +1,4 @@
-// The forecast of a run, compared with the requests that the run makes at its first level.
+// The prediction of a run, compared with the requests that the run makes at its first refinement level.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -14,7 +14,7 @@ namespace {
 using namespace dolp;
 using namespace scene_run_support;
 
-/// Counts the requests of the first level. The level ends with the first request of the run's check.
+/// Counts the requests of the first refinement level. The count ends when the run checks itself, with extra panels.
 class FirstRequests final : public ModelEvaluator {
  public:
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {

@@ -1,4 +1,4 @@
-// Weights of response tables, compared with another quadrature rule, with the reference, and with closed forms.
+// Weights of reflectances, which response tables contain. Finer quadrature, the reference and closed forms check them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,6 @@ namespace {
 
 using namespace dolp;
 
-/// The responses at a list of points.
 EntryResponses responses(const Model& model, const std::vector<Point>& points, double tolerance,
                          ModelEvaluator& evaluator, bool has_extra_splits = false) {
   Surface surface;
@@ -39,8 +38,8 @@ double error_at(const EntryResponses& all, std::size_t entry) {
   return all.responses[ResponseVariable::kResponseError][entry];
 }
 
-/// Expects that weights of `a` and `b` differ by no more than the sum of their errors. Returns the largest ratio of the
-/// difference to this sum. Point i has the weights of entry i in `b`, and of entry i * `step` in `a`.
+/// Expects that weights in `a` and `b` differ by at most the sum of their stated errors. Returns the largest ratio of
+/// the difference to this sum. Entry i of `b` and entry i * `step` of `a` belong to point i.
 double expect_within_bounds(const EntryResponses& a, const EntryResponses& b, const std::vector<Point>& points,
                             std::size_t step = 1) {
   double worst = 0.0;

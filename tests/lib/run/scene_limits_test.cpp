@@ -58,7 +58,7 @@ TEST(Limits_RightAngle, DivergingReflectanceLeavesOnlyTheDolp) {
 }
 
 TEST(Limits_RightAngle, DivergingSpecularDolpIsTheQuotientJustBefore) {
-  // From 90 - 1e-6 to 90 degrees, r_q / r_i changes by about cos(theta), at most 2e-8, divided by the moments.
+  // Between 90 - 1e-6 and 90 degrees, r_q / r_i changes by about cos(theta) / r_i. Here cos(theta) is below 2e-8.
   constexpr double kChange = 1e-4;
   for (const Masking masking : {Masking::kNone, Masking::kIntegral}) {
     for (const Distribution distribution : kDistributions) {
@@ -98,8 +98,8 @@ TEST(Limits_RightAngle, MirrorReflectsAllWithoutPolarisation) {
 }
 
 TEST(Limits_RightAngle, MirrorsOwnEmissionHasThePolarisationOfItsLimit) {
-  // At small c = cos(theta), a smooth surface of index N emits 1 - R_s = 4 c Re(w)/|w|^2 and 1 - R_p = 4 c Re(N^2*
-  // w)/|w|^2, where w = sqrt(N^2 - 1).
+  // At small c = cos(theta), a smooth surface of index N emits 1 - R_s = 4 c Re(w) / |w|^2 in s, and in p
+  // 1 - R_p = 4 c Re(conj(N^2) w) / |w|^2, where w = sqrt(N^2 - 1).
   constexpr double kRelativeRounding = 1e-13;
   for (const OpticalConstants& index : {kDielectric, kAbsorbing, kMetal, OpticalConstants{1e6, 1e6}}) {
     const std::complex<double> square = std::complex(index.n, index.k) * std::complex(index.n, index.k);
@@ -152,7 +152,7 @@ std::vector<SceneEntry> hard_entries(Distribution distribution, Masking masking)
   return entries;
 }
 
-/// Expects that a result has only numbers, or is marked as outside the model's domain.
+/// Expects finite numbers. If the result is marked as outside the model's domain, I and rho_I must be NaN instead.
 void expect_sound(const PointResult& r, double tolerance, const std::string& name) {
   const bool outside = (r.status & kOutsideModelDomain) != 0;
   EXPECT_EQ(outside, std::isnan(r[Quantity::kStokesI])) << name;
@@ -186,7 +186,6 @@ TEST(Limits_HardEntries, AreFiniteOrSayWhyNot) {
   });
 }
 
-/// Metals with random indices, sigma, q and directions.
 std::vector<SceneEntry> metal_entries(std::size_t count) {
   std::mt19937_64 generator(kSeed);
   const auto uniform = [&](double from, double to) {

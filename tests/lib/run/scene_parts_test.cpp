@@ -24,7 +24,7 @@ std::unique_ptr<ModelEvaluator> evaluator_on(bool device) {
 
 constexpr std::size_t kFewParts = 4;  // With more parts, making new evaluators would take longer than the parts.
 
-/// Results of a grid that is computed in parts. Up to kFewParts parts get a new evaluator each; more parts share one.
+/// Computes a grid in parts. If there are at most kFewParts parts, each has its own evaluator. Otherwise all share one.
 std::vector<PointResult> in_parts(const SceneValues& scene, const std::vector<SceneEntries>& parts, bool device) {
   const EffectPlan plan = keep_everything(scene);
   const SceneEntries whole = grid_entries(scene);
@@ -74,7 +74,7 @@ class PartsOfModel : public testing::TestWithParam<std::tuple<Distribution, Mask
   double least_q() const { return scene().surface.needs_mean_slope() ? 1.51 : 1.2; }
 };
 
-// Hard cases: directions near 90 degrees need other quadrature nodes, and many entries with heavy tails are repeated.
+// Hard cases: directions near 90 degrees need other quadrature nodes, and many entries with small q are computed again.
 TEST_P(PartsOfModel, InterpolatedGrid_KeepsItsBitsInParts) {
   SceneValues dense = scene();
   dense.grid =
@@ -99,7 +99,8 @@ TEST_P(PartsOfModel, AxesOfIndexAndWavelength_KeepTheirBitsInParts) {
 INSTANTIATE_TEST_SUITE_P(SceneParts, PartsOfModel,
                          testing::Combine(testing::ValuesIn(kDistributions), testing::ValuesIn(kMaskings)));
 
-// The run combines the moments of many indices from few shared moments. Each part must share those of the whole grid.
+// The run combines the moments of many indices from a few responses, which are moments that do not depend on the index.
+// It must use the same responses for a part of the grid as for the whole grid.
 TEST(SceneParts, CombinedIndices_KeepTheirBitsInParts) {
   for (const Masking masking : {Masking::kVCavity, Masking::kIntegral}) {
     SceneValues scene = make_scene(Distribution::kCauchy, masking, kAbsorbing);

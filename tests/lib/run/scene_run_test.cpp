@@ -1,4 +1,4 @@
-// Whole runs at points, and their errors. The order and the grouping of points do not change a bit of the results.
+// Whole runs at lists of points, and error messages about points. The order of the points changes no bit of a result.
 #include "run/scene_run.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ SceneValues small_grid(Distribution distribution, Masking masking) {
   return scene;
 }
 
-/// A scene over a band, with a material that has another index at each wavelength.
+/// A scene over a band, with a material whose n and k change with the wavelength.
 SceneValues band_scene() {
   SceneValues scene = make_scene(Distribution::kCauchy, Masking::kNone, {});
   scene.surface.material.name = "made up";
@@ -115,7 +115,8 @@ TEST_P(RunsOfModel, PermutedEntries_KeepTheirBits) {
   }
 }
 
-// With slope samples, which entries of a grid share, a grid equals separate points within the errors, else exactly.
+// With some maskings, entries of a grid share intermediate sums, the slope samples. Then a grid agrees with separate
+// points within the stated errors. With the other maskings, a grid agrees bit for bit.
 TEST_P(RunsOfModel, Grid_EqualsThePointsOneByOne) {
   const auto [evaluator, distribution, masking] = GetParam();
   const bool has_slope_samples = masking == Masking::kNone || masking == Masking::kVCavity;

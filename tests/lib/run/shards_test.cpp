@@ -1,4 +1,4 @@
-// A merge notices that files of shards change while it reads them.
+// A file replaces a shard between the first reading and the merge. The merge takes it only if it is the same shard.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -116,9 +116,10 @@ std::optional<Part> part_of(const std::string& effect) {
   return found == kParts.end() ? std::nullopt : std::optional(found->second);
 }
 
-// Comments state changes of DOLP. The plan states changes of the vector (Q/I, U/I). These are at least as large.
+// Comments state changes of DOLP. The plan states changes of the vector (Q/I, U/I). DOLP is the length of this vector,
+// so its change is not larger.
 TEST_P(ShippedScene, Plan_EstimatesTheChangesThatTheCommentStates) {
-  constexpr double kAccuracy = 0.2;  // percentage points; with and without the effect, DOLP has the tolerance 1e-3
+  constexpr double kAccuracy = 0.2;  // percentage points: the plan subtracts two values, each with the tolerance 1e-3
   const auto [name, statement_count] = GetParam();
   for (const Statement& statement : statements_of(name)) {
     const SceneValues scene = read_scene(scene_path(name), settings_from_text(statement.overrides));

@@ -81,7 +81,7 @@ using Setting = std::tuple<Kernel, double>;
 
 class HardCasesOn : public testing::TestWithParam<Setting> {};
 
-// `dolp verify --hard-cases --precision double` and `dolp devices` report a precision. Tests must really use it.
+// `dolp verify --hard-cases --precision double` and `dolp devices` report a precision. qualify() must really use it.
 TEST(Qualify, EvaluatorInDouble_IsExaminedInDouble) {
   CpuEvaluator evaluator;
   qualify(cases_of(hard_cases(), Distribution::kCauchy, Masking::kNone), evaluator, {1e-2, Precision::kDouble}, {});
@@ -118,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(Double, HardCasesOn,
                                           testing::Values(1e-4, 1e-6, 1e-9)),
                          setting_name);
 
-// An evaluator whose results are wrong by `bias` and whose stated errors are too small. The check must detect this.
+// An evaluator that changes r_i by the share `bias` but states the error 1e-6. qualify() must notice a larger `bias`.
 class BiasedEvaluator final : public MomentsOnly {
  public:
   explicit BiasedEvaluator(const std::vector<StoredCase>& cases) : stored_(cases) {}
@@ -162,8 +162,8 @@ TEST(Qualify, OrdinaryCases_MeetTheToleranceInDouble) {
   }
 }
 
-// With v-cavity and smith masking the program gives the limit of rho at 90 degrees. The stored values are for 1e-9
-// degrees less. There rho differs from the limit by about cos(theta), which is 2e-11, times a logarithm.
+// At 90 degrees, with v-cavity and smith masking, the program gives the limit of rho. The stored values are for
+// 90 - 1e-9 degrees. They differ from the limit by about cos(theta) = 2e-11, times a logarithm.
 TEST(HardCases, RightAngle_IsTheLimitOfTheStoredValue) {
   constexpr double kApproach = 1e-8;
   for (const StoredCase& c : hard_cases()) {

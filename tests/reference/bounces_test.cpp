@@ -114,8 +114,8 @@ TEST(ReferenceBounces, Sum_IsPhysical) {
   }
 }
 
-// Grooves of every azimuth send light that bounces twice into the mirror direction. So the pBRDF diverges there. At
-// zenith 0 only right-angled grooves do this.
+// The pBRDF diverges in the mirror direction, because after two bounces grooves of every azimuth reflect light into
+// this direction. At zenith 0 these grooves are right-angled, and the pBRDF diverges as well.
 TEST(ReferenceBounces, MirrorDirection_IsWhereTwoBouncesDiverge) {
   const Surface surface = grooves(Distribution::kCauchy, 0.4, 2.0);
   const auto twice = [&](double theta_r_deg, double delta_phi_deg) {
@@ -153,7 +153,7 @@ std::complex<double> hemispherical(const Surface& surface, const OpticalConstant
     for (int ring = 0; ring < kRings; ++ring) {
       const auto in_sector = [&](double chi) {
         const double reach = std::sqrt(1.0 - std::pow(centre * std::sin(chi), 2)) - centre * std::cos(chi);
-        const auto at = [&](double y) {  // at the horizon, y = 1, the derivative of distance cancels 1/cosine
+        const auto at = [&](double y) {  // at the horizon, y = 1, d distance/dy is 0 and cancels the infinite 1/cosine
           const double distance = reach * y * (2.0 - y);
           const double x = centre + distance * std::cos(chi), across = distance * std::sin(chi);
           const double sine = std::hypot(x, across);

@@ -123,7 +123,7 @@ TEST(ReferenceMoments, GrazingWithHeavyTails_DivergesBelowThreeHalves) {
     const Moments heavy = moments(Distribution::kCauchy, masking, 90.0, {0.3, 1.5}, kSteel);
     EXPECT_EQ(heavy.r_i, std::numeric_limits<double>::infinity());
     EXPECT_EQ(heavy.r_q, -std::numeric_limits<double>::infinity());
-    // For q just above 3/2, r_i is nearly proportional to 1/(2q - 3): the relative error is at most 100 (q - 3/2).
+    // For q just above 3/2, r_i is nearly proportional to 1/(2q - 3). So half the distance from 3/2 doubles r_i.
     constexpr double kDistance = 1e-5;
     const double near = moments(Distribution::kCauchy, masking, 90.0, {0.3, 1.5 + kDistance}, kSteel).r_i;
     const double far = moments(Distribution::kCauchy, masking, 90.0, {0.3, 1.5 + 2.0 * kDistance}, kSteel).r_i;
@@ -133,7 +133,7 @@ TEST(ReferenceMoments, GrazingWithHeavyTails_DivergesBelowThreeHalves) {
 }
 
 TEST(ReferenceMoments, Deficit_IsTheAbsorbedPartOfASmoothMetal) {
-  // For sigma = 1e-3 the deficit is about 0.5 % of cos(theta), the light that the smooth metal absorbs.
+  // For sigma = 1e-3 the deficit is the light that the smooth metal absorbs, about 1.2 % of cos(theta).
   constexpr double kRelative = 1e-3;
   const OpticalConstants metal{27.0, 90.0};
   const Moments rough = moments(Distribution::kGaussian, Masking::kSmith, 30.0, {1e-3, 2.0}, metal);
@@ -151,9 +151,9 @@ Surface surface_of(Distribution distribution, Masking masking, double sigma, dou
   return surface;
 }
 
-// The azimuth Delta_phi at which v-cavity masking has a kink. There (cos(theta_i) + cos(theta_r)) min(cos(theta_i),
-// cos(theta_r)) = cos^2(beta). The kink reaches Delta_phi = 180 degrees at two theta_r: 3 theta_i - 180 and 60 +
-// theta_i / 3 degrees. The integral over theta_r is split there.
+// The azimuth Delta_phi at which v-cavity masking has a kink. At this azimuth (cos(theta_i) + cos(theta_r))
+// min(cos(theta_i), cos(theta_r)) = cos^2(beta). Two values of theta_r have the kink at Delta_phi = 180 degrees:
+// 3 theta_i - 180 and 60 + theta_i / 3 degrees. The test splits the integral over theta_r at these two values.
 double bend_deg(double theta_i_deg, double theta_r_deg) {
   const double c_i = std::cos(theta_i_deg * kRadPerDeg), c_r = std::cos(theta_r_deg * kRadPerDeg);
   const double sines = std::sin(theta_i_deg * kRadPerDeg) * std::sin(theta_r_deg * kRadPerDeg);
@@ -195,7 +195,8 @@ TEST(ReferenceMoments, PlainQuadratureOfTheMuellerMatrix_Agrees) {
 }
 
 // With v-cavity and smith masking rho has a limit at 90 degrees and is linear in cos(theta) just below 90 degrees. So
-// rho at 1, 2 and 4 gaps below 90 degrees lies on a line. If the reference lost digits, the values would scatter.
+// rho lies on a line at three zeniths: gap_deg, 2 gap_deg and 4 gap_deg below 90 degrees. If the reference lost digits,
+// the values would scatter.
 TEST(ReferenceMoments, NextToGrazing_KeepTheirDigits) {
   constexpr double kTolerance = 1e-13;
   const ReferenceOptions options{.relative_tolerance = kTolerance, .subdivisions = 2};

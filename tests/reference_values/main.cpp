@@ -29,14 +29,13 @@ using dolp::name_of;
 using dolp::reference::Case;
 using dolp::reference::Group;
 
-// Relative errors are divided by at least this share of the albedo. With n = 1 and k = 0 r_i is only a rounding error,
-// which must not be the divisor.
+// Smallest divisor of a relative error, as a share of the albedo. The usual divisor r_i is 0 for n = 1 and k = 0.
 constexpr double kNegligible = 1e-12;
 // Relative rounding error of a closed form, which has fewer than 16 operations.
 constexpr double kClosedFormRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
-/// Two settings of the reference, which computes each case with both. The files contain the values with `fine`. The
-/// errors in the files are at least the differences between the values with `fine` and with `coarse`.
+/// Two settings of the reference, which computes each case with both. If a moment has no closed form, the program
+/// writes its value with `fine`, and an error that is at least the difference between `fine` and `coarse`.
 struct Refinements {
   dolp::ReferenceOptions coarse;
   dolp::ReferenceOptions fine;
@@ -81,8 +80,8 @@ void replace(double& value, double& error, double exact) {
   error = kClosedFormRounding * std::abs(exact);
 }
 
-/// Replaces the albedo A at theta = 0 by its closed form. Without masking, and with m^2 = 2 sigma^2, A is
-/// 1 - (m^2/(1 + m^2))^(q - 1) for cauchy and 1 - exp(-1/m^2) for gaussian. For smith masking with q = 2 and
+/// Replaces the albedo A at theta = 0 by its closed form. Without masking A is 1 - (m^2/(1 + m^2))^(q - 1) for cauchy
+/// and 1 - exp(-1/m^2) for gaussian. Here m^2 is 2 sigma^2. For cauchy with smith masking, q = 2 and
 /// sigma = 1/sqrt(2), A is 1 - ln 2. Returns false if there is no closed form.
 bool put_normal_albedo(const Row& row, Moments& moments) {
   const double m2 = 2.0 * row.input.shape.sigma * row.input.shape.sigma;

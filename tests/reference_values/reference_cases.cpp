@@ -9,14 +9,14 @@ namespace {
 
 // Smallest q of random cases with smith masking. With the Cauchy distribution their moments exist only for q > 1.5.
 constexpr double kSmallestSmithQ = 1.53;
-// Distance of a case from a special angle, where lines that split the integral coincide. It is far above rounding.
+// Distance of a case from a zenith at which two slopes that split the integral coincide. It is far above rounding.
 constexpr double kBeside_deg = 1e-7;
 
 constexpr OpticalConstants kMetal{27.0, 90.0};
 constexpr OpticalConstants kGoodConductor{1000.0, 1000.0};
 constexpr OpticalConstants kAlmostTotal{0.5, 1e-3};
 
-// Random numbers that are equal on every machine, because only the engine comes from the standard library.
+// Random numbers. The distributions of the standard library are not used, because they differ between libraries.
 class Draw {
  public:
   explicit Draw(std::uint64_t seed) : engine_(seed) {}

@@ -34,13 +34,13 @@ inline constexpr std::array<Group, 8> kGroups{{{Distribution::kCauchy, Masking::
                                                {Distribution::kGaussian, Masking::kVCavity},
                                                {Distribution::kGaussian, Masking::kSmith}}};
 
-/// The hard cases of a group: ends of every range, directions at which lines that split the integral coincide, indices
-/// that reflect nothing or everything. With v-cavity and smith masking moments vanish at 90 degrees, so the cases at 90
-/// degrees are left out. The cases "grazing-limit" lie just below 90 degrees.
+/// The hard cases of a group: ends of every range, zeniths at which two slopes that split the integral coincide, and
+/// indices that reflect nothing or everything. Cauchy with smith masking has no cases with q up to 1.5, because the
+/// mean slope is infinite. V-cavity and smith masking have no cases at 90 degrees, because the moments are 0.
 std::vector<Case> hard_cases(const Group& group);
 
 /// Random points: `count_a` of domain A (sigma 0.01 to 1.2, q 1.06 to 13, theta up to 89.5 degrees) and `count_b` of
-/// domain B (sigma 0.001 to 5, q 1.01 to 45, theta up to 89.9 degrees). One point in five has theta above 85 degrees.
+/// domain B (sigma 0.001 to 5, q 1.01 to 45, theta up to 89.9 degrees). About a quarter has theta above 85 degrees.
 std::vector<Case> random_cases(const Group& group, std::uint64_t seed, std::size_t count_a, std::size_t count_b);
 
 }  // namespace dolp::reference

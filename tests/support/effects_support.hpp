@@ -1,4 +1,4 @@
-// Random scenes for tests of dropped effects.
+// Random scenes for tests of effects that the program drops because they change the DOLP by almost nothing.
 #pragma once
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@ namespace effects_support {
 
 using namespace dolp;
 
-/// Random scenes with any choice of effects. Many scenes have an effect that changes the DOLP by almost nothing.
+/// Random scenes with any choice of effects, such as emission, source and path. Many scenes have a negligible effect.
 class RandomScenes {
  public:
   explicit RandomScenes(std::uint64_t seed) : random_(seed) {}

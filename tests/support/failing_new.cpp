@@ -17,7 +17,7 @@ void* operator new(std::size_t size) {
   throw std::bad_alloc();
 }
 
-// The address sanitizer has such an operator, too. Its memory must not go to std::free, which operator delete calls.
+// Replaces the operator of the address sanitizer, whose memory must not go to std::free. operator delete calls free.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   try {
     return ::operator new(size);

@@ -52,7 +52,7 @@ class TerminalProcess {
   TerminalProcess(const TerminalProcess&) = delete;
   TerminalProcess& operator=(const TerminalProcess&) = delete;
 
-  /// Waits until the program writes to the terminal. Returns false if the program ends without output there.
+  /// Waits until the program writes to the terminal. Returns false if the program ends without writing to it.
   bool wait_for_output();
   void send_signal(int number) const;
   /// Waits until the program ends. Outcome::err contains all text that the terminal received.

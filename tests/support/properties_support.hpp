@@ -103,7 +103,6 @@ class Random : public Draws {
   }
 };
 
-/// A request for the moments at a list of points.
 inline MomentsRequest request_of(const Model& model, const std::vector<Point>& points, double tolerance) {
   MomentsRequest request;
   request.distribution = model.distribution;
@@ -149,7 +148,8 @@ inline bool are_same(const Moments& a, const Moments& b) {
   return a.evaluations == b.evaluations && std::ranges::all_of(kHemisphereMembers, is_same);
 }
 
-/// Expects that all moments agree within both stated errors. Returns the largest ratio of difference to sum of errors.
+/// Expects that each moment of `a` differs from that of `b` by at most a bound: the sum of both stated errors and
+/// `slack`. Returns the largest ratio of a difference to its bound.
 inline double expect_within_bounds(const Moments& a, const Moments& b, const std::string& where, double slack = 0.0) {
   double worst = 0.0;
   for (const auto& [value, error] : kMomentMembers) {

@@ -56,8 +56,8 @@ struct PrintedStokes {
   Real q = 0.0L;
 };
 
-/// I and Q of hemispherical mode at one wavelength, by eq. (18) of the paper. `specular` has rho_s and rho_p without
-/// the factor k_s.
+/// I and Q in the hemispherical mode at one wavelength, by eq. (18) of the paper. `specular` has the reflectances of
+/// the rough surface, not yet multiplied by the factor k_s of the scene.
 inline PrintedStokes printed_stokes(const SceneValues& scene, Real wavelength_um, Real c,
                                     const PrintedReflectance& specular) {
   const Real pi = std::numbers::pi_v<Real>;

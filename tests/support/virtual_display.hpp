@@ -25,7 +25,7 @@ class VirtualDisplay {
     const std::string screen = size + "x24";
     process_ = ::fork();
     if (process_ == 0) {
-      // -r: held keys do not repeat; a slow machine holds them down for long
+      // -r: held keys do not repeat. A test on a slow machine may hold a key so long that it would repeat.
       ::execlp("Xvfb", "Xvfb", "-r", "-displayfd", end.c_str(), "-screen", "0", screen.c_str(), "-fbdir",
                folder_.path().c_str(), "-noreset", "-nolisten", "tcp", nullptr);
       ::_exit(127);

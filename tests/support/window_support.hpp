@@ -56,7 +56,7 @@ class Window : public CommandLine {
     put("scene.toml", kEdited);
     open({});
   }
-  /// Opens the window on scene.toml. `settings` are those of the command line.
+  /// Opens the window on scene.toml. `settings` replace values of the scene, as `--set` does.
   void open(const std::vector<Setting>& settings) {
     app_.reset();
     explore::AppOptions options;
@@ -120,7 +120,6 @@ class Window : public CommandLine {
     xdotool({"type", "--delay", "12", "--", text});
     frames();
   }
-  /// Types a text into a field and presses Enter.
   void enter(const std::string& field, const std::string& text) {
     click_control(field);
     keys("ctrl+a");

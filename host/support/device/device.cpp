@@ -75,7 +75,7 @@ void add_properties_1_2(VkPhysicalDevice physical, dolp::Device& description) {
   description.subgroup_size = subgroup.subgroupSize;
 }
 
-// On a CPU a workgroup is one subgroup. In a small dispatch, many invocations of a larger one would have no work.
+// On a CPU a workgroup is one subgroup. A larger workgroup would leave many invocations idle in a small dispatch.
 std::uint32_t local_size_of(const dolp::Device& device) {
   if (device.type != dolp::Device::Type::kCpu || device.subgroup_size == 0) return kLocalSize;
   return std::min(device.subgroup_size, kLocalSize);

@@ -8,8 +8,8 @@
 
 namespace dolp::vulkan {
 
-constexpr std::uint32_t kStorageCount = 7;  // storage buffers of each kernel; they have the binding numbers from 0
-constexpr std::uint32_t kTexelCount = 2;    // texel buffers of each kernel, with the next binding numbers
+constexpr std::uint32_t kStorageCount = 7;  // storage buffers of each kernel, with binding numbers 0 to 6
+constexpr std::uint32_t kTexelCount = 2;    // texel buffers of each kernel, with binding numbers 7 and 8
 /// Largest number of invocations in a workgroup of dolp. Every Vulkan device allows at least 128.
 constexpr std::uint32_t kLocalSize = 64;
 

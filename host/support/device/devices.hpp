@@ -6,15 +6,15 @@
 
 namespace dolp {
 
-/// Switches Vulkan's validation layer, which checks all calls, for tests.
+/// Tells whether Vulkan's validation layer is on. The layer checks all Vulkan calls. Tests switch it on.
 enum class ValidationMode {
-  kFromEnvironment,  ///< used if the environment variable DOLP_VALIDATION is 1
+  kFromEnvironment,  ///< on if the environment variable DOLP_VALIDATION is 1, else off
   kOff,
   kOn,
 };
 
 struct DeviceSelector {
-  std::string device = {};    ///< the `choice` of choose_device()
+  std::string device = {};    ///< position in the list of devices, part of a name, or empty
   bool needs_double = false;  ///< true if shaders need double precision
   ValidationMode validation = ValidationMode::kFromEnvironment;
 };
@@ -26,10 +26,10 @@ struct DeviceList {
 
 DeviceList list_devices();  ///< does not throw if there are no devices
 
-/// Returns the position of a device in `devices`. `choice` is a position, a part of the device's name (in any case), or
-/// empty. If `float64` is true, the device must have double precision. If several devices match, the order of
-/// preference is discrete GPU, integrated GPU, virtual GPU, CPU, other. Errors: DeviceError that lists the devices, if
-/// no usable device matches.
+/// Returns the position of a device in `devices`. `choice` is this position, a part of the device's name in upper or
+/// lower case, or empty. If `float64` is true, the device must have double precision. If several devices match, the
+/// order of preference is discrete GPU, integrated GPU, virtual GPU, CPU, other. Errors: DeviceError that lists the
+/// devices, if no usable device matches.
 std::size_t choose_device(const std::vector<Device>& devices, const std::string& choice, bool float64);
 
 }  // namespace dolp

@@ -1,5 +1,5 @@
-// All bounces in V-grooves and direct emission, with every kernel. Results are compared with stored values and with the
-// reference, and obey properties that hold for all inputs. Random numbers have fixed seeds.
+// Light after all its bounces in V-grooves, and direct emission, with every kernel. Results must agree with stored
+// values and with the reference evaluator, and must have properties that hold for all inputs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -128,7 +128,7 @@ TEST_P(Grooves, WithoutAndWithTheDirectEmission_TheOtherMomentsAgree) {
     const Moments b = evaluator->evaluate(without, {}).front();
     expect_within_bounds(a, b, name_of({Distribution::kCauchy, masking}));
     EXPECT_TRUE(std::isnan(b.direct_i));
-    // The emissivity lies between the direct emission and 1 - rho of single scattering. Both are times cos(theta) here.
+    // The true emissivity is at least direct_i / cos(theta). It is at most deficit / cos(theta) of single scattering.
     EXPECT_LE(a.direct_i, a.deficit);
   }
 }
@@ -170,7 +170,7 @@ const std::vector<ScatteringPoint> kBeams = {
     {{0.0, 50.0, 30.0}, {0.5, 2.0}, {10.0, 60.0}},  {{80.0, 75.0, 170.0}, {0.2, 1.5}, {1.33, 0.02}},
     {{50.0, 50.0, 0.0}, {0.5, 3.0}, {3.0, 4.0}}};
 
-/// Compares Mueller matrices with the reference, except where it gives NaN. `rounding` is relative to the element m00.
+/// Compares Mueller matrices with the reference, except where the reference gives NaN. `rounding` is divided by m00.
 void expect_like_reference(ModelEvaluator& evaluator, const std::vector<ScatteringPoint>& points, double rounding) {
   const std::vector<ScatteringMatrix> computed = evaluator.scatter(bounces_of(points), {});
   const std::vector<ScatteringMatrix> exact = ReferenceEvaluator().scatter(bounces_of(points), {});
@@ -219,8 +219,8 @@ int most_bounces_toward_the_mirror(Distribution distribution, const OpticalConst
   return most;
 }
 
-// A metal needs the light after 2, 3, ..., 1,000 bounces. For each number the program computes two beams, and each of
-// their bounces. So the sum is about 1e6 bounces. A bounce takes about 50 ns.
+// A metal reflects so strongly that the program follows beams of k = 2, 3, ..., 1,000 bounces. There are two beams for
+// each k, and each beam has k bounces. So the program computes about 1e6 bounces. A bounce takes about 50 ns.
 TEST(GroovesMueller, TowardTheMirrorDirection_WorkIsBounded) {
   for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
     const int paint = most_bounces_toward_the_mirror(distribution, {1.5, 0.1});
@@ -232,7 +232,7 @@ TEST(GroovesMueller, TowardTheMirrorDirection_WorkIsBounded) {
 }
 
 TEST(GroovesMueller, TowardTheMirrorDirection_SumsAreThoseOfTheReference) {
-  constexpr double kPrinted = 1e-15;  // allowed rounding error, relative to m00
+  constexpr double kPrinted = 1e-15;  // allowed rounding error over m00: the last digit that a double prints
   for (const OpticalConstants& index : {OpticalConstants{1.5, 0.1}, OpticalConstants{3.0, 4.0}}) {
     std::vector<ScatteringPoint> points;
     for (const BeamAngles& angles : toward_the_mirror()) points.push_back({angles, {0.3, 2.02}, index});
@@ -342,7 +342,7 @@ TEST(GrooveScenes, Bracket_IsWhatItsEndsSayAndHoldsAllBounces) {
     if (i == 0) continue;  // at theta = 0 nothing is polarised
     const double direct_q = 0.5 * std::abs(direct[i][Quantity::kEmissivityS] - direct[i][Quantity::kEmissivityP]);
     const double slack = mean_emissivity(single[i]) - mean_emissivity(direct[i]);
-    // All models have Q = N (eps_s - eps_p) / 2 with equal N. With single scattering Q = -N rho_Q, which gives |N|.
+    // All models have the same factor N in Q = N (eps_s - eps_p) / 2. Single scattering has Q = -N rho_Q.
     const double net = std::abs(single[i][Quantity::kStokesQ] / single[i][Quantity::kRhoQ]);
     EXPECT_NEAR(high, net * (direct_q + slack) / single[i][Quantity::kStokesI], kAccuracy);
     EXPECT_NEAR(low, net * std::max(direct_q - slack, 0.0) / single[i][Quantity::kStokesI], kAccuracy);

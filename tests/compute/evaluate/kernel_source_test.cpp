@@ -33,7 +33,6 @@ namespace {
 template <class Source>
 using RealOf = std::remove_const_t<decltype(Source::kPi)>;
 
-/// Machine epsilon of the number type.
 template <class Source>
 constexpr double kEpsilon = static_cast<double>(std::numeric_limits<RealOf<Source>>::epsilon());
 
@@ -125,10 +124,10 @@ template <class Source>
 class Elementary : public ::testing::Test {};
 TYPED_TEST_SUITE(Elementary, Sources, SourceNames);
 
-// Allowed error: half an ulp for each of the last two or three roundings, and the rounding error of the reduced
-// argument. The comments of the kernel source promise "a few units in the last place".
+// Allowed error: half an ulp for each of the last two or three roundings, and the rounding error of the argument of the
+// series. The comments of the kernel source promise "a few units in the last place".
 constexpr double kFewUlps = 3.0;
-// before their series, these functions compute up to three roots and quotients, each with a rounding error
+// Before their series, acosh, atan and acos compute several roots and quotients, each with a rounding error.
 constexpr double kRootUlps = 6.0;
 
 TYPED_TEST(Elementary, Functions_OverTheirDomain_AreAFewUlpsFromExact) {
@@ -239,7 +238,7 @@ double relative_error(double value, const Wide& exact) {
   return static_cast<double>(abs(Wide(value) - exact) / abs(exact));
 }
 
-// The index in the number type of the source. The reference uses it too, so its rounding is no error of the source.
+// The index, rounded to the number type of the source. Source and reference both use it, so this rounding is no error.
 template <class Source>
 kernel::IndexNode rounded_index(const OpticalConstants& index) {
   MomentsRequest request;
@@ -302,7 +301,7 @@ TYPED_TEST(FresnelSource, NormalIncidence_HasTheLimitOfTheQuotient) {
   for (const OpticalConstants& optical : {OpticalConstants{1.508, 0.0}, OpticalConstants{27.0, 90.0}}) {
     const kernel::IndexNode index = rounded_index<TypeParam>(optical);
     const auto f = source.fresnel(index_in<TypeParam>(index), Real(1));
-    // So near to cos(beta) = 1, (R_s - R_p) / sin^2(beta) equals its limit. Cancellation leaves 30 of 50 digits.
+    // At c = 1 - 1e-20 (R_s - R_p) / sin^2(beta) equals its limit. Cancellation leaves 30 of the 50 digits.
     const Wide c = 1 - Wide(1e-20);
     const Wide sin2 = 1 - c * c;
     const WideComplex n2(Wide(index.n2m1_re) + 1, Wide(index.n2m1_im));

@@ -26,7 +26,7 @@ constexpr std::uint64_t kSeed = 20260110;
 const std::size_t kPoints = draws_wanted(400);
 
 // Matrices with a smaller m00 are not compared. The reference computes m00 from a slope density that may be 1e22 times
-// smaller than m00. As a double, so small a density has few digits.
+// smaller than m00. Near the smallest positive double, this density would have few digits.
 constexpr double kSmallest = 1e-280;
 
 class MuellerKernel : public testing::TestWithParam<KernelAndModel> {

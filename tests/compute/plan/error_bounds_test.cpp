@@ -1,6 +1,6 @@
-// Error estimates are honest over the whole range of scenes, and beside values at which a rule changes. The stated
-// error of a coarse rule must cover the difference of its result from the result of a rule with four more digits. The
-// environment variable DOLP_PROPERTY_DRAWS sets the number of points per kernel and model.
+// Error estimates hold over the whole range of scenes, and close to parameter values at which the integration rule
+// changes. The error estimate of a coarse rule must cover the difference from the result of a rule with four more
+// digits. The environment variable DOLP_PROPERTY_DRAWS sets the number of points for each kernel and model.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ constexpr std::size_t kDraws = 60;
 constexpr double kCoarse = 1e-2;
 constexpr double kFine = 1e-6;
 constexpr double kLeastShare =
-    0.1;  // least relative error bound, divided by the tolerance (shaders/physics/README.md, section 9)
+    0.1;  // least relative error bound over the tolerance (shaders/physics/README.md, section 9)
 
 std::uint64_t seed_of(const Model& model) {
   return kSeed + 2 * static_cast<std::uint64_t>(model.masking) + static_cast<std::uint64_t>(model.distribution);
@@ -35,8 +35,8 @@ class Switches {
   Switches(const Model& model, std::uint64_t seed) : model_(model), random_(seed) {}
 
   std::vector<Point> points() {
-    // With some masking, two breakpoints of the slope axis coincide at theta = 90/7 = 12.857, 18, 30 and 45 degrees.
-    // They nearly coincide at 12.9, 18.05 and 30.2 degrees. The numbers of nodes change at 65, 80, 88 and 89 degrees.
+    // With some of the maskings, two breakpoints of the slope axis coincide at theta = 90/7 = 12.857, 18, 30 and 45
+    // degrees, and nearly coincide at 12.9, 18.05 and 30.2 degrees.
     for (const double theta_deg :
          {12.857142857142858, 12.9, 18.0, 18.05, 22.5, 30.0, 30.2, 36.0, 44.9, 45.0, 60.0, 65.0, 80.0, 88.0, 89.0}) {
       add([&](Point& p) { p.theta_deg = beside(theta_deg); });
@@ -65,11 +65,11 @@ class Switches {
   double least_q() const {
     return model_.masking == Masking::kSmith && model_.distribution == Distribution::kCauchy ? 1.501 : 1.001;
   }
-  // Total reflection begins at the line sin(beta) = n, over slope and azimuth. This line meets the lines phi = 0,
-  // theta_r = 90 degrees and theta_r = theta if theta is the critical angle, its complement, or twice the critical
-  // angle minus 90 degrees. There is no total reflection if n exceeds 1 or 2 n k is large.
+  // Total reflection begins where sin(beta) = n. This is a line in the plane of slope and azimuth. Three zeniths are
+  // special because intersections of this line with other lines appear or coincide there: the critical angle, its
+  // complement, and the absolute difference of twice the critical angle and 90 degrees.
   void add_total_reflection(double n) {
-    constexpr double kSoftCriticalLine = 0.3;  // 2 n k above which the plan treats total reflection as smooth
+    constexpr double kSoftCriticalLine = 0.3;  // if 2 n k is larger, the plan ignores the line of total reflection
     const double critical_deg = std::asin(n) * 180.0 / std::numbers::pi;
     for (const double theta_deg : {critical_deg, 90.0 - critical_deg, std::abs(2.0 * critical_deg - 90.0)}) {
       add([&](Point& p) { p.theta_deg = beside(theta_deg), p.index = {n, 0.0}; });
@@ -114,7 +114,7 @@ struct HardEntry {
 
 constexpr Model kCauchySmith{Distribution::kCauchy, Masking::kSmith};
 constexpr std::array<HardEntry, 9> kHardEntries{{
-    // Here q is just above 3/2, where the mean slope of Smith's masking diverges.
+    // In the first five entries q is just above 3/2, where the mean slope of Smith's masking diverges.
     {kCauchySmith, 1e-4, {0.0, {4.4985874, 1.505362511}, {4.483711324, 9.059458356}}},
     {kCauchySmith, 1e-4, {0.0, {6.854371606, 1.507915401}, {1.035031297, 0.01023949105}}},
     {kCauchySmith, 1e-4, {0.0130314, {7.418917168, 1.508037519}, {3.801393770, 0.0}}},
@@ -145,7 +145,7 @@ TEST(HardEntries, Moments_AreWithinTheirBoundsOfFinerRulesAndOfTheReference) {
       const Moments fine = FixedPrecision(Precision::kDouble).evaluate(finest, {}).at(0);
       expect_within_bounds(stated, fine, where);
       expect_within_bounds(stated, ReferenceEvaluator().evaluate(finest, {}).at(0), where);
-      // The program accepts an entry if its stated error is within the tolerance. Then its true error must be, too.
+      // The program accepts an entry if its stated error is within the tolerance. So the true error must be within it.
       const double asked = entry.tolerance * fine.r_i;
       const bool claims = std::max(stated.r_i_error, stated.r_q_error) <= asked;
       const double error = std::max(std::abs(stated.r_i - fine.r_i), std::abs(stated.r_q - fine.r_q));

@@ -1,6 +1,5 @@
-// Entries of a grid share work in four ways: slope samples, kernel rows along q, interpolation between slope
-// distributions, and moments of many indices from responses. Some entries are also computed separately. Their stated
-// error must cover the difference. The environment variable DOLP_PROPERTY_DRAWS sets the number of grids per model.
+// Entries of a grid share work (Sharing). The stated error of an entry must cover the difference from a separate
+// computation. The environment variable DOLP_PROPERTY_DRAWS sets the number of grids per model.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +17,9 @@ namespace {
 constexpr std::uint64_t kSeed = 20261123;
 constexpr std::size_t kChecked = 30;  // entries checked per grid
 
-/// The four ways in which entries share work: slope samples, kernel rows, interpolation, responses.
+/// kSlopes: sums over the azimuths at a slope serve all slope distributions. kRows: one kernel invocation computes
+/// several values of q. kShapes: moments are interpolated between slope distributions. kIndices: moments of many
+/// indices are sums of a few responses (model/response_basis.hpp).
 enum class Sharing { kSlopes, kRows, kShapes, kIndices };
 constexpr std::array kSharings = {Sharing::kSlopes, Sharing::kRows, Sharing::kShapes, Sharing::kIndices};
 
@@ -40,7 +41,7 @@ std::vector<FacetOptics> many_indices(Random& random) {
   return indices;
 }
 
-/// A random grid. Its largest sigma is up to 60 times its smallest. For q minus its lower limit, the ratio is up to 30.
+/// A random grid. Largest value over smallest value is up to 60 for sigma, and up to 30 for q minus its lower limit.
 MomentsRequest random_grid(Random& random, const Model& model, Scattering scattering, Sharing sharing) {
   MomentsRequest request;
   request.distribution = model.distribution;
@@ -120,7 +121,7 @@ TEST_P(Grids, StatedErrors_HoldAgainstEveryEntryByItself) {
       }
     }
   }
-  // No test for kIndices: the program uses responses for some random indices and not for others.
+  // No check for kIndices: `interpolated` also counts entries from responses, which only some grids use.
   if (sharing == Sharing::kShapes) {
     EXPECT_GT(2 * work.interpolated, entries);
   } else if (sharing != Sharing::kIndices) {
@@ -136,7 +137,7 @@ std::string case_name(const testing::TestParamInfo<std::tuple<Kernel, Sharing>>&
 INSTANTIATE_TEST_SUITE_P(Kernels, Grids, testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kSharings)),
                          case_name);
 
-// The wanted entries have three values of sigma. The entry with the heaviest tail (q = 1.2) has the middle value.
+// A second pass wants only some entries. Their shared slope samples must also serve the heaviest tail (q = 1.2).
 TEST(SecondPass, SomeShapesOfAGrid_HeaviestTailIsNotLost) {
   for (const Masking masking : {Masking::kNone, Masking::kVCavity}) {
     MomentsRequest request;

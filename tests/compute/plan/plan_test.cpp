@@ -38,7 +38,7 @@ TEST(CosSinDeg, MultiplesOf90_AreExact) {
 }
 
 TEST(CosSinDeg, OtherAngles_AgreeWithTheLibrary) {
-  // Rounding of angle_deg / 180, times pi, and rounding of the result.
+  // Pi times the rounding error of angle_deg / 180, plus the rounding error of the result.
   constexpr double kTolerance = 5e-16;
   for (double angle_deg = -90.0; angle_deg <= 360.0; angle_deg += 0.37) {
     const long double angle = angle_deg * std::numbers::pi_v<long double> / 180.0L;
@@ -49,7 +49,7 @@ TEST(CosSinDeg, OtherAngles_AgreeWithTheLibrary) {
 
 // ---- Loops ---------------------------------------------------------------------------------------------------------
 
-// After so many iterations of all its loops, an invocation on lavapipe stops without an error
+// After this number of loop iterations, an invocation on lavapipe (Mesa's CPU driver) stops without an error.
 constexpr double kDriverLimit = 65535.0;
 
 TEST(Loops, HardDirectionsAndIndicesAtEveryTolerance_StayBelowTheDriversLimit) {
@@ -75,12 +75,12 @@ TEST(Loops, HardDirectionsAndIndicesAtEveryTolerance_StayBelowTheDriversLimit) {
       }
     }
   }
-  // The kernel of the masking table has a loop over its nodes, and for each node a Gauss rule of at most this order.
+  // A kernel loops over the nodes of the masking table. For each node it sums a Gauss rule of at most this order.
   constexpr double kTableOrderAtMost = 8.0;
   EXPECT_LT(DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_DOUBLE) * (1.0 + kTableOrderAtMost), kDriverLimit);
 }
 
-// The integrands are Chebyshev polynomials. Their values reach 1 at each degree, so an error is never tiny.
+// The integrands are Chebyshev polynomials. Their maximum is 1, so the error of a too low order is far above rounding.
 TEST(GaussLegendre, Orders_IntegratePolynomialsOfDegree2nMinus1AndNoMore) {
   for (const int order : {1, 2, 3, 7, 20, DOLP_MAX_ORDER}) {
     for (int degree = 0; degree <= 2 * order; degree += 2) {
@@ -97,14 +97,14 @@ TEST(GaussLegendre, Orders_IntegratePolynomialsOfDegree2nMinus1AndNoMore) {
 
 double tan_deg(double angle_deg) { return std::tan(angle_deg * std::numbers::pi / 180.0); }
 
-// Section 8 of shaders/physics/README.md lists the slopes. There c / (1 + s) is tan(45 degrees - theta/2).
+// The expected slopes are in section 8 of shaders/physics/README.md. Its t_1 = c/(1+s) is tan(45 degrees - theta/2).
 TEST(Breakpoints, Directions_AreAtTheAnglesWhereLinesMeet) {
   constexpr unsigned kBoth = kRootAbove | kRootBelow;
   struct Case {
     double theta_deg;
     Masking masking;
     DirectionVariant variant;
-    std::vector<std::pair<double, unsigned>> expected;  // atan(slope) in degrees; Breakpoint::roots
+    std::vector<std::pair<double, unsigned>> expected;  // of each breakpoint: atan(slope) in degrees, roots
   };
   const std::vector<Case> cases = {
       {0.0, Masking::kNone, {}, {{0, 0}, {45, kBoth}}},
@@ -164,7 +164,7 @@ TEST(Rows, WantedEntriesOfAGrid_AreEachInOneRowOfShapesAlike) {
   EXPECT_EQ(pieces.size(), expected);
   request.q.resize(2);
   request.wanted.clear();
-  EXPECT_EQ(rows_of(request, kernel_data(request)).width, 1U);  // rows of 4 would be half empty
+  EXPECT_EQ(rows_of(request, kernel_data(request)).width, 1U);  // rows for 4 entries would be half empty
 }
 
 // ---- Orders and levels ---------------------------------------------------------------------------------------------
@@ -211,7 +211,7 @@ TEST(Refinement, Levels_TightenByHalfDecadesAndTurnToDouble) {
                                    {{kDouble, 1e-15}, 10.0, true, std::nullopt}};
   for (const auto& [last, missed_by, has_double, expected] : cases) {
     PointResult result;
-    EXPECT_FALSE(next_level(last, result, {.tolerance = 1e-3}, has_double));  // meets its tolerance
+    EXPECT_FALSE(next_level(last, result, {.tolerance = 1e-3}, has_double));  // the result meets the tolerance
     result.status = kToleranceNotMet;
     result[Quantity::kErrorEstimate] = result[Quantity::kRhoErrorEstimate] = 1e-3 * missed_by;
     const auto next = next_level(last, result, {.tolerance = 1e-3}, has_double);

@@ -52,7 +52,7 @@ double sum_at(const ResponseBasis& basis, const Eigen::VectorXd& coefficients, d
   return sum;
 }
 
-// Compares reflectances at far more angles than the basis uses, for indices of the run and for other indices.
+// Compares reflectances at far more angles than the basis uses, for indices that it was made for and for other indices.
 TEST(ResponseBasis, CombinedReflectances_StayWithinTheirBounds) {
   constexpr int kAngles = 4000;
   Random random(1);
@@ -96,8 +96,8 @@ TEST(ResponseBasis, CombinedReflectances_StayWithinTheirBounds) {
 TEST(ResponseBasis, FewIndices_HaveNone) {
   EXPECT_FALSE(ResponseBasis::of({}, 1e-4, 1));
   EXPECT_FALSE(ResponseBasis::of({{1.5, 0.1}}, 1e-4, 1));
-  // The program uses a response basis only if it saves work. This takes at least three indices if the responses need
-  // one kernel pass, and at least seven if they need three.
+  // The program uses a response basis only if the basis saves time. It needs at least three indices to save time if the
+  // kernel runs once, and at least seven indices if the kernel runs three times.
   const std::vector<FacetOptics> three = {{1.5, 0.1}, {1.6, 0.1}, {1.7, 0.2}};
   EXPECT_TRUE(ResponseBasis::of(three, 1e-4, 1));
   EXPECT_FALSE(ResponseBasis::of(three, 1e-4, 3));

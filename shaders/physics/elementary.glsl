@@ -1,6 +1,6 @@
 // Elementary functions from arithmetic, sqrt, frexp and ldexp. GLSL's own functions are too coarse (sinh near 0 may be
 // off by several percent) and do not exist in double.
-// Accuracy: a few units in the last place in the ranges stated here (tests/compute/kernel_source_test.cpp).
+// Accuracy: a few units in the last place in the ranges stated here (tests/compute/evaluate/kernel_source_test.cpp).
 
 CONST real kPi = real(3.14159265358979323846);
 CONST real kLn2High = real(0.693145751953125);             // few bits, so products with exponents are exact in float

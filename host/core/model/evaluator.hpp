@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <dolp/errors.hpp>
 #include <string>
 #include <vector>
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dolp/errors.hpp>
 #include <filesystem>
 #include <memory>
 #include <span>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dolp/errors.hpp>
 #include <vector>
 
 #include <cstddef>

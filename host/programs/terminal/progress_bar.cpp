@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <dolp/errors.hpp>
 #include <string>
 
 namespace dolp {

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <dolp/errors.hpp>
 #include <string>
 
 namespace dolp {

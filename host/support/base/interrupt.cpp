@@ -1,6 +1,7 @@
 #include "base/interrupt.hpp"
 
 #include <csignal>
+#include <initializer_list>
 
 namespace dolp {
 namespace {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <dolp/errors.hpp>
 #include <functional>
 
 namespace dolp {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <dolp/errors.hpp>
 #include <memory>
 #include <optional>
 #include <vector>

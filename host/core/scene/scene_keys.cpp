@@ -276,11 +276,9 @@ std::vector<SceneKey> radiation_keys() {
                     Source::Kind::kRelative, &Source::relative_irradiance),
       key_at(
           described("source.preset", Type::kWord, "", {}, "",
-                    "irradiance E0 of the sun at the top of the atmosphere; use it instead of source.irradiance",
-                    {"sun"}),
+                    "E0 of the sun at the top of the atmosphere, instead of source.irradiance", {"sun"}),
           [](auto& s) { return &s.names.source_preset; }, always),
-      text("source.file",
-           "CSV file with your own E0 (columns wavelength_um, irradiance); use it instead of source.irradiance",
+      text("source.file", "CSV file with your own E0 (columns wavelength_um, irradiance), instead of source.irradiance",
            [](auto& s) { return &s.names.source_file; }),
       number("source.scale", "1", kNonNegativeRange, "1", "factor that multiplies E0, however E0 is given",
              [](auto& s) { return s.source ? &s.source->scale : nullptr; }),
@@ -302,11 +300,10 @@ std::vector<SceneKey> radiation_keys() {
                  &SkyAir::temperature_K),
       number("path.transmittance", "1", kFractionRange, "1", "transmittance tau of the path to the sensor",
              [](auto& s) { return s.path ? &s.path->transmittance : nullptr; }),
-      number(
-          "path.temperature_K", "K", kBackgroundTemperatureRange, "",
-          "temperature T of the path, which then has the radiance (1 - tau) B(T); without this key and path.radiance "
-          "the path emits nothing",
-          [](auto& s) { return s.path ? &s.path->temperature_K : nullptr; }),
+      number("path.temperature_K", "K", kBackgroundTemperatureRange, "",
+             "temperature T of the path, which then has the radiance (1 - tau) B(T); without this key and "
+             "path.radiance the path emits nothing",
+             [](auto& s) { return s.path ? &s.path->temperature_K : nullptr; }),
       number("path.radiance", "W m-2 sr-1 um-1", kNonNegativeRange, "",
              "radiance L_path of the path, instead of path.temperature_K",
              [](auto& s) { return s.path ? &s.path->radiance : nullptr; }),
@@ -357,9 +354,8 @@ std::vector<SceneKey> geometry_keys() {
       grid_axis(Axis::kTemperature, "",
                 "temperatures of the surface in the table; the first one is used if emission.temperature_K is absent"),
       grid_axis(Axis::kQ, "surface.q", "tail exponents q of the table"),
-      grid_axis(
-          Axis::kWavelength, "",
-          "wavelengths of the table, instead of a band; the first one is used if spectrum.wavelength_um is absent"),
+      grid_axis(Axis::kWavelength, "",
+                "wavelengths of the table, not a band; the first one is used if spectrum.wavelength_um is absent"),
       grid_axis(Axis::kN, "",
                 "values of n in the table, instead of a material; the first one is used if surface.n is absent"),
       grid_axis(Axis::kK, "",

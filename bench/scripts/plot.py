@@ -139,8 +139,8 @@ def draw_curves(axes, result, case):
 
 
 def label_ends(axes, ends):
-    """Writes the name of each curve beside the most accurate point of the curve: on the right for the least accurate
-    curve, on the left for all others. Moves names that would touch."""
+    """Writes the name of each curve to the left of the curve's most accurate point. The curve whose most accurate point
+    has the largest error gets its name on the right. Moves names that would touch."""
     if not ends:
         return
     to_points = 72.0 / axes.figure.dpi

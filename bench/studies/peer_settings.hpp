@@ -1,4 +1,4 @@
-// For the study of peers: search for the cheapest setting with which a method meets a tolerance.
+// Finds the cheapest setting with which a method meets a tolerance. The study of peers uses it.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +27,7 @@ struct PeerBatch {
   MomentsRequest request;
   std::vector<std::size_t> positions;
 
-  /// The largest error over the entries of the sample; infinite if an error is NaN. `answers` are those of `request`.
+  /// The largest error over the entries of the sample; infinite if an error is NaN. `answers` belong to `request`.
   double worst_error(const std::vector<Answer>& answers, const PeerSample& sample) const;
 };
 

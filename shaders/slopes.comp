@@ -8,7 +8,7 @@
 #include "physics/buffers.glsl"
 
 #if DOLP_MOST_COLUMNS > 0
-// The columns follow all AzimuthNodes: two numbers for each column of each slope.
+// The columns (physics/columns.glsl) follow all AzimuthNodes: two numbers for each column of each slope.
 layout(std430, binding = DOLP_BINDING_AZIMUTHS) writeonly buffer ColumnsOut { real columns_out[]; };
 
 void store_column(uint position, real value) {

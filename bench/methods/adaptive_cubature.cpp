@@ -1,4 +1,4 @@
-// Adaptive cubature by libcubature over the directions of the running beam (direct_brdf.hpp).
+// Adaptive cubature by libcubature. It integrates over the directions of one beam; the other beam keeps its direction.
 #include <cubature.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr std::size_t kMostEvaluations = 10'000'000;  // limit per entry; so many evaluations take a few seconds
+constexpr std::size_t kMostEvaluations = 10'000'000;  // limit per entry, reached after a few seconds
 
 struct Integral {
   const DirectSurface& surface;

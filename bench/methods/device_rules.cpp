@@ -27,7 +27,7 @@ using Pair = std::array<double, 2>;
 using EntryWords = std::array<std::uint32_t, 4>;
 
 constexpr double kTimeout = 600.0;                   // longest time of one dispatch, in seconds
-constexpr std::size_t kMostIterations = 1U << 14U;   // per invocation; lavapipe stops loops after 65,535 iterations
+constexpr std::size_t kMostIterations = 1U << 14U;   // per invocation; lavapipe would stop it after 65,535
 constexpr std::size_t kMostSamples = 1U << 26U;      // per dispatch; the time limit is checked between dispatches
 constexpr std::size_t kMostShapes = 1U << 12U;       // per call of solve(); each shape has a masking table of 4 kB
 constexpr std::size_t kMostInvocations = 1U << 22U;  // per call of solve(); limits the memory

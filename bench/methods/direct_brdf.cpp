@@ -53,8 +53,8 @@ class MaskingTails {
 
 namespace {
 
-constexpr double kStep = 1.0 / 24.0;      // step of X between nodes; the error of the interpolation is 1e-12
-constexpr double kEndOverWidth = 1e6;     // last tau/max(1, m); beyond it each integral is a power of tau within 1e-12
+constexpr double kStep = 1.0 / 24.0;      // step of X between nodes of MaskingTails; the interpolation error is 1e-12
+constexpr double kEndOverWidth = 1e6;     // last tau/max(1, m); integrals at larger tau are powers of tau to 1e-12
 constexpr double kVerticalSlope = 1e100;  // limit of sampled_slope(), so that the square of the slope does not overflow
 using CellRule = boost::math::quadrature::gauss<double, 4>;
 
@@ -162,7 +162,7 @@ MaskingTails::Interpolant MaskingTails::interpolant(const std::vector<Node>& nod
   std::vector<double> y, slope, curvature;
   for (const Node& node : nodes) {
     const auto [in_tau, twice_in_tau] = derivatives(node, value);
-    const double stretch2 = width_ * width_ + node.tau * node.tau;  // (dtau/dX)^2; the second derivative is tau
+    const double stretch2 = width_ * width_ + node.tau * node.tau;  // (dtau/dX)^2; d^2 tau/dX^2 is tau
     y.push_back(node.*value);
     slope.push_back(in_tau * std::sqrt(stretch2));
     curvature.push_back(twice_in_tau * stretch2 + in_tau * node.tau);
@@ -231,10 +231,12 @@ RunningBeam DirectSurface::beam(double cos_r, double sin_r) const {
   return beam;
 }
 
-// `integral` masking G1 of a facet with tilt alpha. Only the beam with the larger zenith angle theta matters. Let mu =
-// cot(theta), kappa = 1/(cos(alpha) (mu + tan(alpha))) and tau_b = tan(alpha - 2 theta).
-//   If 2 theta - alpha <= pi/2:  1 - G1 = kappa height(mu)
-//   Otherwise:  1 - G1 = kappa (height(mu) - height(tau_b) - (tau_b - mu) first(tau_b)) + probability(tau_b)
+// Masking G of a facet with tilt alpha. The rest of this comment is about `integral` masking. Only the beam with the
+// larger zenith angle theta matters, because the masking of one beam decreases with theta. A neighbour with slope tau >
+// mu = cot(theta) hides the share kappa g (tau - mu) of the facet, where kappa = 1/(cos(alpha) (mu + tan(alpha))) and g
+// is the weight of MaskingTails. The mean share is 1 - G = kappa height(mu). But if 2 theta - alpha > pi/2, neighbours
+// steeper than tau_b = tan(alpha - 2 theta) hide the whole facet. Then
+//   1 - G = kappa (height(mu) - height(tau_b) - (tau_b - mu) first(tau_b)) + probability(tau_b)
 double DirectSurface::attenuation(const RunningBeam& beam, double cos_alpha, double tan_alpha, double cos_beta) const {
   if (entry_.masking == Masking::kNone) return 1.0;
   if (entry_.masking == Masking::kSmith) return beam.masking;

@@ -35,19 +35,20 @@ class MaskingTails;
 struct RunningBeam {
   double cos = 1.0;
   double sin = 0.0;
-  /// `smith`: G itself. `integral`: MaskingTails::height of the beam with the larger zenith angle. Others: unused.
+  /// For `smith` it is G. For `integral` it is the tabulated function MaskingTails::height at cot(theta) of the beam
+  /// with the larger zenith angle theta. For other maskings it is unused.
   double masking = 0.0;
 };
 
 /// The microfacet surface seen from one fixed direction.
 ///
 /// Equations: (1)-(3), (5) and (7)-(12) of the paper that shaders/physics/README.md names.
-/// Accuracy: moments agree with the reference to 1e-7 (test BenchFormulas).
+/// Accuracy: moments without total reflection agree with the reference to 1e-7 (test BenchFormulas).
 /// Domain: 0 < theta < 90 degrees, sigma > 0. Cauchy slopes need q > 1, or q > 3/2 with `smith`.
 class DirectSurface {
  public:
-  /// How to compute the function Lambda of Smith's masking: the closed form is faster for few directions of the running
-  /// beam, the table for many.
+  /// How to compute the function Lambda of Smith's masking. The closed form is faster for few running beams. A table
+  /// takes time to make, and is then faster for many running beams.
   enum class SmithBy { kClosedForm, kTable };
   DirectSurface(const Entry& entry, SmithBy smith_by);
   DirectSurface(const DirectSurface&) = delete;
@@ -59,7 +60,8 @@ class DirectSurface {
   /// Width m of the slope distribution, m^2 = 2 sigma^2.
   double width() const { return m_; }
 
-  /// Density P(t) = D cos^4(alpha) of the slopes t = tan(alpha), per unit area of the plane of slopes. Units: 1.
+  /// Density P(t) = D cos^4(alpha) of the slopes t = tan(alpha) in the plane of the two slope components, where D is
+  /// the density of facet normals. Without unit.
   double slope_density(double tan2_alpha) const;
 
   /// The slope that a random facet exceeds with this probability. The facet normals have the density D cos(alpha).
@@ -68,8 +70,8 @@ class DirectSurface {
   /// The running beam with the zenith angle whose cosine is cos_r > 0 and whose sine is sin_r.
   RunningBeam beam(double cos_r, double sin_r) const;
 
-  /// Contribution of the facet that reflects the running beam into the fixed beam. M01 is 0 if the fixed beam is normal
-  /// to the facet or to the surface.
+  /// Contribution of the facet that reflects the running beam into the fixed beam. Its M01 (`q`) is 0 if the fixed beam
+  /// is normal to the facet or to the surface, because the angle from which M01 is computed is then undefined.
   Reflected reflected(const RunningBeam& beam, double cos_alpha, double tan_alpha, double cos_beta) const;
 
  private:
@@ -81,18 +83,20 @@ class DirectSurface {
   double sin_theta_;
   double m_;
   std::unique_ptr<MaskingTails> tails_;
-  /// Value of the fixed beam that the masking needs: Lambda for `smith`, MaskingTails::height for `integral`.
+  /// What the masking needs from the fixed beam: Lambda for `smith`, MaskingTails::height for `integral`.
   double fixed_masking_ = 0.0;
 };
 
-/// Integrand D G M sin(theta_r)/2 of the moments at the direction (theta_r, delta_phi) of the running beam.
-/// Equation: r = int_0^{pi/2} dtheta_r int_0^pi d(delta_phi) D G M sin(theta_r)/2. The azimuths cover half a circle. A
-/// factor 2 in the integrand counts the other half.
+/// Integrand of the moments over the directions (theta_r, delta_phi) of the running beam:
+///   r = int_0^{pi/2} dtheta_r int_0^pi d(delta_phi) D G M sin(theta_r)/2
+/// D is the density of facet normals, G the masking and M the element M00 or M01. Only azimuths delta_phi from 0 to pi
+/// are integrated: the integrand is twice that of the full circle, because both halves contribute equally.
 Reflected beam_integrand(const DirectSurface& surface, const RunningBeam& beam, double cos_azimuth);
 
-/// Integrand (cos(beta)/cos(alpha)) G M of the moments, for the facet with slope t = tan_alpha and azimuth phi_h. The
-/// azimuth is relative to the fixed beam; cos_phi is cos(phi_h). Zero if the facet reflects below the horizon.
-/// Equation: r = int P t dt dphi_h (cos(beta)/cos(alpha)) G M, where P is slope_density().
+/// Integrand of the moments over the facets, for the Monte Carlo method:
+///   r = int P t dt dphi_h (cos(beta)/cos(alpha)) G M, where P is slope_density()
+/// Returns (cos(beta)/cos(alpha)) G M, without P, for the facet with slope t = tan_alpha and azimuth phi_h from the
+/// fixed beam; cos_phi is cos(phi_h). Returns 0 if the facet reflects below the horizon.
 Reflected half_vector_integrand(const DirectSurface& surface, double tan_alpha, double cos_phi);
 
 }  // namespace dolp::bench

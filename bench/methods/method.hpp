@@ -52,7 +52,7 @@ struct TookTooLong : Unavailable {
 
 struct SolverOptions {
   std::string device = {};     ///< Vulkan device: position or part of the name, empty for the default
-  double time_limit_s = 20.0;  ///< limit for one call, for methods that might not end
+  double time_limit_s = 20.0;  ///< of one call, or of one entry with dblquad; for methods that might not end
   std::vector<std::string> pythons = {"/usr/bin/python3", "python3"};  ///< tried in turn until one has SciPy
 };
 
@@ -67,7 +67,7 @@ struct Method {
   std::vector<double> quick_settings;  ///< the subset that --quick runs
   /// True if one call computes many entries. The time per entry is then the mean over the entries of the call.
   bool is_batched = false;
-  bool needs_grid = false;  ///< saves time only for entries that form a grid
+  bool needs_grid = false;  ///< true if the method is fast only for entries that form a dense grid
   bool is_random = false;   ///< answers differ from call to call; the error is the rms over the calls
   /// Creates the solver. Errors: Unavailable.
   std::function<std::unique_ptr<Solver>(const SolverOptions&)> make;
@@ -89,7 +89,7 @@ std::unique_ptr<Solver> make_pcubature();
 std::unique_ptr<Solver> make_dblquad(const SolverOptions& options);
 /// Errors: Unavailable if no device supports `precision`.
 std::unique_ptr<Solver> make_vulkan(const SolverOptions& options, Precision precision);
-/// The Vulkan method in float. If a grid has many slope distributions, it interpolates between some of them.
+/// The Vulkan method in float. On a grid with many slope distributions it computes some and interpolates the others.
 std::unique_ptr<Solver> make_vulkan_table(const SolverOptions& options);
 std::unique_ptr<Solver> make_cpu(Precision precision);
 std::unique_ptr<Solver> make_native();

@@ -1,4 +1,4 @@
-// The list of all methods that any study compares, including the slow ones.
+// The list of the methods that the studies `accuracy` and `peers` compare.
 #include "methods/method.hpp"
 #include "model/choices.hpp"
 

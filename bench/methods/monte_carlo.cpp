@@ -1,5 +1,5 @@
-// Monte Carlo integration over random facets, whose normals have the density D cos(alpha). So a moment is the mean of
-// the integrand without this factor.
+// Monte Carlo integration over random facets. A moment is the integral of half_vector_integrand() times the density of
+// slopes. The facets are drawn from this density, so the moment is the mean of half_vector_integrand() over the facets.
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -51,7 +51,7 @@ class MonteCarlo final : public Solver {
   std::string where() const override { return processor_name(); }
 
  private:
-  std::mt19937_64 random_{20'250'808};  // each call continues the sequence
+  std::mt19937_64 random_{20'250'808};  // repeated calls of solve() get other random numbers
 };
 
 }  // namespace

@@ -11,8 +11,8 @@ namespace dolp::bench {
 struct KernelWork {
   OperationCounts counts;  ///< operations for all entries, extrapolated from the counted invocations
   double evaluations = 0.0;
-  /// Upper bound of the share of lanes that compute. It assumes that `lanes` neighbouring invocations wait only for the
-  /// slowest of them. On a device, lanes also wait within loops.
+  /// Largest possible share of the lanes of a device that compute. `lanes` neighbouring invocations run together. The
+  /// count assumes that each waits for the slowest only at its end. On a device, invocations also wait within loops.
   double busy_lanes = 1.0;
 };
 

@@ -1,16 +1,16 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Product rule over the directions (theta_r, delta_phi) of the running beam, see direct_brdf.hpp. An invocation sums
-// over some zeniths theta_r and all azimuths delta_phi, for one entry. Density, geometry and rotations use plain
-// formulas. Fresnel reflectances and masking use the code of dolp.
-//   r = int_0^{pi/2} dtheta_r int_0^pi d(delta_phi) D G M sin(theta_r) / 2
+// Product rule over the directions (theta_r, delta_phi) of the running beam. The other, fixed beam has the zenith angle
+// theta. The integrand is that of beam_integrand() in direct_brdf.hpp. An invocation sums over some zeniths theta_r and
+// all azimuths delta_phi, for one entry. Density, geometry and rotations use plain formulas. Fresnel reflectances and
+// masking use the code of dolp.
 
 #include "physics/prelude.glsl"
 #include "interface.glsl"
 #include "physics/buffers.glsl"
 #include "physics/all.glsl"
 
-layout(std430, binding = DOLP_BINDING_THETAS) readonly buffer Thetas { real2 thetas[]; };  // cos, sin of the fixed beam
+layout(std430, binding = DOLP_BINDING_THETAS) readonly buffer Thetas { real2 thetas[]; };  // cos, sin of theta
 layout(std430, binding = DOLP_BINDING_INDICES) readonly buffer Indices { IndexNode indices[]; };
 // One per invocation: positions in `thetas`, `shapes` and `indices`; then first zenith + 65536 * number of zeniths.
 layout(std430, binding = DOLP_BINDING_TASKS) readonly buffer Entries { uvec4 entries[]; };
@@ -18,8 +18,9 @@ layout(std430, binding = DOLP_BINDING_TASKS) readonly buffer Entries { uvec4 ent
 layout(std430, binding = DOLP_BINDING_RULE) readonly buffer Product { real4 product[]; };
 layout(std430, binding = DOLP_BINDING_MOMENTS) writeonly buffer Sums { real2 sums[]; };  // r_i, r_q
 
-// The facet that reflects one beam into the other. It has the slope t = tan(alpha). phi_h is its azimuth, relative to
-// the fixed beam; theta is the zenith angle of the fixed beam.
+// The facet that reflects one beam into the other. Its slope is t = tan(alpha). phi_h is its azimuth relative to the
+// fixed beam. `along` and `across` are components of its normal (t cos(phi_h), t sin(phi_h), 1), perpendicular to the
+// fixed beam: `along` in the vertical plane of this beam, `across` horizontal.
 struct Bisector {
   real slope2;   // t^2
   real along;    // cos(theta) t cos(phi_h) - sin(theta)

@@ -1,5 +1,4 @@
-// Product rules over the directions (theta_r, delta_phi) of the running beam (direct_brdf.hpp):
-//   r = int_0^{pi/2} dtheta_r int_0^pi d(delta_phi) D G M sin(theta_r)/2
+// Product rules over the directions (theta_r, delta_phi) of the running beam. The integrand is beam_integrand().
 #include "methods/product_rules.hpp"
 
 #include <gsl/gsl_integration.h>

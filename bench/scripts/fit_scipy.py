@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Fits parameters by SciPy's least_squares around `dolp.evaluate`, as a user without `dolp fit` would do it.
+"""Fits parameters by SciPy's least_squares, which calls `dolp.evaluate`, as a user without `dolp fit` would do it.
 
-The argument is JSON. Model: `package` (folder of the Python package dolp), `scene` (text), `tolerance`. Parameters, one
-value for each: `columns` (keyword of dolp.evaluate), `low`, `high`, `start`. Data: `theta_deg`, `measured` (Q/I),
-`uncertainty`. Prints JSON: `values`, `chi_square`, `calls` (number of calls of dolp.evaluate), `time_s`. One call
-computes a whole Jacobian.
+The argument is JSON. `package` is the folder of the Python package dolp. `scene` (a text) and `tolerance` define the
+model. Lists with one item for each parameter: `columns` (its keyword of dolp.evaluate), `low`, `high`, `start`. Lists
+with one item for each measurement: `theta_deg`, `measured` (Q/I). `uncertainty` is one number for all measurements.
+Prints JSON: `values`, `chi_square`, `time_s`, `calls` of dolp.evaluate. One call computes a whole Jacobian.
 """
 import json
 import sys

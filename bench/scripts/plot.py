@@ -6,7 +6,7 @@ Usage: plot.py accuracy RESULT.json -o FIGURE.png    error against time per entr
        plot.py effects RESULT.json -o FIGURE.png     time per entry of each effect
        plot.py effects RESULT.json --markdown        time per entry of each effect, as Markdown tables on stdout
        plot.py throughput|peers|scale|fit RESULT.json -o FIGURE.png | --markdown    figure or tables of these studies
-`dolp-bench STUDY --json RESULT.json` writes RESULT.json. Figures need python3-matplotlib, which installs Pillow.
+`dolp-bench STUDY --json RESULT.json` writes RESULT.json. Figures need python3-matplotlib and its dependency Pillow.
 Exit status: 0 done, 2 wrong usage or a file that is not a result of the study, 4 the figure could not be written.
 """
 import argparse
@@ -139,8 +139,8 @@ def draw_curves(axes, result, case):
 
 
 def label_ends(axes, ends):
-    """Writes the name of each curve beside the most accurate point of the curve: on the right for the least accurate
-    curve, on the left for all others. Moves names that would touch."""
+    """Writes the name of each curve to the left of the curve's most accurate point. The curve whose most accurate point
+    has the largest error gets its name on the right. Moves names that would touch."""
     if not ends:
         return
     to_points = 72.0 / axes.figure.dpi

@@ -8,7 +8,7 @@ def sets_of(result):
 
 
 def markdown(result):
-    """The results as a Markdown table, followed by sentences on the bracket and on the time of a fit."""
+    """The results as a Markdown table, then sentences on fits to data with all bounces, and on the time of a fit."""
     coverage = result["coverage"]
     rows = sets_of(result)
     lines = ["| varied parameters | data sets | median time of a fit, s | 68 % intervals that contain the true value | 95 % intervals that contain the true value | fits that found the global minimum |",
@@ -47,8 +47,8 @@ def line_of(name, rows):
 
 
 def intervals_of(result):
-    """Yields both ends of each 95 % interval, relative to the true value and in units of half the interval's width.
-    Leaves out intervals with an open end."""
+    """Yields both ends of each 95 % interval, as distances from the true value. The unit of length is half the width
+    of the interval. Leaves out intervals with an open end."""
     for row in sets_of(result):
         for truth, (low, high) in zip(row["truth"], row["interval_95"]):
             if low is not None and high is not None:

@@ -37,8 +37,8 @@ def time_table(result):
 
 
 def ratio_text(row):
-    """The time of the row divided by the time of dolp, as two numbers: dolp interpolates, or it integrates every entry.
-    A star marks ratios for which the method has the cheapest setting of each entry (hindsight)."""
+    """The time of a method divided by the time of dolp. In the first of two numbers, dolp interpolates. In the second,
+    dolp integrates every entry. A star marks a method that has the cheapest setting for each entry, with hindsight."""
     cells = []
     for prefix in ("table_", ""):
         ratio = row.get(f"{prefix}ratio", row.get(f"hindsight_{prefix}ratio"))

@@ -55,13 +55,14 @@ def transform(count):
 
 
 def errors(counts):
-    """Largest error of rho_i and rho_q from a response table, divided by rho_i, for each index and number K of angles.
-    For K angles, K Chebyshev polynomials approximate the reflectances."""
+    """Largest error of rho_i and rho_q, divided by rho_i, for each index and number K of angles. The values come from a
+    response table with K angles, the true values from `dolp table`. The response table replaces the Fresnel
+    reflectances by sums of K Chebyshev polynomials."""
     scene = SCENE.with_({"accuracy.tolerance": TIGHT})
     response = dolp.response(scene, evaluator="cpu", **GRID)
     c0, most = response.attrs["c0"], response.sizes["beta"]
-    sums = np.polynomial.chebyshev.chebvander(transform(most)[0], most - 1)  # weights @ sums: one moment per polynomial
-    of_i = response.response_i.values @ sums
+    sums = np.polynomial.chebyshev.chebvander(transform(most)[0], most - 1)  # column m: polynomial T_m at the angles
+    of_i = response.response_i.values @ sums  # item m: rho_i of a material whose Fresnel reflectance is T_m
     of_q = (response.response_q * np.sin(np.deg2rad(response.beta)) ** 2).values @ sums
     found = np.empty((len(INDICES), len(counts)))
     for i, index in enumerate(INDICES):

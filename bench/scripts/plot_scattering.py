@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Draws emissivity and DOLP of rough metal and paint: three models, and the bracket that holds all bounces' DOLP.
 
-Usage: plot_scattering.py DOLP -o FIGURE.png. DOLP is the program.
+The models are single scattering, all bounces, and direct emission. The bracket is a range that contains the DOLP with
+all bounces; dolp computes it with single scattering. Usage: plot_scattering.py DOLP -o FIGURE.png. DOLP is the program.
 """
 
 import argparse

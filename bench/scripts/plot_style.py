@@ -37,7 +37,7 @@ def time_text(time_s):
 
 
 def digits(value):
-    """A number with three digits. Commas separate thousands."""
+    """A number rounded to three significant digits, with commas between thousands."""
     return f"{float(f'{value:.3g}'):,.0f}" if value >= 100 else f"{value:.3g}"
 
 

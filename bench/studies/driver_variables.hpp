@@ -20,9 +20,9 @@ struct DriverVariable {
 };
 
 /// Runs `dolp-bench throughput --case kernels` in `rounds` rounds. Each round starts one process per setting, so that
-/// other load on the machine affects all settings equally. Returns one row per setting and masking: case, setting,
-/// entries, time_s, time_min_s, raw_times_s and speedup. The speedup is the minimum time of the first setting, divided
-/// by the minimum time of the row. Errors: Unavailable if a process fails; IoError.
+/// other load on the machine affects all settings equally. Returns one row per setting and masking. The keys of a
+/// row are `case` (the masking), `setting`, `entries`, `time_s`, `time_min_s`, `raw_times_s` and `speedup`: the minimum
+/// time of the first setting, divided by the minimum time of the row. Errors: Unavailable if a process fails; IoError.
 std::vector<nlohmann::ordered_json> kernels_with(const DriverVariable& variable, const StudyOptions& options,
                                                  std::size_t entries, std::size_t rounds);
 

@@ -56,7 +56,7 @@ SceneValues seen_from_one_side(const Axes& grid) {
   return scene;
 }
 
-/// The bistatic scene under a uniform cold sky. With `smith` masking the surface reflects at most the incident light.
+/// The bistatic scene under a uniform cold sky. `smith` masking ensures that emissivities are not negative.
 SceneValues under_the_sky(const Axes& grid) {
   SceneValues scene = seen_from_one_side(grid);
   scene.surface.masking = Masking::kSmith;
@@ -155,7 +155,8 @@ std::vector<EffectGroup> surface_groups(const SceneValues& base) {
                                                           }}})};
 }
 
-/// Groups for multiple bounces, direct emission and the bracket of DOLP. `v-cavity` masking supports all of them.
+/// Groups for all bounces of the light, for direct emission, and for the bracket. The bracket is a range that contains
+/// the DOLP with all bounces. `v-cavity` masking supports these three effects.
 std::vector<EffectGroup> scattering_groups(const Axes& grid) {
   SceneValues rough = emitting(grid);
   rough.surface.masking = Masking::kVCavity;

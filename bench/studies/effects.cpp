@@ -1,4 +1,4 @@
-// The study of effects: how much time each effect costs, and how much time the plan saves.
+// The study of effects: how much time each effect costs, and how much time dolp saves when it drops small effects.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -51,7 +51,7 @@ std::vector<std::string> left_out(const TimedScene& timed) {
   return names;
 }
 
-/// Two runs of one scene. `planned` drops the effects that the plan drops, `all` keeps all effects.
+/// Two runs of one scene. `planned` drops effects that hardly change DOLP. `all` keeps all effects.
 struct Pair {
   std::string name;
   TimedScene planned;

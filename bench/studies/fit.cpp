@@ -84,8 +84,8 @@ ordered_json coverage_json(const ordered_json& rows, const char* part) {
 }
 
 /// Fits the data with SciPy's least_squares, which starts in the middle of the search ranges. Returns the output of
-/// fit_scipy.py, and the largest difference from a parameter of `result`, in standard errors. Returns null if SciPy or
-/// xarray is missing.
+/// fit_scipy.py, and the largest difference between a parameter of SciPy and the same parameter in `result`, in
+/// standard errors. Returns null if SciPy or xarray is missing.
 ordered_json scipy_json(const FitSet& set, const MeasuredData& data, const fit::FitResult& result) {
   const std::string script = DOLP_BENCH_SCRIPTS "/fit_scipy.py";
   if (run_child({kPython, "-c", "import scipy, xarray"}, ChildErrors::kHidden).status != 0) return {};
@@ -176,8 +176,8 @@ ordered_json spectrum_json(ModelEvaluator& evaluator) {
           {"q", result.parameters[1].value},   {"chi_square", result.chi_square}};
 }
 
-/// Median length of the 95 % interval of n, as a share of the range in which the fit searches n. Only for the data sets
-/// whose fit uses the bracket.
+/// Median length of the 95 % interval of n, as a share of the range in which the fit searches n. The median is over the
+/// data sets that bracket_set makes.
 double median_share_of_n(const ordered_json& rows) {
   const FitRange range = bracket_set(0).parameters.front();
   std::vector<double> shares;

@@ -32,9 +32,9 @@ struct FitSet {
 /// points, true values inside the search ranges, and noise between 0.0005 and 0.01 (log-uniform).
 FitSet fit_set(std::size_t number);
 
-/// Makes a set whose data include all bounces, while the fit of n and sigma uses single scattering. As the error of
-/// single scattering, the fit takes the bracket of DOLP: a range that contains the DOLP with all bounces. The data have
-/// noise if `number` is odd.
+/// Makes a set whose data include all bounces of the light, while the model of the fit has single scattering. The fit
+/// varies n and sigma. It compares each Q/I of the data with the bracket, not with one value. The bracket is a range
+/// that contains Q/I with all bounces. The data have noise if `number` is odd.
 FitSet bracket_set(std::size_t number);
 
 /// The set whose fit is timed: n, k and sigma from 40 points of Q/I.
@@ -51,10 +51,10 @@ struct SetOutcome {
   std::size_t held_68 = 0, held_95 = 0;  ///< numbers of 68 % and 95 % intervals that contain the true value
   double time_s = 0.0;
 
-  /// True if no interval wrongly excludes its true value. An interval may exclude this value if chi^2 at the true
-  /// values exceeds the minimum by more than 1 (68 % interval) or 3.84 (95 %). Meaningful only without a model error.
+  /// True if every interval contains its true value. A 68 % interval may miss it if chi^2 at the true values exceeds
+  /// the minimum by more than 1, a 95 % interval if by more than 3.84. Meaningful only if FitSet::model_error is kNone.
   bool is_consistent() const;
-  /// True if no descent from the true values reaches a lower objective than the fit.
+  /// True if a descent from the true values does not reach a lower objective than the fit.
   bool is_global() const;
 };
 

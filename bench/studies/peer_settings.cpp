@@ -49,8 +49,8 @@ Call undisturbed_call(Solver& solver, const MomentsRequest& request, double sett
   return second.time_s < first.time_s ? second : first;
 }
 
-/// Stride of the grid on which a batched method tries its settings. The full grid for a method that interpolates,
-/// because such a method is fast only there.
+/// Stride of the grid on which a batched method tries its settings. A method that interpolates gets the full grid,
+/// because such a method is fast only on a dense grid.
 std::size_t stride_of_tries(const Method& method) { return method.needs_grid ? 1 : NestedGrid::kLargestStride; }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// For the study of peers: search for the cheapest setting with which a method meets a tolerance.
+// Finds the cheapest setting with which a method meets a tolerance. The study of peers uses it.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +27,7 @@ struct PeerBatch {
   MomentsRequest request;
   std::vector<std::size_t> positions;
 
-  /// The largest error over the entries of the sample; infinite if an error is NaN. `answers` are those of `request`.
+  /// The largest error over the entries of the sample; infinite if an error is NaN. `answers` belong to `request`.
   double worst_error(const std::vector<Answer>& answers, const PeerSample& sample) const;
 };
 
@@ -56,14 +56,14 @@ class PeerSettings {
   /// The first setting that meets the tolerance at all entries of the sample; null if there is none.
   const TriedSetting* reaching(double tolerance);
 
-  /// Raises the error of a setting, because the setting has this error on a larger grid.
+  /// Stores `error`, a larger error of the setting that was found on another grid. `reaching` then uses this error.
   void reject(const TriedSetting& setting, double error);
 
   /// The reason why `reaching` found no setting.
   const std::string& why_not() const { return why_not_; }
 
-  /// Mean time per entry if each entry had the cheapest setting that meets the tolerance for this entry. Users cannot
-  /// choose so, because they do not know the true errors. Empty if no setting meets the tolerance for some entry.
+  /// Mean time per entry if a user chose for each entry the cheapest setting that meets the tolerance there. Users
+  /// cannot do this, because they do not know the true errors. Empty if no setting meets the tolerance for some entry.
   std::optional<double> with_hindsight(double tolerance) const;
 
  private:

@@ -185,7 +185,7 @@ ordered_json Study::measured_row(const Method& method, Solver& solver, const Pee
     const std::size_t entries = batch.request.size();
     const Measurement measurement = measure(solver, batch.request, tried->setting, method.is_random, effort_.timing);
     const double error = method.is_batched ? batch.worst_error(measurement.last, sample) : tried->worst_error();
-    if (error > tolerance) {  // larger grids have more interpolated entries, with larger errors
+    if (error > tolerance) {  // the setting was tried on another grid, where its errors were smaller
       settings.reject(*tried, error);
       continue;
     }
@@ -208,7 +208,8 @@ ordered_json Study::measured_row(const Method& method, Solver& solver, const Pee
   return row;
 }
 
-/// The time per entry for ratios: the time in kernels, or the whole time if the method has no kernels.
+/// The time per entry that ratios compare: the time in kernels, or row[otherwise] if the method has no kernels. Empty
+/// if the row has neither.
 std::optional<double> compared_time(const ordered_json& row, const char* otherwise = "time_s") {
   for (const char* key : {"kernel_time_s", otherwise}) {
     if (row.contains(key)) return row[key].get<double>();

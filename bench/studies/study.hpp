@@ -13,26 +13,27 @@ struct StudyOptions {
   std::string device;                ///< Vulkan device: position or part of the name, empty for the default
   std::vector<std::string> cases;    ///< empty means all
   std::vector<std::string> methods;  ///< empty means all
-  std::size_t entries = 1024;        ///< accuracy: entries per call of a batched method; others: see below
+  std::size_t entries = 1024;        ///< meaning depends on the study, see below
   /// Number of the first data set of the study of fits. The fit algorithm was tuned on data sets with lower numbers.
   std::size_t first_set = 1000;
   bool quick = false;
   bool quiet = false;                  ///< no progress bar
-  std::vector<std::string> arguments;  ///< arguments of the program, with its name
+  std::vector<std::string> arguments;  ///< argv; the first argument is the name of the program
 };
 
 /// `dolp-bench accuracy`: error against time per entry, for every method and setting.
 ///
 /// The error is max(|d r_i|, |d r_q|)/r_i, where d r_i and d r_q are the differences from the reference. For random
 /// methods it is the rms over the repeats. The time is the median time of a call, divided by its number of entries.
-/// Errors: InputError for an unknown case or method; DeviceError if `device` is given and not available; IoError;
-/// Cancelled.
+/// `entries` is the number of entries per call, for methods that compute many entries in one call. Errors: InputError
+/// for an unknown case or method; DeviceError if `device` is given and not available; IoError; Cancelled.
 void run_accuracy(const StudyOptions& options);
 
-/// `dolp-bench effects`: time per entry with and without each effect of a scene, and the effects that the plan drops.
+/// `dolp-bench effects`: time per entry with and without each effect of a scene. Also lists the effects that dolp
+/// leaves out because they hardly change DOLP or because the results do not need them.
 ///
 /// `cases` are names of effects; `entries` is the size of the grid. `error` in a row is the largest change of DOLP that
-/// the dropped effects cause. Errors: InputError for an unknown effect; DeviceError without a usable device; IoError;
+/// the left-out effects cause. Errors: InputError for an unknown effect; DeviceError without a usable device; IoError;
 /// Cancelled.
 void run_effects(const StudyOptions& options);
 
@@ -46,10 +47,10 @@ void run_effects(const StudyOptions& options);
 void run_throughput(const StudyOptions& options);
 
 /// `dolp-bench peers`: time per entry of each method at equal accuracy, and its ratio to the time of dolp's float
-/// kernels. Each method has the cheapest setting that meets the tolerance on a sample of a grid's entries.
+/// kernels. Each method runs with its cheapest setting that meets the tolerance on a sample of a grid's entries.
 ///
-/// `cases` are maskings. Errors: InputError for an unknown case or method; DeviceError if `device` is given and not
-/// available; IoError; Cancelled.
+/// `cases` are names of maskings. Errors: InputError for an unknown case or method; DeviceError if `device` is given
+/// and not available; IoError; Cancelled.
 void run_peers(const StudyOptions& options);
 
 /// `dolp-bench scale`: time and peak memory of `dolp table`, for tables of 10^4 to 10^8 entries and for shards that run
@@ -58,17 +59,20 @@ void run_peers(const StudyOptions& options);
 /// `entries` is the size of the largest table. The temporary folder needs 200 bytes per entry. Errors: InputError for
 /// fewer than 10^4 entries; IoError; Cancelled.
 void run_scale(const StudyOptions& options);
+
 /// `dolp-bench fit`: fits of synthetic measurements with a known truth. Reports how often intervals contain the truth,
-/// whether the global minimum is found, and the time of a fit. If SciPy is installed, also the time of its
-/// least_squares around `dolp.evaluate`. `entries` is the number of sets. Errors: DeviceError without a usable device;
-/// IoError; Cancelled.
+/// whether the global minimum is found, and the time of a fit. If SciPy is installed, also reports the time of SciPy's
+/// least_squares, which calls `dolp.evaluate`.
+///
+/// `entries` is the number of random data sets. Errors: DeviceError without a usable device; IoError; Cancelled.
 void run_fit_study(const StudyOptions& options);
 
 /// `dolp-bench window`: curves and frames per second while real events drag a slider of the window, on a private
 /// display of 1920 x 1080 (Xvfb, xdotool).
 ///
-/// `cases` are drags. A curve is fresh if it was computed for the value that the slider has in the same frame.
-/// Errors: InputError for an unknown drag; DeviceError without a usable device or Xvfb; IoError; Cancelled.
+/// `cases` are names of drags. A curve is fresh if, when it appears, the slider still has the value for which the curve
+/// was computed. Errors: InputError for an unknown drag; DeviceError without a usable device or Xvfb; IoError;
+/// Cancelled.
 void run_window(const StudyOptions& options);
 
 }  // namespace dolp::bench

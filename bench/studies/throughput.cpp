@@ -1,4 +1,5 @@
-// The study of throughput: entries and evaluations per second, and which share of the device's peak they reach.
+// The study of throughput measures entries and integrand evaluations per second. It also measures which share of the
+// device's peak arithmetic speed the kernels reach.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -51,7 +52,7 @@ constexpr std::size_t kQuickRepeats = 2;
 constexpr double kLongTime = 1.0;  // seconds; a grid that takes longer runs only kQuickRepeats times
 constexpr std::size_t kFullWorkgroups = 48;
 constexpr std::size_t kQuickWorkgroups = 6;
-constexpr std::size_t kFullRounds = 3;  // each round runs every setting of a driver variable once (kernels_with)
+constexpr std::size_t kFullRounds = 3;  // each round runs the kernels once for each setting of the Vulkan driver
 constexpr std::size_t kQuickRounds = 1;
 constexpr std::size_t kPeakRepeats = 9;
 const TimingPolicy kFullTiming{.min_repeats = 5, .max_repeats = 15, .enough_s = 1.0, .most_s = 4.0};
@@ -111,8 +112,9 @@ struct GridRun {
   }
 };
 
-constexpr std::array<GridSize, 2> kMaterialGrids = {{{64, 16, 16}, {8, 8, 8}}};  // of a full study, of a quick study
-constexpr std::size_t kManyIndices = 12;                                         // number of values of n, and of k
+// The first grid is for a full study, the second grid for a quick study.
+constexpr std::array<GridSize, 2> kMaterialGrids = {{{64, 16, 16}, {8, 8, 8}}};
+constexpr std::size_t kManyIndices = 12;  // number of values of n, and of k
 constexpr std::size_t kManyWavelengths = 300;
 
 std::vector<double> spaced(double first, double last, std::size_t count) {
@@ -132,11 +134,12 @@ struct MaterialAxes {
   std::vector<double> n = {}, k = {}, wavelength_um = {};
   std::optional<OpticalConstants> index = {};  ///< replaces n and k of the scene
   std::vector<Layer> coating = {};
-  std::size_t over = 0;  ///< position in material_axes() of the case with which the kernel time is compared
+  /// Position of the base case in material_axes(). The results state the kernel time relative to the base case.
+  std::size_t over = 0;
   std::vector<Spectrum> bands = {};
   std::vector<double> temperature_K = {};
   bool has_all_materials = false;
-  double polarised_diffuse = 0.0;  ///< k_d, the share of diffuse reflection; its light is polarised
+  double polarised_diffuse = 0.0;  ///< k_d, the share of diffuse reflection; the diffuse light is polarised
 };
 
 Layer layer(const OpticalConstants& index, double thickness_um) { return {{.constant = index}, thickness_um}; }
@@ -247,7 +250,8 @@ Study::Study(StudyRun& run)
       device_(device_of(run.options())),
       parts_(chosen(kParts, run.options().cases, "--case")),
       grids_(grids_up_to(quick() ? std::min(run.options().entries, kQuickEntries) : run.options().entries)) {
-  if (run.options().cases.empty()) parts_.pop_back();  // no `kernels`: `cores` and `vector-width` run this part
+  // Without --case the part `kernels` is left out, because the parts `cores` and `vector-width` run it.
+  if (run.options().cases.empty()) parts_.pop_back();
   if (runs("grids")) run_.expect(kMaskings.size() * (grids_.size() + 2 * kTolerances.size() - 1));
   if (runs("materials")) run_.expect(kMaskingsByRows.size() * material_axes().size());
   if (runs("arithmetic")) run_.expect(kMaskingsByRows.size() * arithmetic_tolerances().size());
@@ -345,7 +349,8 @@ void Study::run_materials(Masking masking) {
   for (std::size_t i = 0; i < kQuickRepeats; ++i) {
     for (const std::unique_ptr<TimedScene>& one : all) one->repeat();
   }
-  // Only the kernels. From their results the host computes the moments of each index, which `kernel_s` does not count.
+  // The time of the kernels only. From the results of the kernels, the host computes the moments of each index. This
+  // time of the host does not count.
   const auto kernels_s = [&](std::size_t i) { return all[i]->work().kernel_s; };
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto entries = static_cast<double>(all[i]->entries().size());

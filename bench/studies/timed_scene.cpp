@@ -11,7 +11,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kRawTime = 5e-3;  // seconds; each raw time covers as many calls as take this long
+constexpr double kRawTime = 5e-3;  // seconds; a raw time is the mean of several calls if one call is shorter than this
 constexpr double kLongTime = 0.5;  // seconds; if the first call takes longer, each raw time covers one call
 
 }  // namespace

@@ -22,8 +22,9 @@ class TimedScene {
   const EffectPlan& plan() const { return plan_; }
   const std::vector<PointResult>& results() const { return results_; }
   const Work& work() const { return work_; }  ///< evaluations and times of the last call
-  /// Raw times per entry in seconds. kernel_times_s: only for the kernels and the sums of their results.
+  /// Raw times of whole runs, per entry, in seconds.
   std::vector<double> times_s() const;
+  /// The part of times_s() in which kernels run, or in which the host combines the results of the kernels.
   std::vector<double> kernel_times_s() const;
 
  private:

@@ -1,4 +1,4 @@
-// Repeated times of one method at one setting.
+// Measures the time of one method at one setting, with repeated calls.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ struct TimingPolicy {
   std::size_t random_repeats = 32;  ///< for methods whose answers differ from call to call
   double enough_s = 0.5;            ///< once min_repeats have run, no repeat follows after this total time
   double most_s = 3.0;              ///< no repeat follows after this total time; random methods ignore it
-  double raw_time_s = 1e-3;         ///< each raw time covers as many calls as take this long
+  double raw_time_s = 1e-3;         ///< a raw time is the mean of several calls if one call is shorter than this
 };
 
 /// Raw times of repeated calls in seconds, and their results.
@@ -40,8 +40,9 @@ std::vector<double> per_entry(std::vector<double> times_s, std::size_t entries);
 /// (median - minimum)/minimum: by how much a typical time exceeds a time without other load.
 double spread(const std::vector<double>& values);
 
-/// Calls `solver` once without timing, and then times as many calls as `policy` requires. There is only one call, and
-/// its time counts, if it takes policy.most_s or longer, or if the method measures its times itself.
+/// Calls `solver` once without timing, and then times as many calls as `policy` requires. Two kinds of methods get only
+/// one call, and its time counts: methods that measure their times themselves, and methods that are not random and
+/// whose call takes policy.most_s or longer.
 Measurement measure(Solver& solver, const MomentsRequest& request, double setting, bool is_random,
                     const TimingPolicy& policy);
 

@@ -30,8 +30,10 @@ constexpr int kWidth = 1920;
 constexpr int kHeight = 1080;
 constexpr double kDrag_s = 3.0;
 constexpr int kMovesPerSecond = 30;
-constexpr double kGoalOfOne = 20.0;  // at one wavelength, the study warns of fewer fresh curves per second
-constexpr double kGoalOfBand = 8.0;  // for a band with n(lambda), the study warns of fewer fresh curves per second
+// Goals in fresh curves per second, for scenes with one wavelength and for scenes with a band. The study warns of drags
+// that miss the goal. A curve is fresh if, when it appears, the slider still has the value for which it was computed.
+constexpr double kGoalOfOne = 20.0;
+constexpr double kGoalOfBand = 8.0;
 
 /// A drag of the slider for the scene key `key`. The scene is kScene with `changes`.
 struct DragCase {

@@ -9,17 +9,18 @@
 //   cos(beta_k) = X_k is the cosine of the angle of incidence,
 //   eta_k turns the plane of incidence: (cos(eta_k), sin(eta_k)) is proportional to (Y_k, b X_k).
 // The fields are mirrored, too. So bounce k turns the Stokes vector by eta_k, multiplies it by Fresnel's matrix, and
-// turns it back. The beam of the rays that meet the facet of slope t first has the width min(c + s t x, 2c). With
-// X_0 = max(a sin(psi - gamma), 0), the share (min(X_k, X_1) - X_0) / (X_1 - X_0) of this beam goes on to bounce k.
+// turns it back. The rays whose first bounce is on the same facet form a beam of the width min(c + s t x, 2c). Measured
+// across the beam, the beam begins at X_0 = max(a sin(psi - gamma), 0), and facet k ends at X_k. So the share
+// (min(X_k, X_1) - X_0) / (X_1 - X_0) of the beam goes on to bounce k.
 
-// The state of a ray in the fan. If a ray has many bounces, a group of 2, 4, 8 ... bounces counts as one. Groups are
-// smaller near the first and the last bounce, which may be grazing (error: host/compute/plan/error_bounds.cpp).
+// The state of a ray in the fan. If a ray has many bounces, one step computes a group of 2, 4, 8 ... bounces. Groups
+// are smaller near the first and the last bounce, which may be grazing (error: host/compute/plan/error_bounds.cpp).
 struct Fan {
   real2 turn;    // (cos, sin) of gamma times `taken`
   real gamma;    // pi/2 - alpha; fan() sets gamma, left and slant only for steep grooves
   real left;     // number of bounces ahead; before the first bounce (pi/2 - psi) / gamma
   real done;     // number of bounces behind
-  real slant;    // psi / gamma, or 1 if this is larger
+  real slant;    // psi / gamma, but at most 1
   real taken;    // number of bounces in the next group, 2^doublings
   int doublings;
   bool is_steep;
@@ -39,7 +40,7 @@ Fan fan(real t, real c, real u) {
   f.doublings = 0;
   f.is_steep = false;
   f.is_black = false;
-  // Only steep grooves have more than DOLP_MOST_BOUNCES bounces. Devices skip a loop of one turn, but not an `if`.
+  // Only steep grooves have many bounces. A loop is faster than an `if`: devices skip loops, but run both branches.
   for (bool may_be = t > real(DOLP_MOST_BOUNCES) / kPi; may_be; may_be = false) {
     real to_horizon = arc_tangent(c / max(abs(u), real(1e-30)));
     f.gamma = arc_tangent(real(1.0) / t);
@@ -52,13 +53,12 @@ Fan fan(real t, real c, real u) {
   return f;
 }
 
-// Share of the beam that goes on to the next bounce in a steep groove. For small angles, angles replace their sines.
+// Share of the beam that goes on to the next bounce in a steep groove. At the last bounces X_k is nearly linear in k.
 real last_share(Fan f) {
   real sum = max(real(1.0) + f.slant, real(1e-30));
   return (real(2.0) * f.left + f.slant - real(1.0)) / sum;
 }
 
-// The more bounces lie behind and ahead, the larger the next group may be.
 Fan next_bounces(Fan f) {
   real distance = min(f.done, f.left) * (real(1.0) / real(DOLP_GROUPS_PER_DISTANCE));
   if (real(2.0) * f.taken <= distance) {
@@ -81,8 +81,8 @@ struct Bounce {
   real2 cross;    // r_s* r_p, with the sign of r_p for which r_p = r_s at normal incidence
 };
 
-// Reflection by 2^doublings equal facets, one after the other. For one facet, Bounce::cross is |r_s|^2 r_p / r_s, with
-// r_p / r_s = (cos(beta) w - sin^2(beta)) / (cos(beta) w + sin^2(beta)).
+// The matrix of one facet to the power 2^doublings, for a group of 2^doublings bounces. For one facet, Bounce::cross is
+// |r_s|^2 r_p / r_s, with r_p / r_s = (cos(beta) w - sin^2(beta)) / (cos(beta) w + sin^2(beta)) and w of fresnel.glsl.
 Bounce bounce(IndexNode index, real cos_beta, real sin2_beta, int doublings) {
   real2 w = sqrt_upper(index.n2m1_re + cos_beta * cos_beta, index.n2m1_im);
   real2 s_sum = real2(cos_beta + w.x, w.y);
@@ -151,17 +151,17 @@ GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index,
   real inverse_a2 = real(1.0) / max(c * c + u * u, kSmallestSquare);
   Fan f = fan(t, c, u);
   real first = c * f.turn.y + u * f.turn.x;  // X_1
-  // X_k - X_1 is a sum of X_(k+1) - X_k = 2 sin(gamma) a cos(psi + 2 k gamma). Subtraction would lose digits.
+  // The loop adds up X_(k+1) - X_k = 2 sin(gamma) a cos(psi + 2 k gamma), because X_k - X_1 would lose digits.
   real width = (u * f.turn.x > c * f.turn.y) ? real(2.0) * c * f.turn.y : first;
   real inverse_width = real(1.0) / max(width, real(1e-30));
   real rise = real(0.0);        // X_k - X_1
-  real2 between = real2(u, c);  // a (sin, cos) of psi + 2 k gamma
+  real2 between = real2(u, c);  // the length a times (sin, cos) of psi + 2 k gamma
   real share = f.is_black ? real(0.0) : real(1.0);  // share of the beam that continues
   real absorbed = real(1.0) - share;
-  // Stokes vectors in the axes of the groove. At first `natural` is unpolarised, `polarised` is Q = 1 of the surface.
+  // Two Stokes vectors in the axes of the groove. `natural` begins as unpolarised light.
   real4 natural = real4(share, real(0.0), real(0.0), real(0.0));
   real2 seen = doubled_angle(-x, c * sin_phi);
-  real4 polarised = real4(real(0.0), share * seen.x, share * seen.y, real(0.0));
+  real4 polarised = real4(real(0.0), share * seen.x, share * seen.y, real(0.0));  // begins as Q = 1 of the surface
   GrooveLight light;
   light.before = real2(real(0.0), real(0.0));
   light.cos_before = real(0.0);

@@ -4,8 +4,8 @@
 //   smith, height-correlated:  Lambda(theta) = (1 / mu) int_mu^inf p(tau) (tau - mu) dtau
 //   `integral`:  1 - G1 = int_mu^inf p(tau) min(1, kappa (tau - mu) / sqrt(1 + tau^2)) dtau
 // The second formula is eqs. (9)-(12) of the paper with tau = tan(gamma). The minimum is 1 for tau > tb (masking.glsl).
-// The variable of the rules is X = asinh(tau / scale). For steep slopes p of the cauchy is a power law, so the rest of
-// the integral has a closed form.
+// The variable of the rules is X = asinh(tau / scale). The rules end at a steep slope. Beyond this slope, the Cauchy
+// density p is nearly a power law, so the integral has a closed form.
 
 #ifdef DOLP_DOUBLE
 CONST int kInPlaneOrder = 16;  // order of the Gauss rule on a panel, whose length in X is at most 1
@@ -16,7 +16,7 @@ CONST real kPowerLawSlope = real(1e4);
 #endif
 
 CONST real kSmallestSine = real(1e-18);
-CONST real kLargestSwitch = real(1e20);  // upper limit of tb; hardly any slope lies beyond it
+CONST real kLargestSwitch = real(1e20);  // upper limit of tb (masking.glsl); hardly any slope is larger
 
 CONST uint kWeightOne = 0u;
 CONST uint kWeightVisible = 1u;  // weight tau - mu for smith, (tau - mu) / sqrt(1 + tau^2) for `integral`

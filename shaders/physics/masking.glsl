@@ -7,8 +7,8 @@
 //   `integral`, eqs. (9)-(12) of the paper, for kappa = sqrt(1 + t^2) / (mu + t) and d = (1 - mu^2) - 2 mu t:
 //     d <= 0:  1 - G1 = kappa l(mu)
 //     d > 0:   1 - G1 = kappa [l(mu) - l(tb) - (tb - mu) C(tb)] + Pt(tb),   tb = (t (1 - mu^2) + 2 mu) / d.
-// A table holds (l, C, Pt, p) at nodes of the variable v = 1 + tau / table_scale. Node number `cell` of an octave lies
-// at v = 2^octave (1 + cell / 2^kCellBits).
+// A table holds (l, C, Pt, p) at nodes of the variable v = 1 + tau / table_scale. The nodes divide each octave of
+// v, from 2^j to 2^(j + 1), into 2^kCellBits equal cells.
 
 #ifdef DOLP_DOUBLE
 CONST uint kCellBits = DOLP_MASKING_CELL_BITS_DOUBLE;
@@ -19,12 +19,12 @@ CONST uint kMaskingNodes = DOLP_MASKING_NODES(kCellBits);
 CONST uint kUnusedBits = 23u - kCellBits;
 CONST uint kFirstNodeBits = 0x3f800000u >> kUnusedBits;  // exponent and leading mantissa bits of v = 1.0f
 
-// v of a node. The bits of the node's number are the exponent and the first mantissa bits of v, less those of 1.0f.
+// v of a node. The leading bits of v (the exponent and the first mantissa bits) are the number node + kFirstNodeBits.
 real masking_node_v(uint node) { return real(uintBitsToFloat((node + kFirstNodeBits) << kUnusedBits)); }
 
 real masking_node_tau(ShapeNode shape, uint node) { return (masking_node_v(node) - real(1.0)) * shape.table_scale; }
 
-// The factor g of the integrals in the head of this file.
+// The factor g in the integrals C and l (head of this file).
 real masking_weight(real tau) {
   return (kMasking == DOLP_MASKING_SMITH) ? real(1.0) : real(1.0) / sqrt(real(1.0) + tau * tau);
 }
@@ -52,7 +52,7 @@ struct TableCell {
   real d1;
   real e0;
   real e1;
-  real g0;  // the factor g at the ends
+  real g0;  // the factor g at the start of the cell
   real g1;
 };
 
@@ -91,7 +91,7 @@ real masking_height(TableCell cell, uint table) {
 // The arguments at which the masking tables are read for 1 - G1(theta, alpha).
 struct ShadowRange {
   real kappa;
-  bool is_limited;  // true if d > 0 (head of this file): the integral of 1 - G1 ends at tb
+  bool is_limited;  // true if d > 0; then 1 - G1 contains integrals from tb (head of this file)
   real far;         // tb
   real gap;         // tb - mu
 };
@@ -114,14 +114,14 @@ ShadowRange shadow_range(ShapeNode shape, real cos_theta, real sin_theta, real t
   return range;
 }
 
-// For d > 0 (head of this file), 1 - G1 is kappa l(mu) plus the term Pt(tb) - kappa [l(tb) + (tb - mu) C(tb)]. These
-// factors give the second term: multiplied by l, C, p and Pt at both ends of the cell that contains tb, and added up.
+// For d > 0 (head of this file), 1 - G1 is kappa l(mu) plus the term Pt(tb) - kappa [l(tb) + (tb - mu) C(tb)]. The
+// term is a weighted sum of l, C, p and Pt at both ends of the cell that contains tb. These are the weights.
 struct LimitTerms {
   real l0;
   real l1;
   real c0;
   real c1;
-  real p0;  // p has the factor p0 + marginal_decay_factor() * decay0 at the start of the cell
+  real p0;  // the weight of p is p0 + marginal_decay_factor() * decay0; only marginal_decay_factor() depends on q
   real p1;
   real decay0;
   real decay1;

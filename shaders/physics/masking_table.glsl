@@ -2,7 +2,7 @@
 
 CONST int kTableOrder = 4;  // Gauss order; across a cell v = 1 + tau / table_scale grows by a factor of at most 9/8
 
-// Contributions of the cell from tau0 to tau1 to l, C and Pt, and p(tau0). `beyond` is (l, C, Pt, p) at tau1.
+// How much l, C and Pt (masking.glsl) grow from tau1 down to tau0, and p(tau0). `beyond` is (l, C, Pt, p) at tau1.
 real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {
   real h = tau1 - tau0;
   real height = real(0.0);
@@ -21,7 +21,7 @@ real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {
   return real4(h * beyond.y + height, first, probability, marginal_density(shape, tau0));
 }
 
-// (l, C, Pt, p) at the end of the table: for the cauchy by the power law p ~ tau^(1-2q), for the gaussian (0, 0, 0, p).
+// (l, C, Pt, p) at the end of the table. Beyond it, p is a power law tau^(1-2q) for the cauchy, and 0 for the gaussian.
 real4 masking_table_end(ShapeNode shape, real tau) {
   real p = marginal_density(shape, tau);
   if (kDistribution == DOLP_GAUSSIAN) return real4(real(0.0), real(0.0), real(0.0), p);

@@ -25,7 +25,7 @@ Piece make_piece(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task 
   piece.root_at_a = task.root_at_start;
   bool ends_before_cut = b < shape.cut;
   piece.root_at_b = ends_before_cut && task.root_at_end;
-  // A square root in a neighbouring piece counts as a root at an end, if it is nearer than kNearRoot times the length.
+  // A square root in a neighbouring piece counts as a root of this piece if it is nearer than kNearRoot * piece.extent.
   real end = piece.start + piece.extent;
   real before = asinh_real(task.before / shape.scale);
   bool is_near_a = piece.start - before < kNearRoot * piece.extent;

@@ -6,7 +6,7 @@
 CONST real kHalfLn10 = real(1.15129254649702284);
 CONST real kLn10 = real(2.30258509299404568402);
 CONST real kInverseLn10 = real(0.43429448190325182765);
-// At the beginning of total reflection, an arc clusters its nodes only if its Arc::resolution is at most this.
+// If Arc::resolution is above this, the arc does not cluster its nodes at the azimuth where total reflection begins.
 CONST real kWideResolution = real(0.1);
 CONST real kSharpResolution = real(1e-6);
 CONST real kMoreDigits = real(0.3);  // slope axis: a digit beyond kPlainDigits counts as 1 + kMoreDigits
@@ -46,7 +46,7 @@ real nodes_per_digit(real mu) { return kHalfLn10 / max(mu, real(1e-3)); }
 
 int order_between(real nodes, int limit) { return int(clamp(floor(nodes + real(0.5)), real(1.0), real(limit))); }
 
-// Two rules with few nodes often agree by chance. If the coarser rule had fewer than 3 nodes, a finer one replaces it.
+// Order of the coarser rule. If it is below 3, a finer rule replaces it: rules with few nodes often agree by chance.
 int coarse_order(int order) {
   int fewer = (8 * order + 5) / 10;
   int more = order + 1;
@@ -102,8 +102,8 @@ real piece_cost(Piece piece, real re, real im) {
   return nodes_per_digit(acosh_above_1(gap_beside_unit(y.x, y.y)));
 }
 
-// Nodes because the integrand contains exp(-1/x^2), where x is the distance from an end. This term affects only the
-// digits beyond the first kInverseLn10 / m^2. The number of nodes is a quarter of the square of these digits.
+// Nodes because the integrand has a term like exp(-1/(m x)^2), where x is the distance from an end of the piece or arc.
+// The term is at most about exp(-1/m^2), so it affects only the digits beyond the first kInverseLn10 / m^2 (`wanted`).
 real essential_nodes(ShapeNode shape, real digits) {
   real wanted = max(digits - kInverseLn10 / (shape.m * shape.m), real(0.0));
   return real(0.25) * wanted * wanted;
@@ -121,9 +121,9 @@ real fresnel_piece_cost(ThetaNode theta, ShapeNode shape, Piece piece, real re, 
   return piece_cost(piece, choose(x < real(0.0), -bent, bent), im / (unit * max(abs(x), real(1.0))));
 }
 
-// Nodes per digit on a piece because Fresnel's coefficients have a branch point at a complex cos(beta) = b. The branch
-// point counts where it meets a line at which arcs end, at the slope with sec(alpha) = ratio * b / c. The line is the
-// horizon if `ratio` is 2, and theta_r = theta if `ratio` is 1.
+// Nodes per digit on a piece because arcs end at a line: the horizon (`ratio` is 2) or theta_r = theta (`ratio` is 1).
+// On this line cos(beta) = c sec(alpha) / ratio. Fresnel's coefficients have a branch point at a complex cos(beta) = b,
+// so the sum over the azimuths is singular at the complex slope with sec(alpha) = ratio * b / c.
 real line_piece_cost(ThetaNode theta, ShapeNode shape, IndexNode index, Piece piece, real ratio) {
   real stretch = ratio / max(theta.c, real(1e-12));
   real2 sec = real2(stretch * index.branch_re, stretch * index.branch_im);
@@ -134,7 +134,7 @@ real line_piece_cost(ThetaNode theta, ShapeNode shape, IndexNode index, Piece pi
 }
 
 // Nodes of a piece that ends at the cusp of smith masking, if q is just above 3/2. G falls steeply at the cusp, as if G
-// had a pole beyond the cusp, at half the distance tan(theta) + pi (2q - 3) / m along the slope axis.
+// had a pole beyond the cusp, at the distance (tan(theta) + pi (2q - 3) / m) / 2 on the slope axis.
 real diverging_nodes(ThetaNode theta, ShapeNode shape, Piece piece) {
   real t = theta.s / (real(1.0) + theta.c);
   real cusp = asinh_real(t / shape.scale);
@@ -145,9 +145,9 @@ real diverging_nodes(ThetaNode theta, ShapeNode shape, Piece piece) {
   return max(piece.digits + kInverseLn10 * log_unit(min(beside / piece.extent, real(1.0))), real(0.0)) * cost;
 }
 
-// Nodes of a piece. The nearest singularity of the integrand decides how many nodes a digit costs. Singularities are
-// t = i m (density), t = i (factors 1 + t^2), those of Fresnel's coefficients, and square roots beyond the ends of the
-// piece. The fall of the distribution (Piece::fall) needs further nodes, and each end with a square root needs one.
+// The number of nodes of a piece. The nearest singularity of the integrand decides how many nodes a digit costs. The
+// density is singular at the slope t = i m, and factors 1 + t^2 are 0 at t = i. Other singularities are in Fresnel's
+// coefficients and at the far ends of neighbouring pieces. Piece::fall and each end with a square root need more nodes.
 real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, bool has_split_line, Piece piece) {
   real cost = piece_cost(piece, real_part_of_asinh(real(1.0) / shape.scale), real(0.5) * kPi);
   if (kDistribution == DOLP_CAUCHY) {
@@ -162,17 +162,17 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
   cost = max(cost, choose(piece.root_before < piece.start, before, real(0.0)));
   real after = piece_cost(piece, piece.root_after, real(0.0));
   cost = max(cost, choose(piece.root_after > piece.start + piece.extent, after, real(0.0)));
-  // For two square roots the map is y = v^2 (3 - 2v). At v = 3/2 (y = 0) and v = -1/2 (y = 1) it does not remove them.
+  // The map y = v^2 (3 - 2v) removes the roots at v = 0 and 1, but not those at v = 3/2 (y = 0) and v = -1/2 (y = 1).
   bool has_two_roots = piece.root_at_a && piece.root_at_b;
   cost = max(cost, choose(has_two_roots, nodes_per_digit(acosh_above_1(real(1.0))), real(0.0)));
   real roots = (piece.root_at_a ? real(1.0) : real(0.0)) + (piece.root_at_b ? real(1.0) : real(0.0));
-  // The Gaussian falls ever more steeply as X grows. Most of its fall lies where X is within 1 of the end of the piece.
+  // The Gaussian falls mostly where X is within 1 of the upper end of the piece. So a long piece needs more nodes.
   real steepest = (kDistribution == DOLP_GAUSSIAN) ? max(piece.extent, real(1.0)) : real(1.0);
   real resolved = min(piece.fall, piece.digits * kLn10) * steepest;
   // If many digits are required, weaker singularities and poles of higher order cost further nodes.
   real digits = piece.digits + kMoreDigits * max(piece.digits - kPlainDigits, real(0.0));
   real nodes = rule.t_nodes + roots + rule.t_fall * resolved + (digits + rule.t_digits) * cost;
-  // Pieces end at the cusp of smith masking. There Lambda of the Gaussian contains exp(-1/distance^2).
+  // If `has_split_line`, pieces end at the cusp of smith masking. For the Gaussian, essential_nodes() treats this cusp.
   if (kMasking == DOLP_MASKING_SMITH && kDistribution == DOLP_GAUSSIAN) {
     nodes = max(nodes, choose(has_split_line, rule.t_nodes + essential_nodes(shape, piece.digits), real(0.0)));
   }
@@ -185,19 +185,19 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
 
 // ---- Azimuth -------------------------------------------------------------------------------------------------------
 
-// Nodes per digit on an arc because of a singularity at the azimuth `at`. Rules of section `half` (quadrature.glsl)
-// converge like Gauss rules in the squared abscissa, rules of section `cluster` in the square root of the abscissa.
+// Nodes per digit on an arc because of a singularity at the azimuth `at`. A rule of section `half` (quadrature.glsl)
+// converges like a Gauss rule in the variable y = abscissa^2, a rule of section `cluster` in y = sqrt(abscissa).
 real arc_cost(Arc arc, Singularity at) {
   real re = abs(at.re - arc.origin) / arc.span;
   real im = at.im / arc.span;
-  re = choose((at.re - arc.origin) * arc.extent < real(0.0), -re, re);  // beyond the origin, seen from the arc
+  re = choose((at.re - arc.origin) * arc.extent < real(0.0), -re, re);  // < 0 if arc.origin is between `at` and the arc
   real2 y = choose(arc.section == kSectionHalf, real2(re * re - im * im, real(2.0) * re * im), real2(re, im));
   y = choose(arc.section == kSectionCluster, sqrt_upper(re, im), y);
   real mu = acosh_above_1(gap_beside_unit(y.x, y.y));
   return nodes_per_digit(choose(arc.section == kSectionCircle, at.im, mu));
 }
 
-// Nodes per digit on an arc because of two singularities in fresnel.glsl: the pole of R_p and the branch point of w.
+// Nodes per digit on an arc because of two singularities: the pole of R_p, and the zero of sqrt(N^2 - sin^2(beta)).
 // `facet` is (cos, sin) of the angle between the facet and the vertical, so cos(beta) = c facet.y + s cos(phi) facet.x.
 real bounce_cost(ThetaNode theta, IndexNode index, real2 facet, Arc arc) {
   real slant = theta.s * facet.x;
@@ -209,8 +209,8 @@ real bounce_cost(ThetaNode theta, IndexNode index, real2 facet, Arc arc) {
   return max(arc_cost(arc, pole), arc_cost(arc, branch));
 }
 
-// Nodes per digit on an arc that ends at the critical line, where total reflection begins. The abscissa of its rule
-// (section `cluster` of quadrature.glsl) is 0 at this line. R_p has a pole at the distance v from the abscissa 0.
+// Nodes per digit on an arc with one end at the critical line, where total reflection begins. Its rule is a Gauss rule
+// in sqrt(tau / T) (quadrature.glsl). This variable is 0 at the line, and R_p has a pole at the distance v from 0.
 real critical_cost(ThetaNode theta, IndexNode index, real t, Arc arc) {
   real sec = sqrt(real(1.0) + t * t);
   real2 end = choose(arc.extent < real(0.0), arc.from, arc.to);
@@ -242,8 +242,8 @@ real fresnel_cost(RuleNode rule, ThetaNode theta, IndexNode index, real t, Arc a
   return kTotalReflection ? choose(arc.is_critical, critical_cost(theta, index, t, arc), cost) : cost;
 }
 
-// Nodes per digit on an arc because of singularities of the masking toward the reflected ray: the density of in-plane
-// slopes at cot(theta_r) = +- i m, and with `integral` masking kappa (masking.glsl) at cot(theta_r) = -t.
+// Nodes per digit on an arc because the masking toward the reflected ray is singular. The density of in-plane slopes is
+// singular at cot(theta_r) = +- i m. For `integral`, the factor kappa (masking.glsl) has a pole at cot(theta_r) = -t.
 real masking_cost(ThetaNode theta, ShapeNode shape, real t, Arc arc, int zone) {
   if (kMasking != DOLP_MASKING_SMITH && kMasking != DOLP_MASKING_INTEGRAL) return real(0.0);
   real sec2 = real(1.0) + t * t;
@@ -266,14 +266,14 @@ real masking_cost(ThetaNode theta, ShapeNode shape, real t, Arc arc, int zone) {
 
 // Nodes of an arc because smith masking has a cusp at theta_r = 0, where Lambda behaves like |theta_r|^(2q - 2). Only
 // the facet with t = tan(theta/2) and phi = 0 reflects to theta_r = 0. At another slope t the cusp lies at an imaginary
-// azimuth i y, with cosh(y) = 1 + `rise`. For the gaussian, `beside` increases the distance y.
+// azimuth i y, with cosh(y) = 1 + `rise`. The gaussian Lambda is negligible for theta_r < `zenith`, so y is larger.
 real cusp_nodes(ThetaNode theta, ShapeNode shape, real t, real digits, Arc arc) {
   if (kMasking != DOLP_MASKING_SMITH) return real(0.0);
   real away = t - theta.s / (real(1.0) + theta.c);
   real beside = real(0.0);
   if (kDistribution == DOLP_GAUSSIAN) {
     real zenith = real(1.0) / (shape.m * sqrt(max(digits, real(1.0)) * kLn10));
-    beside = zenith / (real(1.0) + theta.c);  // expressed as a slope
+    beside = zenith / (real(1.0) + theta.c);  // difference in slope that changes theta_r by `zenith`
   }
   real rise = (real(1.0) + theta.c) * (away * away + beside * beside) / (real(2.0) * max(theta.s * t, real(1e-30)));
   real wanted = max(digits + shape.cusp_digits, real(0.0));
@@ -291,7 +291,7 @@ Arc masked_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_l
     return with_root(arc, false, has_root && is_cusp);
   }
   if (kMasking == DOLP_MASKING_INTEGRAL && kDistribution == DOLP_CAUCHY) {
-    // G is not smooth at the line b = pi/2 (arcs.glsl): a part of G is proportional to (distance from it)^(2q - 1).
+    // G has a term like x^(2q - 1), where x is the distance from the line b = pi/2 (arcs.glsl).
     bool is_rough = shape.q_minus_1 + real(1.0) < rule.cluster_below_q;
     bool is_line = zone == 2 && is_rough;
     return with_root(arc, false, has_root && is_line);
@@ -300,8 +300,8 @@ Arc masked_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_l
 }
 
 // Clusters nodes at one end of the arc if total reflection begins there. Near this end the integrand contains the root
-// w of w^2 = cos^2(beta) - critical_cos^2 + i Im N^2. The resolution is |w^2| at this end, divided by the range of w^2
-// on the arc. If the resolution is large, nodes are not clustered. If it is negligible, it is set to 0.
+// w of w^2 = cos^2(beta) - critical_cos^2 + i Im N^2. Arc::resolution tells how much absorption (Im N^2) smooths w:
+// it is |w^2| at this end, divided by the range of w^2 on the arc. If the resolution is large, nodes are not clustered.
 Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, Arc arc, bool at_end, bool is_beside) {
   real level = index.critical_cos * index.critical_cos;
   real r2 = real(1.0) / (real(1.0) + t * t);
@@ -322,15 +322,15 @@ Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, Arc arc,
   return arc;
 }
 
-// Nodes of an arc that begins at the line b = pi/2 (single_lines() in arcs.glsl): G contains exp(-1/distance^2).
+// Nodes because G has the term of essential_nodes() at the line b = pi/2 (single_lines()), where the arc begins.
 real line_nodes(ShapeNode shape, bool has_split_line, real digits, int zone) {
   if (kMasking != DOLP_MASKING_INTEGRAL || kDistribution != DOLP_GAUSSIAN) return real(0.0);
   bool is_line = has_split_line && zone == 2;
   return choose(is_line, essential_nodes(shape, digits), real(0.0));
 }
 
-// Nodes because of a square root that absorption smooths. In the variable v of place_on_arc(), the integrand has
-// singularities at (0.76 +- 0.57 i) / a. They affect about the share resolution^(3/2) of the integral.
+// Nodes because of a square root that absorption smooths (critical_arc()). In the variable v of place_on_arc(), the
+// integrand is singular at (0.76 +- 0.57 i) / a. This changes the integral only by a share of about resolution^(3/2).
 real resolution_nodes(real digits, real resolution) {
   real wanted = max(digits + real(1.5) * kInverseLn10 * log_unit(resolution), real(0.0));
   real a = asinh_real(real(1.0) / sqrt(resolution));
@@ -341,7 +341,7 @@ real resolution_nodes(real digits, real resolution) {
 // The number of nodes of an arc. An arc from 0 to pi gets at least two: with one node, cos(2 phi) does not average out.
 real arc_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, bool has_split_line, real t, real digits,
                Arc arc, int zone) {
-  real map = nodes_per_digit(asinh_real(real(1.0) / max(abs(arc.extent), real(1e-9))));  // dphi/dtau: poles at +-i
+  real map = nodes_per_digit(asinh_real(real(1.0) / max(abs(arc.extent), real(1e-9))));  // poles of dphi/dtau
   map = choose(arc.section == kSectionHalf, real(0.5) * map, map);
   map = choose(arc.section == kSectionCircle, real(0.0), map);
   real cost = max(max(map, fresnel_cost(rule, theta, index, t, arc)), masking_cost(theta, shape, t, arc, zone));

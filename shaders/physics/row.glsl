@@ -1,6 +1,6 @@
 // Entries that one invocation computes together. They differ only in q, so they share the facets and the reflection.
-
-// In ascending order of q. All entries get the most demanding scale, cut, table_scale and cusp_digits of any of them.
+// The shapes are in ascending order of q. Some members are read only from shape[0], so all shapes have the smallest
+// scale and table_scale, and the largest cut and cusp_digits, of the row.
 struct Row {
   ShapeNode shape[DOLP_WIDTH];
   uint table[DOLP_WIDTH];  // position of the first node of each entry's masking table
@@ -28,8 +28,8 @@ MaskingTerms unmasked() {
   return masked;
 }
 
-// The terms of masking.glsl that do not depend on the slope t: Lambda for smith, l(cot(theta)) for `integral`. At 90
-// degrees Lambda is so large that G is 0.
+// The part of the masking that does not depend on the slope t: Lambda for smith; for `integral`, the integral
+// l(cot(theta)) of masking.glsl. At 90 degrees Lambda is so large that G is 0.
 MaskingTerms masking_of_direction(Row row, real cos_theta, real sin_theta) {
   MaskingTerms heights = unmasked();
   if (kMasking == DOLP_MASKING_SMITH) {
@@ -45,7 +45,7 @@ MaskingTerms masking_of_direction(Row row, real cos_theta, real sin_theta) {
   return heights;
 }
 
-// 1 - G1 of `integral`. `limited` is computed even if it is unused: in lockstep, a branch saves no time.
+// 1 - G1 of `integral`. `limited` is always computed: invocations run in lockstep, so a branch would save no time.
 MaskingTerms shadows(Row row, MaskingTerms heights, real cos_theta, real sin_theta, real t) {
   ShadowRange range = shadow_range(row.shape[0], cos_theta, sin_theta, t);
   TableCell cell = table_cell(row.shape[0], range.far);
@@ -58,7 +58,7 @@ MaskingTerms shadows(Row row, MaskingTerms heights, real cos_theta, real sin_the
   return masked;
 }
 
-// Masking toward the reflected ray. In zone 0, project() does not need this masking for `integral`.
+// Masking toward the reflected ray. For `integral`, project() does not use it in zone 0, where theta_r < theta.
 MaskingTerms masking_of_ray(Row row, real cos_r, real sin_r, real t, int zone) {
   if (kMasking == DOLP_MASKING_SMITH) return masking_of_direction(row, cos_r, sin_r);
   MaskingTerms masked = unmasked();

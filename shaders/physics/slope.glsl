@@ -1,7 +1,7 @@
 // The slope distribution (README.md beside this file, section 2, eqs. 1 and 8), with t = tan(alpha), m = sqrt(2) sigma
 // and u = t / m. Its density in the slope plane is
 //   P(t) = (q - 1) / (pi m^2) (1 + u^2)^-q (cauchy) or exp(-u^2) / (pi m^2) (gaussian).
-// The integral of P t dt dphi over the slope plane is 1, and P = D cos^4(alpha).
+// The integral of P t dt dphi over the slope plane is 1. With D, the distribution of normals, P = D cos^4(alpha).
 
 // The share of facets that are steeper than t is exp(-exponent_factor(shape) * common_exponent(t / m)).
 real common_exponent(real u) { return (kDistribution == DOLP_CAUCHY) ? log1p_square(u) : u * u; }

@@ -30,7 +30,7 @@ Task task_of(uint word) {
   return task;
 }
 
-// moments.comp reads the slopes one by one instead: to compile a copy of the ThetaNode takes a driver half a second.
+// Only C++ calls this. In moments.comp, a copy of the ThetaNode would take a driver half a second to compile.
 Task with_slopes(Task task, ThetaNode theta) {
   task.before = theta.end[max(task.piece - 1, 0)];
   task.start = theta.end[task.piece];
@@ -48,8 +48,8 @@ struct Piece {
   real extent;  // in X
   bool root_at_a;
   bool root_at_b;
-  real root_before;       // X of a square root at the start of the preceding piece; X at a if that is near, or none
-  real root_after;        // X of a square root at the end of the next piece; X at b if that is near, or none
+  real root_before;       // X of a distant square root at the start of the preceding piece; X at a if there is none
+  real root_after;        // X of a distant square root at the end of the next piece; X at b if there is none
   real mass[DOLP_WIDTH];  // share of the facets on the piece, for each entry of a row
   real fall;              // ln(share of facets steeper than a / share of facets steeper than b), the largest of a row
   real digits;            // digits that the most demanding entry of a row requires

@@ -20,8 +20,9 @@ TEST(FitSets, BentValley_IntervalsHoldATruthThatTheDataDoNotExclude) {
   }
 }
 
-// The data include multiple bounces. A fit with single scattering, which takes the bracket of DOLP as its model error,
-// has wide intervals that contain the true values. A fit with all bounces has narrow intervals.
+// The data include multiple bounces. The model of the first fits has single scattering. These fits compare the data
+// with the bracket, a range that contains Q/I with all bounces. Their intervals are wide and contain the true
+// values. The model of the last fit has all bounces, and its interval is narrow.
 TEST(FitSets, AllBounces_IntervalsOfTheBracketHoldTheTruth) {
   constexpr std::size_t kFewPoints = 6;  // points per data set; the study uses 15
   CpuEvaluator evaluator;

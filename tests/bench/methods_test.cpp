@@ -139,7 +139,8 @@ TEST(BenchRules, Midpoint_TwiceTheNodes_QuartersTheError) {
   const std::unique_ptr<Solver> midpoint = solver_of("midpoint");
   const MomentsRequest request = neighbourhood(case_of("easy"), 1);
   const double ratio = worst_error(*midpoint, request, 128) / worst_error(*midpoint, request, 256);
-  EXPECT_NEAR(ratio, 4.0, 0.1);  // The error is of second order. Terms of higher order change the ratio by much less.
+  // The error is of second order, so the ratio is about 4. Terms of higher order change the ratio by less than 0.1.
+  EXPECT_NEAR(ratio, 4.0, 0.1);
 }
 
 TEST(BenchRules, MonteCarlo_Repeats_ScatterAsStatedAboutTheTruth) {

@@ -1,4 +1,4 @@
-// Parts of the speed studies: grids, the kernel source compiled for the CPU, counted operations, peak of the device.
+// Parts of the speed studies: the kernel source compiled for the CPU, Gauss rules on the device, counted operations.
 #include <gtest/gtest.h>
 
 #include <algorithm>

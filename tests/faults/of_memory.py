@@ -54,7 +54,7 @@ def allocation_in_lookup(driver):
 
 def allocation_with_driver(driver):
     """every 100th allocation of `eval` on a Vulkan device fails, in its driver too"""
-    # Without memory the compiler of the driver may make a slightly different kernel and not report it.
+    # If the driver's compiler lacks memory, it may make a slightly different kernel without an error message.
     return allocations_of(driver, "eval", (), 10, 100, agree)
 
 

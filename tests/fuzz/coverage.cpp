@@ -11,7 +11,8 @@ constexpr std::size_t kCounters = 1U << 16U;
 
 }  // namespace
 
-// The linker redirects __sanitizer_cov_trace_pc to this function, because libFuzzer's version only reports an error.
+// The linker redirects __sanitizer_cov_trace_pc to this function. libFuzzer has a function of that name, too, but it
+// only reports an error.
 extern "C" void __wrap___sanitizer_cov_trace_pc() {
   const auto place = reinterpret_cast<std::uintptr_t>(__builtin_return_address(0));
   ++counters[place % kCounters];

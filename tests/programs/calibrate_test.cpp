@@ -46,7 +46,7 @@ TEST(HoldOut, PlantedUnderstatement_IsFound) {
   EXPECT_GT(planted.understated, options.entries / 2);
   EXPECT_LE(planted.understated, options.entries);
   EXPECT_GT(planted.worst.ratio, 100.0 * honest.worst.ratio);
-  // The test must also find bounds that are too small only for one entry, the worst.
+  // Now only the error of the worst entry surely exceeds its bound. hold_out() must find this entry.
   options.bound_share = 0.9 * honest.worst.ratio;
   const HoldOut lowered = held_out(options);
   EXPECT_GE(lowered.understated, 1U);

@@ -131,7 +131,6 @@ TEST_F(CommandLine, TableFormats_SameScene_HoldTheSameNumbers) {
   }
 }
 
-/// The first core on which this process may run.
 int an_allowed_core() {
   cpu_set_t allowed;
   EXPECT_EQ(sched_getaffinity(0, sizeof allowed, &allowed), 0);
@@ -217,8 +216,7 @@ TEST_F(CommandLine, Evaluators_SamePoints_AgreeWithinTheirStatedErrors) {
       const auto sum = [&](const char* name) { return vulkan.at(name)[i] + other->at(name)[i]; };
       const auto difference = [&](const char* name) { return std::abs(vulkan.at(name)[i] - other->at(name)[i]); };
       EXPECT_LE(difference("dolp"), sum("error_estimate")) << i;
-      // rho_error_estimate is relative to rho_i. So it is multiplied by rho_i, the mean of the values of both
-      // evaluators.
+      // rho_error_estimate is relative to rho_i, so it is multiplied by the mean rho_i of both evaluators.
       EXPECT_LE(difference("rho_i"), sum("rho_error_estimate") * 0.5 * sum("rho_i")) << i;
       EXPECT_LE(difference("rho_q"), sum("rho_error_estimate") * 0.5 * sum("rho_i")) << i;
     }
@@ -251,7 +249,8 @@ TEST_F(CommandLine, Json_EachEvaluator_HasTheContractsKeys) {
   }
 }
 
-// For a rough metal single scattering is wrong. The summary must report how much DOLP changes with direct emission.
+// For a rough metal single scattering is wrong: it counts light that meets a second facet as emitted. Direct emission
+// leaves this light out. The summary must report the difference of DOLP between both models.
 TEST_F(CommandLine, Summary_MaskingWithADirectEmission_SaysWhatSingleScatteringLeavesOpen) {
   const std::vector<std::string> metal = {"--set", "surface.masking=smith", "--set", "surface.n=10",
                                           "--set", "surface.k=60"};

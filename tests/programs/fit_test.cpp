@@ -1,4 +1,4 @@
-// `dolp fit` as a user runs it: report, fitted scene, comparison and messages.
+// `dolp fit` as a user runs it: report, fitted scene, comparison of models, and messages.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

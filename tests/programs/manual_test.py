@@ -2,8 +2,8 @@
 """Tests the manual: its commands work, its generated parts are current, and its links have targets.
 
 Usage: manual_test.py BUILD [TEST...]    BUILD is the folder that has dolp; ctest runs each test separately
-The test runs the blocks ```sh and ```python of FILES_WITH_COMMANDS unchanged and in order. Each file has a folder like a
-user's checkout, with host, bench and the programs that quickstart.sh builds. Blocks that contain text of NOT_RUN do not run.
+The test runs the blocks ```sh and ```python of FILES_WITH_COMMANDS unchanged and in order. The blocks of a file run
+in a new folder with host, bench and the programs of quickstart.sh. Blocks with a text of NOT_RUN do not run.
 """
 import csv
 import functools
@@ -148,7 +148,7 @@ class Manual(unittest.TestCase):
         for script in BUILD_FOLDER.rglob("cmake_install.cmake"):
             for file in re.findall(f'"({re.escape(str(BUILD_FOLDER))}/[^"]+)"', script.read_text(encoding="utf-8")):
                 names = {file, str(pathlib.Path(file).relative_to(BUILD_FOLDER))}
-                if names & everything:  # the build does not make the other files
+                if names & everything:  # false for files that no command of the build makes
                     self.assertTrue(names & built, f"{file} is installed, and quickstart.sh does not build it")
                     checked += 1
         self.assertGreater(checked, 5)
@@ -186,7 +186,7 @@ class Manual(unittest.TestCase):
                         self.assertIn(anchor, anchors(target.read_text(encoding="utf-8")))
 
     def test_model_has_one_place(self):
-        """Only shaders/physics/README.md describes the model. No file mentions another description."""
+        """Only shaders/physics/README.md describes the model. No file mentions the description that it replaced."""
         former = "MODEL" + ".md"
         for path in ROOT.rglob("*"):
             parts = path.relative_to(ROOT).parts

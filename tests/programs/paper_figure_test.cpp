@@ -15,7 +15,7 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 
 // The manual rounds DOLP to 0.01 percentage points, angles to 0.1 degrees and G to 0.001. The computed curves have
-// errors, too: their steps are 0.1 degrees, and the tolerance of the scenes is 0.01 percentage points of DOLP.
+// errors, too: they have a point every 0.1 degrees, and their tolerance is 0.01 percentage points of DOLP.
 constexpr double kPointTolerance = 0.02;
 constexpr double kAngleToleranceDeg = 0.2;
 constexpr double kAttenuationTolerance = 6e-4;

@@ -16,12 +16,12 @@ const std::vector<std::string> kIsothermal = {"--set", "surroundings.temperature
 const std::vector<std::string> kBistatic = {"--set", "geometry.mode=bistatic", "--set",
                                             "source.relative_irradiance=0.5"};
 // The surface is as warm as its surroundings, so emitted and reflected polarisation cancel. Only the source polarises
-// the radiation, and the run needs no moments.
+// the radiation. The run then needs no moments: integrals of the pBRDF over all directions.
 const std::vector<std::string> kBeamAlone = {"--set", "surroundings.temperature_K=300",
                                              "--set", "geometry.mode=bistatic",
                                              "--set", "source.relative_irradiance=0.5"};
-// Relative error of the predicted number of evaluations. In float a device may round the number of quadrature nodes
-// differently than the CPU.
+// Relative error of the predicted number of evaluations. The number of quadrature nodes is a rounded real
+// number. In float a device may round it to another integer than the CPU.
 constexpr double kOrderRounding = 0.05;
 // Relative error of the predicted number of evaluations if `dolp plan` counts the evaluations of only 256 entries.
 constexpr double kSampling = 0.1;
@@ -47,8 +47,8 @@ class Plan : public CommandLine {
   }
 };
 
-// As a check, a run computes a few entries again. This needs masking tables. Masking tables of all entries would need
-// too much memory.
+// A masking table belongs to one pair of sigma and q. A run computes a few entries again as a check. For this it may
+// make masking tables only for the pairs of these entries: a million tables would need more than two gigabytes.
 TEST_F(Plan, MillionValuesOfAnAxis_FitIntoTwoGigabytes) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "AddressSanitizer takes terabytes of addresses";

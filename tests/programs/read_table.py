@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Compares a NetCDF table with the CSV that `dolp eval` wrote for entries of its grid, without dolp's own reader.
+"""Compares a NetCDF table with a CSV of `dolp eval` that has entries of the table. Does not use dolp's own reader.
 
 Usage: read_table.py TABLE.nc EVAL.csv
-theta_deg, sigma and q of a CSV row select an entry of the table. A column may be missing if the axis has one value. Other
-columns must have the same doubles as the variable with their name; NaN equals NaN. Without such a variable all their values
-must be NaN, because eval writes NaN for what it does not compute.
+theta_deg, sigma and q of a CSV row select an entry of the table. A column may be missing if its axis has one value.
+Every other column except n and k must equal the variable of its name; NaN equals NaN. If the table lacks this variable,
+all values of the column must be NaN, because eval writes NaN for what it does not compute.
 Exit status: 0 if all values are equal, 1 if some differ, 2 if the files cannot be compared.
 """
 import csv

@@ -316,12 +316,12 @@ TEST_F(Resume, OverADamagedPartialFile_GivesTheSameBits) {
   };
   const std::vector<std::pair<std::string, std::string>> damaged = {
       {"", progress},                      // removed
-      {values.substr(0, 1000), progress},  // cut before the end of the first part
+      {values.substr(0, 1000), progress},  // cut before the end of the values of the first part
       {values.substr(0, 5'000'000), progress},
-      {content("one.nc") + values, progress},                 // another file, longer than the finished table
-      {overwritten(values, 400'000), progress},               // first part overwritten
-      {values, overwritten(progress, 30)},                    // identity of the table overwritten
-      {values, overwritten(progress, progress.size() - 80)},  // summary of the last part overwritten
+      {content("one.nc") + values, progress},                 // the finished table stands before the values
+      {overwritten(values, 400'000), progress},               // 64 bytes in the first part overwritten
+      {values, overwritten(progress, 30)},                    // line that identifies the table overwritten
+      {values, overwritten(progress, progress.size() - 80)},  // line of the last finished part overwritten
       {values, progress.substr(0, progress.size() - 3)},
       {values, ""}};
   for (std::size_t i = 0; i < damaged.size(); ++i) {

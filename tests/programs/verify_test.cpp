@@ -76,14 +76,12 @@ TEST(CheckTable, EmptyStatusAndNoEstimates_PromiseNothing) {
 
 // ---- The program ---------------------------------------------------------------------------------------------------
 
-/// Changes one value in a table file.
 void put_value(const std::filesystem::path& path, Quantity quantity, std::size_t position, double value) {
   TableValues table = read_table(path);
   table[quantity].at(position) = value;
   write_table(table, path);
 }
 
-/// Changes one attribute of a table file.
 void put_attribute(const std::filesystem::path& path, const std::string& name, const std::string& text) {
   TableValues table = read_table(path);
   const auto found = std::ranges::find(table.attributes, name, &Attribute::name);
@@ -134,7 +132,8 @@ TEST_F(Verify, ValueOfAnyQuantityThatIsOff_IsFound) {
   const TableValues table = make_table({"--set", "grid.theta_deg=[0.001, 40, 60, 80]"});
   for (const Quantity quantity : quantities) {
     const double right = table[quantity][0];
-    // Entry 0 has a theta near 0 and a tiny DOLP. There error_estimate gives no bound for the error of I.
+    // Entry 0 has a theta near 0, so its DOLP is tiny. The error of a tiny DOLP does not limit the error of I. For I,
+    // `dolp verify` then uses another bound.
     put_value(at("t.nc"), quantity, 0, right + 0.05 * std::max(1.0, std::abs(right)));
     const nlohmann::json json = verify_json(kAccuracy);
     EXPECT_EQ(json["failures"].size(), 1U) << description_of(quantity).name;

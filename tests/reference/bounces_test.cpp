@@ -1,4 +1,4 @@
-// pBRDF of multiple bounces in V-grooves by the reference.
+// The reference evaluator's pBRDF of light that bounces several times in V-grooves.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>

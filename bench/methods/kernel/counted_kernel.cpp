@@ -72,7 +72,7 @@ class Counted {
   std::uint32_t is_constant_ = 0;
 };
 
-/// The number as an input of the kernel. Operations on inputs count, while operations between constants do not.
+/// Returns `number` as an input of the kernel, not a constant, so that operations on it count.
 inline Counted as_data(Counted number) { return Counted(number.value()); }
 
 using real = Counted;

@@ -19,11 +19,11 @@ struct GroupedWork {
 
   KernelData data;
   Rows rows;
-  std::vector<RowPiece> pieces;  ///< for each invocation, its kernel row and piece; in the order of a Vulkan device
+  std::vector<RowPiece> pieces;  ///< kernel row and piece of each invocation, in the order in which a device runs them
 };
 
-/// The kernels of shaders/ for one GroupedWork, which must outlive this object. Threads may call the functions at the
-/// same time if each thread has other shapes and pieces.
+/// The kernels of shaders/ for one GroupedWork, which must outlive this object. Several threads may call the functions
+/// at the same time if no two of them write the same masking table or the same results.
 class GroupedKernel {
  public:
   virtual ~GroupedKernel() = default;
@@ -31,8 +31,8 @@ class GroupedKernel {
   /// Fills the masking table of one shape. Call this for every shape before run_pieces.
   virtual void build_masking_table(std::size_t shape) = 0;
 
-  /// Runs the invocations from number `first`, until they have filled `members`. Each invocation writes one result for
-  /// each entry of its kernel row.
+  /// Runs invocations, from number `first` on. Each invocation writes Rows::width results, one for each entry for
+  /// which its kernel row has room. The size of `members`, divided by Rows::width, is the number of invocations.
   virtual void run_pieces(std::size_t first, std::span<kernel::MomentsNode> members) = 0;
 };
 

@@ -58,8 +58,7 @@ template <std::size_t K>
 class Hemisphere {
  public:
   // Inner integral, over the azimuth: the moments, r_i for each of K curves, and r_q for each curve. Outer integral:
-  // also r_i and r_q with the sky's function as a factor, and the errors of the inner integrals, summed over the
-  // zenith.
+  // also r_i and r_q with the sky's function as a factor, and the sums of the errors of the inner integrals.
   static constexpr std::size_t kAzimuthCount = kMomentCount + 2 * K;
   static constexpr std::size_t kSkyReflected = kAzimuthCount;
   static constexpr std::size_t kSkyPolarised = kAzimuthCount + 1;

@@ -1,6 +1,6 @@
 // Computes the moments of a row of entries (row.glsl) on one piece of the slope axis: a Gauss rule over the slopes,
-// with a sum over the azimuths at each slope. A finer and a coarser rule compute each moment. The finer rule gives the
-// result; the difference between both gives the error bound (host/compute/plan/error_bounds.cpp).
+// with a sum over the azimuths at each slope. Two rules compute each moment: one gives the result, and the difference
+// between both gives the error bound (host/compute/plan/error_bounds.cpp). coarse_order() chooses the second rule.
 
 CONST real kNearRoot = real(0.2);
 

@@ -49,8 +49,7 @@ int order_between(real nodes, int limit) { return int(clamp(floor(nodes + real(0
 // Order of the coarser rule. If it is below 3, a finer rule replaces it: rules with few nodes often agree by chance.
 int coarse_order(int order) {
   int fewer = (8 * order + 5) / 10;
-  int more = order + 1;
-  return (fewer < 3) ? more : fewer;
+  return (fewer < 3) ? order + 1 : fewer;
 }
 
 // ---- Slope axis ----------------------------------------------------------------------------------------------------

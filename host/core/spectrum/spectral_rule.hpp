@@ -35,8 +35,7 @@ struct SpectralFactors {
 
 /// A refractive index, and the factors of its reflectance rho. Between two rows of the material's table, rho is the
 /// polynomial through its values at Gauss nodes. So the integral of rho times a radiation F is a sum over the nodes:
-/// rho at the node times a factor. The factor is the integral of F times the Lagrange polynomial of the node. It may be
-/// negative.
+/// rho at the node times a factor, which may be negative: the integral of F times the node's Lagrange polynomial.
 struct SpectralSample : SpectralFactors {
   FacetOptics index;
   double wavelength_um = 0.0;  ///< first wavelength at which the index occurs

@@ -230,7 +230,7 @@ std::vector<SceneKey> surface_keys() {
                set_sigma),
       with_set(
           number("surface.wind_m_s", "m s-1", kWindRange, "",
-                 "wind over a sea, instead of sigma: m^2 = 0.003 + 0.00512 times the wind (only distribution gaussian)",
+                 "wind over a sea; sets sigma by 2 sigma^2 = 0.003 + 0.00512 wind; only with distribution gaussian",
                  [](auto& s) { return &s.surface.wind_m_s; }),
           set_wind),
       number("surface.q", "1", kQRange, "2", "tail exponent q of the cauchy distribution; 2 is GGX",
@@ -288,8 +288,8 @@ std::vector<SceneKey> radiation_keys() {
           [](auto& s) { return s.surroundings ? &s.surroundings->temperature_K : nullptr; },
           [](const SceneValues& s) { return s.names.profile.empty(); }),
       text("surroundings.profile",
-           "sky that changes with the zenith: clear-sky, overcast, or your own CSV file (columns zenith_deg, "
-           "temperature_K or radiance, and wavelength_um if they depend on it); instead of temperature_K",
+           "sky that changes with the zenith, instead of temperature_K: clear-sky, overcast, or your own CSV file "
+           "(columns zenith_deg, temperature_K or radiance; wavelength_um if the sky depends on the wavelength)",
            [](auto& s) { return &s.names.profile; }),
       air_number("surroundings.vapour_cm", "cm", kVapourRange,
                  "precipitable water of the air of clear-sky or overcast; if absent, 1.27 cm, or all that the air "
@@ -326,8 +326,8 @@ std::vector<SceneKey> geometry_keys() {
          return KeyValue{.numbers = {s.spectrum.min_um, s.spectrum.max_um}};
        }},
       choice("geometry.mode", Geometry().mode,
-             "hemispherical: the results are exitances, and rho(theta) weights the surroundings and a source at zenith "
-             "theta; bistatic: the results are radiances toward a fixed view, and the source is at zenith theta",
+             "hemispherical: the results are exitances; bistatic: the results are radiances toward a fixed view; in "
+             "both modes a source has the zenith theta",
              [](auto& s) { return &s.geometry.mode; }),
       number("geometry.view_zenith_deg", "degree", kZenithDegRange, "60", "view zenith theta_v in bistatic mode",
              [](auto& s) { return &s.geometry.view_zenith_deg; }),
@@ -367,8 +367,8 @@ std::vector<SceneKey> geometry_keys() {
              "arithmetic of the kernels; auto takes float, and double for what float cannot compute to the tolerance",
              [](auto& s) { return &s.accuracy.precision; }),
       {described("accuracy.interpolation", Type::kWord, "", {}, "auto",
-                 "auto: the program may interpolate between slope distributions of a dense grid and compute many "
-                 "indices in one pass, within the tolerance; off: it integrates every entry",
+                 "auto: within the tolerance the program may interpolate over a dense grid of sigma and q, and compute "
+                 "many indices in one pass; off: it integrates every entry",
                  {"auto", "off"}),
        [](SceneValues& s, const KeyValue& v) { s.accuracy.may_interpolate = v.word == 0; },
        [](const SceneValues& s) -> std::optional<KeyValue> {

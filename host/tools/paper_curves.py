@@ -1,8 +1,9 @@
 """The model's curves for figures 4-7 of the paper, computed by dolp, and numbers that check statements of the paper.
 
-The paper does not print k_s, k_d, c, q, E0 and the masking of its Gaussian curves. So each figure is computed for two
-sets of these values, called readings. `integral` has the values of the sample scenes; `smith` replaces some of them.
-A Gaussian has the width sigma / sqrt(q - 1). Then its density D(0) of horizontal facets equals that of the Cauchy.
+The paper prints neither the values of the keys in UNPRINTED nor the masking of its Gaussian curves. So figures 5-7 are
+computed with two sets of values, called readings. `integral` has the values of the sample scenes; `smith` replaces some
+of them. The Gaussian has the width sigma / sqrt(q - 1), with sigma and q of the Cauchy distribution. Then both have the
+same density D(0) of horizontal facets.
 """
 import csv
 import dataclasses
@@ -33,7 +34,7 @@ ANGLES_DEG = np.arange(90 * STEPS_PER_DEGREE + 1) / STEPS_PER_DEGREE
 MODEL_FAILS = 1 | 4 | 8  # status bits: rho outside [0, 1], entry outside the model's domain, I <= 0
 
 FIGURE4_SIGMA, FIGURE4_Q, FIGURE4_THETA_I_DEG = 0.3, 2.0, 30.0
-GRAZING_THETA_I_DEG = 85.0  # angle of incidence at which G with `integral` masking has a corner over the view zenith
+GRAZING_THETA_I_DEG = 85.0  # at this angle of incidence, G of `integral` has a clear kink at theta_r = theta_i
 GRAZING_DEG = 90.0 - 1e-6  # used instead of 90 degrees, where G would be a ratio of two infinite pBRDFs
 
 
@@ -54,7 +55,7 @@ class Program:
     changes: dict = dataclasses.field(default_factory=dict)
 
     def columns(self, command, scene, settings, points, options=()):
-        """Runs `dolp COMMAND` for the columns `points`. Returns its output columns by name. Errors: CannotRun."""
+        """Runs `dolp COMMAND` on the input columns `points`. Returns output columns by name. Errors: CannotRun."""
         rows = [",".join(points), *(",".join(map(repr, row)) for row in zip(*(map(float, c) for c in points.values())))]
         line = [str(self.path), command, str(ROOT / "host" / "scenes" / f"{scene}.toml"), "--points", "-", "-o", "-",
                 "--quiet", *options, *(("--evaluator", self.evaluator) if self.evaluator else ())]

@@ -16,8 +16,8 @@ import picture_file  # noqa: E402
 BLUE, VERMILION, GREEN, GREY = "#0072B2", "#D55E00", "#009E73", "#777777"
 LOOKS = {"cauchy": ("-", "o"), "gaussian": ("--", "s")}
 SAMPLE_COLOURS = {"steel": BLUE, "aluminium": VERMILION}
-FRAMED_UP_TO_DEG = 80.0  # the DOLP axis shows all DOLP up to this angle; nearer to 90 degrees, DOLP may leave it
-HEADROOM = {5: 1.4, 6: 1.4, 7: 1.7}  # per figure: end of the DOLP axis / largest DOLP, with room for the legend
+FRAMED_UP_TO_DEG = 80.0  # the DOLP axis contains all curves up to this angle; beyond it, they may leave the plot
+HEADROOM = {5: 1.4, 6: 1.4, 7: 1.7}  # end of the DOLP axis divided by the largest DOLP; leaves room for the legend
 SMALLEST_SPAN_PERCENT = 0.01  # least height of the DOLP axis, so that rounding noise does not look like a signal
 DOTS_PER_INCH = 110
 PALETTE = 96  # number of colours; few colours keep the file small

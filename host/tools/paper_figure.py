@@ -2,10 +2,10 @@
 """Draws the model curves of figure 4, 5, 6 or 7 of the paper. The measured values are missing: the paper prints none.
 
 Usage: paper_figure.py FIGURE [-o FIGURE.png] [--table | --json] [--set KEY=VALUE]...
-  4  geometric attenuation G: integral masking against v-cavity
-  5  stainless steel, 6 aviation aluminium, 7 both: DOLP, Cauchy against Gaussian slopes, bistatic and hemispherical
---table prints the numbers as Markdown, --json as JSON. --set replaces a value that the paper does not print, such as
-surface.q, in both readings, which paper_curves.py explains. Runs build/release/dolp, or the program in --program.
+  4        geometric attenuation G, with integral masking and with v-cavity masking
+  5, 6, 7  DOLP of steel, of aluminium, of both, for Cauchy and Gaussian slopes, in bistatic and hemispherical mode
+--table prints the numbers as Markdown, --json as JSON. --set changes a value that the paper does not print, such as
+surface.q, in figures 5-7. Runs build/release/dolp, or the program in --program.
 Needs python3-numpy, and python3-matplotlib for the picture.
 Exit status: 0 done, 2 usage or no program, 4 the picture could not be written; if dolp fails, the status of dolp.
 """

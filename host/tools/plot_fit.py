@@ -2,8 +2,8 @@
 """Draws the result of a fit. `dolp fit --plot` runs this program.
 
 Usage: plot_fit.py .png|.pdf|.svg < REPORT.json > PICTURE
-Shows data, model, residuals, contours of chi^2, and the bracket: a range that contains the DOLP with all bounces.
-Needs python3-matplotlib. Exit status: 0 done, 2 usage or no report of a fit as input, 4 the picture cannot be written.
+Shows data, model, residuals, contours of chi^2, and as a grey area the range that contains the DOLP with all bounces.
+Needs python3-matplotlib. Exit status: 0 done, 2 usage or wrong input, 4 the picture cannot be written.
 """
 import json
 import re
@@ -31,7 +31,7 @@ MARKS = ".x+^sv"
 
 
 def curves(points):
-    """Yields, for each group of points with equal data set, quantity and wavelength, its columns sorted by zenith."""
+    """Groups points by data set, quantity and wavelength. Yields each group's key, and its columns sorted by zenith."""
     found = {}
     for point in points:
         found.setdefault((point["data"], point["quantity"], point["wavelength_um"]), []).append(point)
@@ -98,7 +98,7 @@ def names_in(points):
 
 
 def zeniths_of_a_spectrum(report):
-    """Zeniths that get a plot over wavelength. Empty for few wavelengths: draw_data() then plots over zenith."""
+    """Chooses zeniths for plots over wavelength. Empty if wavelengths are few; then draw_data() plots over zenith."""
     zeniths = sorted({point["theta_deg"] for point in report["points"]})
     wavelengths = {point["wavelength_um"] for point in report["points"]}
     if len(wavelengths) <= max(len(COLOURS), len(zeniths)):
@@ -144,7 +144,7 @@ def draw_pair(axes, report):
                   va="center", color="0.3")
         return
     x, y, growth = (np.array(contours[name], dtype=float) for name in ("x", "y", "growth"))
-    root = np.ma.masked_invalid(np.sqrt(growth))  # the root is closer to linear, so contours are smoother
+    root = np.ma.masked_invalid(np.sqrt(growth))  # grows linearly from the minimum, so its contours are smoother
     widths = (2.0, 1.0)
     axes.contour(x, y, root, np.sqrt(contours["levels"]), colors=COLOURS[0], linewidths=widths)
     for level, region, width in zip(contours["levels"], REGIONS, widths):
@@ -186,7 +186,7 @@ def alike(report):
 
 
 def title_of(report):
-    """The scene's title, then its spectrum. If the data have their own wavelengths, the title names none."""
+    """Title of the picture: the scene's title, and the scene's wavelengths unless the data have their own."""
     title = re.sub(r"[, ]*[\d.]+( *[-–] *[\d.]+)? *[uµ]m$", "", report["title"])
     if all(point["wavelength_um"] is None for point in report["points"]):
         ends = dict.fromkeys(f"{end:g}" for end in report["spectrum_um"])

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws Q/I of paint over zenith under a uniform, a clear and an overcast sky, and the temperatures of these skies.
+"""Draws brightness temperatures of a uniform, a clear and an overcast sky, and Q/I of paint under them, over zenith.
 
 Usage: plot_skies.py DOLP OUT.png [--band FROM TO]
 DOLP is the program. The uniform sky has the temperature at which its irradiance equals the irradiance of the clear sky.

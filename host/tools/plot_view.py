@@ -57,7 +57,7 @@ def draw_curves(axes, plots):
                       markerfacecolor="none", elinewidth=0.8, label="measured")
     set_axes(axes, plots["x"], plots["y"])
     axes.grid(alpha=0.25, linewidth=0.6)
-    entries = {}  # of the legend; all areas labelled BAND share one entry, and so do all lines labelled MODEL_FAILS
+    entries = {}  # legend entries; all areas labelled BAND share one, and so do all lines labelled MODEL_FAILS
     for handle, label in zip(*axes.get_legend_handles_labels()):
         entries[label if label in (MODEL_FAILS, BAND) else handle] = (handle, label)
     axes.legend(*zip(*entries.values()), frameon=False, fontsize=8)

@@ -2,12 +2,9 @@
 """Rewrites the generated parts of the manual.
 
 Usage: write_manual.py [--check] [--build FOLDER] [FILE.md...]
-In each Markdown file of the repository, or only in the named files, the lines between
-    <!-- generated: COMMAND -->
-and
-    <!-- end of generated -->
-become the output of COMMAND, run in the repository's root. --build replaces build/release/ at the beginning of a word
-of COMMAND. --check writes nothing and names the outdated parts.
+A part lies between the lines <!-- generated: COMMAND --> and <!-- end of generated -->. It becomes the output of
+COMMAND, run in the repository's root, in all Markdown files of the repository, or only in the named files.
+With --build, FOLDER replaces build/release/ at the beginning of words of COMMAND. --check only names outdated parts.
 Exit status: 0 done or nothing outdated, 1 --check found an outdated part, 2 a command fails or a mark has no end.
 """
 import argparse

@@ -90,7 +90,7 @@ void Worker::run() {
     try {
       part = advance(task);
     } catch (const Cancelled&) {
-      // want() has dropped this job, or the worker ends. If want() lists the job again, a later round computes it.
+      // The job is no longer wanted, or the worker ends. If the job is wanted again, this loop computes the part again.
     }
     lock.lock();
     is_running_ = false;

@@ -82,16 +82,16 @@ struct Job {
   std::vector<PointList> parts;  ///< lists of points, computed one after the other; more urgent jobs may run in between
   double tolerance = 0.0;        ///< the job has this tolerance or that of its scene, whichever is larger
   bool keep_all = false;
-  bool wants_effects = false;
-  bool is_brief = false;  ///< once begun, the job runs to its end even if it is no longer wanted
+  bool wants_effects = false;  ///< the last part of the job then has JobPart::effects and JobPart::csv
+  bool is_brief = false;       ///< once begun, the job runs to its end even if it is no longer wanted
 };
 
 struct JobPart {
   std::string key = {};
   std::size_t part = 0;  ///< position in Job::parts
-  Scene scene;           ///< Job::scene; its tolerance is the one that was used for `points`
+  Scene scene;           ///< Job::scene with the tolerance that was used for `points`
   std::vector<Point> points = {};
-  std::string csv = {};  ///< `points` as CSV with the columns of `dolp eval`; only for a job that wants effects
+  std::string csv = {};  ///< `points` as CSV with the columns of `dolp eval`; empty unless Job::wants_effects
   bool is_last = false;
   // The members below belong to the whole job. Only the last part of a job has them.
   std::vector<Effect> effects = {};

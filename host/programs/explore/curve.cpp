@@ -21,7 +21,7 @@ struct Removal {
   const char* effect;
   bool radiates;
   const char* key;  ///< scene key; its value shows whether a scene has the effect
-  Setting change;   ///< change of a scene that removes the effect
+  Setting change;   ///< setting that removes the effect from a scene
 
   bool is_in(const Scene& scene) const {
     const bool is_number = described(key).type == Key::Type::kNumber;
@@ -47,7 +47,6 @@ const std::vector<Removal>& removals() {
   return all;
 }
 
-/// For each effect that can be removed from `scene`: a copy of the scene without this effect.
 std::vector<WithoutEffect> without_each(const Scene& scene, const SceneEdits& edits) {
   std::vector<WithoutEffect> without;
   for (const Removal& removal : removals()) {
@@ -55,7 +54,7 @@ std::vector<WithoutEffect> without_each(const Scene& scene, const SceneEdits& ed
     try {
       without.push_back({removal.effect, removal.radiates, edits.scene().with({removal.change})});
     } catch (const InputError&) {
-      // Leaves out an effect that the scene needs, for example the only one that radiates.
+      // The scene is invalid without this effect, for example if nothing else radiates. So the list lacks it.
     }
   }
   return without;

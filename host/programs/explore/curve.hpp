@@ -66,7 +66,7 @@ std::string true_error(const Curve& curve, const Progress& progress);
 /// The peak of a curve: the largest DOLP of its good points (Point::is_good).
 struct PeakAnswer {
   Point at;
-  // A range of zeniths around the peak. Within the error bounds, DOLP may be largest anywhere in this range.
+  // Because of the error bounds, the true maximum near this peak may lie anywhere between these two zeniths.
   double theta_low_deg = 0.0;
   double theta_high_deg = 0.0;
   std::optional<double> rival_deg;  ///< zenith elsewhere on the curve where DOLP may be higher, within the error bounds
@@ -76,7 +76,7 @@ struct PeakAnswer {
 /// A scene without one of its effects, and the result of this scene at the zenith of the peak.
 struct WithoutEffect {
   std::string effect;  ///< an Effect::name, or "roughness"
-  bool radiates;       ///< true for emission, source and surroundings: effects whose contributions to Q/I add up
+  bool radiates;       ///< true for emission, source and surroundings, whose contributions add up to Q/I
   Scene scene;
   std::optional<Point> result = {};  ///< empty until it is computed
 };

@@ -80,8 +80,8 @@ FitMarks marks_in(const std::vector<std::string>& texts, const std::string& loca
   return marks;
 }
 
-/// The settings as texts for the file `session`. If a setting names a temporary sky file (in `skies`), copies this file
-/// to the folder of `session`, and the text names the copy.
+/// The settings as texts for the file `session`. If a setting names a temporary sky file, one of `skies`, this function
+/// copies the sky file to the folder of `session`. The text of the setting then names the copy.
 toml::array lasting_texts(std::vector<Setting> settings, const SkyFiles& skies, const fs::path& scene,
                           const fs::path& session) {
   for (Setting& setting : settings) {

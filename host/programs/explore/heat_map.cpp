@@ -35,7 +35,7 @@ const std::vector<AxisOfNumber>& axes_of_numbers() {
   return all;
 }
 
-/// The range of the values that the scene's grid has on an axis. If the grid has no range, returns axis.scale.
+/// The range of the values that the scene's grid has on `axis`. Without two different values, returns axis.scale.
 Scale grid_range(const Scene& scene, const MapAxis& axis) {
   const std::vector<double> grid = axis.is_of_tables() ? scene.numbers("grid." + axis.column()) : std::vector<double>();
   if (grid.empty()) return axis.scale;
@@ -49,7 +49,7 @@ struct Corner {
 };
 constexpr std::array<Corner, 4> kCorners = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};  // counterclockwise
 
-/// Adds the contour lines in one square of the map. Its lower left corner is the point (column, row) of `field`.
+/// Adds the contour lines in the square of the map whose lower left corner is the point (column, row) of `field`.
 void add_lines(const MapField& field, double level, std::size_t column, std::size_t row, std::vector<Segment>& lines) {
   std::array<double, 4> value{};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -164,7 +164,7 @@ PointList HeatMap::part(std::size_t level, std::size_t first) const {
     list[faster().column()] = fast;
     return list;
   }
-  // A grid has no axis for films. So this list has one point for each combination of values.
+  // A grid cannot have the thickness of a film as an axis. So the list names each pair of values as a point.
   std::vector<double> all_slow, all_fast;
   for (const double value : slow) {
     all_fast.insert(all_fast.end(), fast.begin(), fast.end());

@@ -11,13 +11,13 @@ struct MapAxis {
   std::string key = {};  ///< scene key of the axis; empty for the zenith
   Scale scale = {0.0, 90.0};
 
-  /// Name of the axis in a PointList. Empty for the temperature, which is one of PointList::changes instead.
+  /// Name of the axis in PointList::values. Empty for the temperature, because it is set by PointList::changes.
   std::string column() const {
     if (key.empty()) return "theta_deg";
     if (key == "emission.temperature_K") return {};
     return key.starts_with("surface.coating") ? key : key.substr(key.find('.') + 1);
   }
-  /// Of two axes, the one with the smaller rank changes more slowly along the list of points. Rank 0 is the
+  /// A map lists its points sorted by the axis with the smaller rank, then by the other axis. Rank 0 is the
   /// temperature, rank 1 the thickness of a film. Higher ranks are the axes of tables, in the order of the enum Axis.
   std::size_t rank() const;
   bool is_of_tables() const { return rank() >= 2; }  ///< true if a table of `dolp table` can have this axis
@@ -28,8 +28,8 @@ struct MapAxis {
 /// The range is extended to contain the scene's value.
 std::vector<MapAxis> map_axes(const Scene& scene, double theta_max_deg);
 
-/// The part of the wavelength axis `axis` in which n and k are known. For a material from a file, a short search finds
-/// the ends, so the part may be too small. If n and k are known at only one wavelength, both ends are equal.
+/// The part of the wavelength axis `axis` in which n and k are known. For a material from a file, a search moves the
+/// ends in large steps towards the scene's wavelength until n and k are known there. So the part may be too small.
 Scale known_part(const Scene& scene, const MapAxis& axis);
 
 std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range);  ///< why an axis cannot have `range`
@@ -56,15 +56,15 @@ class HeatMap {
   struct Level {
     std::size_t count;  ///< number of rows, and of columns
     double tolerance;   ///< the map has this tolerance or that of the scene, whichever is larger
-    std::size_t batch;  ///< number of rows, or of columns, in a JobPart
+    std::size_t batch;  ///< largest number of values of slower() in a JobPart
   };
   // While the user drags a slider, the curve waits for the JobPart that is running. So the parts of level 0 are small.
   static constexpr std::array<Level, 3> kLevels = {{{16, 1e-2, 2}, {64, 1e-2, 8}, {128, 0.0, 4}}};
 
   explicit HeatMap(const Scene& scene) : scene_(scene) {}
 
-  /// Switches to the map over the axes `x` and `y`. `key` identifies the map; it does not contain the scene's values on
-  /// these axes. If neither axis is the zenith, the map is for the zenith `theta_deg`.
+  /// Switches to the map over the axes `x` and `y`. `key` identifies the map. It has no values of the numbers on these
+  /// axes, because the map varies them. If neither axis is the zenith, the map is for the zenith `theta_deg`.
   void follow(const std::string& key, const Scene& scene, bool keep_all, const MapAxis& x, const MapAxis& y,
               double theta_deg);
 
@@ -105,7 +105,7 @@ class HeatMap {
   std::string key_of(std::size_t level) const { return "map " + std::to_string(kLevels[level].count) + ' ' + key_; }
   bool is_turned() const { return x_.rank() < y_.rank(); }  ///< true if x is slower()
   const MapAxis& slower() const { return is_turned() ? x_ : y_; }
-  const MapAxis& faster() const { return is_turned() ? y_ : x_; }  ///< changes from each point in a list to the next
+  const MapAxis& faster() const { return is_turned() ? y_ : x_; }  ///< has a new value at each point of part()
   std::size_t batch(std::size_t level) const { return slower().column().empty() ? 1 : kLevels[level].batch; }
   /// The points for all values of faster() and for batch() values of slower(), beginning with value number `first`.
   PointList part(std::size_t level, std::size_t first) const;
@@ -117,7 +117,7 @@ class HeatMap {
   MapAxis x_, y_{.name = "sigma"};
   double theta_deg_ = 0.0;
   std::string shown_key_;                                  ///< key of the map on display
-  std::array<std::vector<Point>, kLevels.size()> points_;  ///< one list per level, in the order of part()
+  std::array<std::vector<Point>, kLevels.size()> points_;  ///< points of each level, sorted by slower()
   std::string arriving_key_;
   std::vector<Point> arriving_;  ///< points of the first level while it is incomplete
   std::size_t version_ = 0;

@@ -44,8 +44,9 @@ std::optional<double> rms_of(const std::vector<Measurement>& residuals);  ///< r
 /// The scene keys of the numbers that vary in fits. Each key has a range if the user typed one.
 using FitMarks = std::map<std::string, std::optional<FitRange>>;
 
-/// The range of a number in fits: the typed range in `marks`, otherwise the range of the slider (range_in), extended to
-/// include `value`, but above 0 for k. A fit starts at the number in this range that is nearest to `value`.
+/// The range of a number in a fit, and the start of the fit. `value` is the number in the scene. The range is the one
+/// in `marks` if the user typed one. Otherwise it is the slider's range, extended to contain `value`; for k it begins
+/// above 0. The fit starts at the number in the range that is nearest to `value`.
 FitRange fit_range(const FitMarks& marks, const Scene& scene, const Control& control, double value);
 
 struct FitJob {
@@ -61,7 +62,7 @@ Fit run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress,
 /// Position in Fit::minima of the minimum nearest to the start. Distances are measured in FitRange::coordinate().
 std::size_t nearest_minimum(const Fit& fit, const FitJob& job);
 
-std::string fit_text(const Fit& fit, std::size_t chosen);  ///< one line about minimum number `chosen`
+std::string fit_text(const Fit& fit, std::size_t chosen);  ///< one line about Fit::minima[chosen]
 std::string interval_text(const FitInterval& interval);    ///< "1.2 to 1.5"; "open" for an end without a value
 
 }  // namespace dolp::explore

@@ -58,13 +58,13 @@ struct ImagePolarisation {
 /// if one of them is missing or not good. The electric field is along `azimuth_deg` if Q < 0 (p), else perpendicular.
 std::optional<ImagePolarisation> polarisation_at(const std::vector<Point>& curve, double theta_deg, double azimuth_deg);
 
-/// DOLP of a bistatic scene for all directions of the source: for each of its azimuths, a curve over its zenith.
+/// DOLP of a bistatic scene for all directions of the source: one curve over the source's zenith for each azimuth.
 class SourceSky {
  public:
   static constexpr std::size_t kZeniths = 31;   ///< 0 to 90 degrees
   static constexpr std::size_t kAzimuths = 37;  ///< 0 to 180 degrees; the other half of the sky is the mirror image
 
-  /// Switches to `scene`. `key` identifies its sky and is the same for all azimuths of the source.
+  /// Switches to `scene`. `key` identifies the scene, but not the azimuth of the source: this object has all azimuths.
   void follow(const std::string& key, const Scene& scene);
   std::vector<Job> wanted() const {  // one job for each azimuth that is not computed yet
     std::vector<Job> jobs;

@@ -37,7 +37,7 @@ Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list
 
 /// The results at a point, in the units that `dolp table` uses.
 struct Point : PointResult {
-  double theta_deg = 0.0;  ///< meaningless if the point is part of a grid
+  double theta_deg = 0.0;  ///< from the first column of the list; meaningless for a grid
 
   /// True if the status has no bit that makes DOLP meaningless or voids its error bound.
   bool is_good() const { return promises_dolp(status) && std::isfinite(values[Quantity::kDolp]); }
@@ -56,7 +56,7 @@ struct PlottedDescription {
   const char* name;               ///< name in UTF-8
   const char* meaning;            ///< text in UTF-8, with the equation
   bool in_percent;                ///< true: plots show 100 times the value
-  bool needs_rho;                 ///< true: computed from rho, so that runs must not drop effects that change only rho
+  bool needs_rho;                 ///< true: computed from rho, so a run must keep effects that change only rho
   double (*value)(const Point&);  ///< NaN where the model gives no value
   bool is_signed = false;
 

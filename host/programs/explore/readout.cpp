@@ -23,8 +23,8 @@ struct Part {
   double q_over_i;  ///< contribution of the effect to Q/I at the peak
 };
 
-/// The contributions of emission, source and surroundings to Q/I at the peak. Peak::without() lacks an effect if the
-/// scene is invalid without it. The contribution of this effect is Q/I minus the other contributions.
+/// The contributions of emission, source and surroundings to Q/I at the peak. The class Peak knows them only for
+/// effects that can be removed. If the scene is invalid without an effect, its contribution is Q/I minus the others.
 std::vector<Part> radiating_parts(const Session& session) {
   const Peak& peak = session.peak();
   double rest = peak.answer()->at[Quantity::kQOverI];

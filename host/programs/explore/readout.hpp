@@ -4,13 +4,13 @@
 
 namespace dolp::explore {
 
-/// A text to add to a curve's name: ", the scene before" if its points are old, ", coarse" if they are few, or "".
+/// Added to a curve's name: ", the scene before" if it shows an earlier scene, ", coarse" if its points are few, or "".
 const char* remark(const Session& session, const Curve& curve);
 std::string curve_name(const Session& session);  ///< describes the surface of the curve on display
 std::string overlay_name(const Session& session);
 /// The name of a pin: as typed by the user, otherwise its material and how it differs from the current scene.
 std::string pin_name(const Session& session, const Pin& pin);
-const char* stale_text(bool is_stale);           ///< ", the scene before" or ""
+const char* stale_text(bool is_stale);           ///< if true, ", the scene before"; otherwise ""
 std::string peak_text(const Session& session);   ///< position of the maximum, and its uncertainty
 std::string cause_text(const Session& session);  ///< the parts of Q/I at the maximum: emission, source, surroundings
 std::string no_residuals_text(const Session& session, const Scale& theta);  ///< why the plot shows no residuals, or ""
@@ -19,7 +19,7 @@ std::string cursor_text(const Session& session);
 std::string without_text(const Session& session, const std::string& effect);
 /// The numbers of without_text() in a sentence. Empty if without_text() has no numbers.
 std::string without_words(const Session& session, const std::string& effect);
-std::vector<std::string> cost_lines(const Session& session);  ///< time, work and error of the finished curve
+std::vector<std::string> cost_lines(const Session& session);  ///< time, evaluations and error of the finished curve
 std::string table_command(const SceneEdits& edits);           ///< a shell command that writes the scene's table
 /// JSON for tools/plot_view.py: the visible curves with the axes `x` and `y`, the measured points, and the map if the
 /// window shows it. Values have the units of the labels. A value is null where the model gives none.

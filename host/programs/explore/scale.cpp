@@ -9,7 +9,7 @@
 namespace dolp::explore {
 namespace {
 
-constexpr double kRounding = 1e-9;  // ticks may lie outside the range by this share of the step or of the range's end
+constexpr double kRounding = 1e-9;  // relative tolerance: rounding errors may move a tick beyond the end of the range
 
 std::vector<double> linear_ticks(double low, double high, std::size_t most) {
   const double rough = (high - low) / static_cast<double>(most);

@@ -22,7 +22,7 @@ struct Scale {
     return is_log ? std::log(value / from) / std::log(to / from) : (value - from) / (to - from);
   }
   double clamp(double value) const { return std::clamp(value, from, to); }
-  double rounded(double position) const;                ///< value(position) with four digits, in the range
+  double rounded(double position) const;                ///< value(position) with four significant digits, clamped
   std::vector<double> values(std::size_t count) const;  ///< `count` values at equal steps of position
   Scale between(double first, double last) const { return {value(first), value(last), is_log}; }
   /// This range, shifted so that it lies in `all`. If this range is larger than `all`, returns `all`.
@@ -36,12 +36,12 @@ struct Scale {
   Scale including(double value) const {
     return is_log && !(value > 0.0) ? *this : Scale{std::min(from, value), std::max(to, value), is_log};
   }
-  /// This range on a linear or logarithmic scale. If from <= 0, the logarithmic range starts at to / 180.
+  /// This range, made linear or logarithmic. If from <= 0, a logarithmic range begins at to / 180: 0.5° for to = 90°.
   Scale with_log(bool wants_log) const;
 
-  /// At most `most` (at least 2) round values in the range. A linear range has multiples of 1, 2 or 5 times a power of
-  /// ten. A logarithmic range has 1, 2 and 5 times powers of ten. If these are fewer than three, it has the values of a
-  /// linear range. If they are more than `most`, it has only powers of ten, or every nth power.
+  /// Round values for at most `most` ticks (`most` >= 2). A linear range has multiples of 1, 2 or 5 times a power of
+  /// ten. A logarithmic range has 1, 2 and 5 times powers of ten. If it contains fewer than three such values, it gets
+  /// the ticks of a linear range. If it contains too many, it gets all powers of ten, or some at equal distances.
   std::vector<double> ticks(std::size_t most) const;
 
   friend bool operator==(const Scale&, const Scale&) = default;

@@ -130,8 +130,8 @@ bool replaces(const Setting& change, const std::string& other) {
   return std::ranges::count(described(key).rivals, other) > 0;
 }
 
-/// Settings that conflict with no other choice, for change_with_needed(). Sigma replaces a wind speed, because a wind
-/// speed requires Gaussian slopes. Vapour and temperature of the air are removed: they require a built-in sky.
+/// Settings that conflict with nothing, so that change_with_needed() can try them. A value of sigma replaces a wind
+/// speed, which requires Gaussian slopes. Vapour and temperature of the air are removed: they require a built-in sky.
 std::vector<Setting> compatible_words(const Scene& scene) {
   std::vector<Setting> words = {{"surface.masking", "v-cavity"},    {"surface.scattering", "single"},
                                 {"emission.model", "moments"},      {"emission.bracket", false},
@@ -306,7 +306,7 @@ std::vector<Setting> change_with_needed(SceneEdits& edits, const std::function<v
   std::vector<Setting> needed;
   std::optional<SceneEdits> changed = changed_after(needed);
   if (!changed) changed = changed_after(needed = compatible_words(edits.scene()));
-  if (!changed) change(edits);  // fails as before, but throws its InputError
+  if (!changed) change(edits);  // fails again; now the caller gets the InputError
   for (std::size_t i = needed.size(); i-- > 0;) {
     std::vector<Setting> fewer = needed;
     fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));

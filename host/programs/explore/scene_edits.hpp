@@ -42,8 +42,8 @@ std::string table_of(const std::string& key);                ///< "surface.coati
 std::string unit_text(const Key& key);                       ///< unit for display: "°" for "degree", "" for "1"
 bool is_bistatic(const Scene& scene);
 
-/// The surface of a scene in few words: "cauchy σ 0.15 q 3, smith, n 1.5 k 0.1". Leaves out words about roughness that
-/// the name of `other` has too. If the surfaces are equal, adds other numbers in which the scenes differ.
+/// The surface of a scene in few words: "cauchy σ 0.15 q 3, smith, n 1.5 k 0.1". If `other` is given, omits each word
+/// before the material that is the same for `other`. If the surfaces are equal, adds what else differs: "T 300 K".
 std::string surface_name(const Scene& scene, const Scene* other = nullptr);
 
 /// A scene file with changes. `dolp eval` computes the same results from the file if --set makes the same changes.
@@ -64,10 +64,10 @@ class SceneEdits {
   const Scene& opened() const { return opened_; }
   bool is_changed() const { return changes() != saved_; }
   void note_saved() { saved_ = changes(); }  ///< makes is_changed() false until the next change
-  /// Becomes a copy of `other`. If both have the same scene file, the last note_saved() of this object still counts.
+  /// Becomes a copy of `other`. If both have the same scene file, keeps the changes that note_saved() stored.
   void go_to(const SceneEdits& other);
   bool is_same_scene(const SceneEdits& other) const { return is_same_file(other) && changes() == other.changes(); }
-  const std::vector<Setting>& changes() const { return scene_.settings(); }  ///< at first: opened().settings()
+  const std::vector<Setting>& changes() const { return scene_.settings(); }  ///< initially opened().settings()
   std::vector<Setting> changes_without(const std::vector<std::string>& keys) const;
 
  private:
@@ -87,8 +87,8 @@ std::vector<Film> films_of(const Scene& scene);      ///< the outermost film fir
 Setting coating_of(const std::vector<Film>& films);  ///< setting that gives a scene these films
 std::string word_of(const Value& value);             ///< text of a value, without quotes
 
-/// Applies a change. If the scene refuses it because of other choices, also changes these choices, as few as possible,
-/// and returns their new values. Errors: InputError if the scene still refuses; the edits then stay unchanged.
+/// Applies `change`. If it conflicts with earlier choices in the scene, also replaces those that must be replaced, and
+/// returns their new values. Errors: InputError if the scene refuses `change` all the same; `edits` is then unchanged.
 std::vector<Setting> change_with_needed(SceneEdits& edits, const std::function<void(SceneEdits&)>& change);
 
 /// A sky whose brightness temperature is a linear function of the zenith angle.

@@ -31,7 +31,8 @@ struct JobList {
   void add(std::vector<Job> more) { std::ranges::move(more, std::back_inserter(jobs)); }
 };
 
-/// Sets axis.scale to the user's range if the scene accepts it. Otherwise wavelengths get the range with known n and k.
+/// Sets axis.scale to the user's range if the scene accepts it. Otherwise limits a range of wavelengths to the part in
+/// which n and k are known. Returns true if axis.scale can be drawn.
 bool find_range(const Scene& scene, const View& view, MapAxis& axis) {
   const std::optional<Scale> typed = view.range(axis.label);
   if (typed && refusal(scene, axis, *typed).empty()) {
@@ -316,7 +317,7 @@ void Session::follow_map() {
 void Session::follow_sweeps(const std::string& content) {
   constexpr std::size_t kSpectrum = 121;
   constexpr std::size_t kSmooth = 901;  // number of wavelengths, enough to show interference fringes of films
-  constexpr double kWidth = 2.0;        // the range of the axis is [from_um / kWidth, to_um * kWidth]
+  constexpr double kWidth = 2.0;        // the wavelength axis extends beyond the band by this factor at each end
   const bool is_spectrum = shows(Panel::kSpectrum);
   if (!is_spectrum && !shows(Panel::kSmooth)) return;
   spectral_scene_ = at_one_wavelength(scene());

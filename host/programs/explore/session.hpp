@@ -27,7 +27,7 @@ struct View {
   double theta_max_deg = 90.0;  ///< largest zenith of the plots and of the search for the maximum
   std::string map_x = "theta";  ///< name of the x axis; if the scene lacks this axis, the map takes another one
   std::string map_y = "sigma";
-  /// Ranges that the user chose, by the name of the axis: the label of an axis of the heat map, or a name listed below.
+  /// Ranges that the user chose. The keys are kZeniths, kValues, kColours, and MapAxis::label for other axes.
   std::map<std::string, Scale> ranges = {};
   Panel panel = Panel::kMap;
   std::size_t mueller_row = 0;  ///< row and column, from 0, of the Mueller element in the view "pBRDF"
@@ -135,7 +135,7 @@ class Session {
   const std::vector<Snapshot>& snapshots() const { return state_.snapshots; }
   const HeatMap& map() const { return map_; }
   const SourceSky& source_sky() const { return source_sky_; }
-  const Scene& spectral_scene() const { return spectral_scene_; }  ///< result of at_one_wavelength()
+  const Scene& spectral_scene() const { return spectral_scene_; }  ///< scene() at one wavelength instead of a band
   const MapAxis& wavelengths() const { return wavelengths_; }      ///< axis of the plots over wavelength
   const Sweep& spectrum() const { return spectrum_; }              ///< results at the cursor's zenith, over wavelength
   const Sweep& smooth_spectrum() const { return smooth_spectrum_; }  ///< results for sigma = 0, over wavelength
@@ -203,10 +203,10 @@ class Session {
   Residuals residuals_;
   std::optional<Fit> fit_;
   std::optional<SceneEdits> fit_edits_;  ///< the scene that was fitted
-  std::optional<SceneEdits> visited_;    ///< the scene at the minimum of fit_ that was visited last
+  std::optional<SceneEdits> visited_;    ///< the scene after the last visit_minimum()
   std::size_t minimum_ = 0;
   std::vector<Effect> effects_;
-  std::pair<std::string, double> influences_of_;  ///< key of the curve, and zenith, to which effects_ belong
+  std::pair<std::string, double> influences_of_;  ///< curve (JobPart::key) and zenith of the influences in effects_
   Message message_;
   std::vector<std::string> remarks_;  ///< remarks on the scene that message() has shown before
   bool is_changed_ = true;

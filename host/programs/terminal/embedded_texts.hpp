@@ -8,7 +8,7 @@ namespace dolp {
 std::string_view embedded_night_paint_toml();  ///< a scene for new users
 std::string_view embedded_plot_view_py();      ///< a script that draws the plots of the window
 
-// Completion scripts of shells. Each calls `dolp completion words -- WORD... :CURRENT` to complete a command line.
+// Scripts for shells. They call `dolp completion words -- WORD... :CURRENT` to complete the unfinished word CURRENT.
 std::string_view embedded_dolp_bash();
 std::string_view embedded_dolp_fish();
 std::string_view embedded_dolp_zsh();

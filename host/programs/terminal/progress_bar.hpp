@@ -7,8 +7,7 @@
 
 namespace dolp {
 
-/// Draws a bar with rate and remaining time on stderr, if stderr is a terminal and `quiet` is false. After the first
-/// call of the callback, a signal such as Ctrl+C does not end the program; instead, the callback returns false.
+/// Draws a bar with rate and remaining time on stderr, if stderr is a terminal and `quiet` is false.
 class ProgressBar {
  public:
   explicit ProgressBar(bool quiet);
@@ -16,7 +15,8 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// A function that draws the bar, and returns false after an interrupt. The ProgressBar must outlive this function.
+  /// Returns a function that draws the bar. From its first call on, a signal such as Ctrl+C does not end the program;
+  /// instead, the function returns false. The ProgressBar must outlive the function.
   Progress callback();
 
   /// Restarts the time measurement. From now on the bar counts `what`, a plural, instead of "entries".

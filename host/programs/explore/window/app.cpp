@@ -18,7 +18,7 @@ constexpr double kBlink_s = 0.3;  // period in which the text cursor blinks
 // slow scenes take too long. With half the time, curves averaged over a wavelength band are not ready.
 constexpr double kCatchUp_s = 0.03;
 constexpr std::size_t kFramesAfterEvent = 4;  // ImGui draws some effects, such as an open list, some frames later
-constexpr std::size_t kFramesAfterNews = 2;   // without an event: ImGui needs a second frame to fit tables to new texts
+constexpr std::size_t kFramesAfterNews = 2;   // after results: ImGui needs a second frame to fit tables to new texts
 
 std::string times_text(std::vector<double> times_s) {
   if (times_s.empty()) return "none";

@@ -44,7 +44,7 @@ class App {
   void save_picture(const std::string& path) { actions_.picture_path = path; }
 
  private:
-  void exchange();  ///< passes results to the session and wanted jobs to the worker
+  void exchange();  ///< gives results to the session, and the jobs of Session::wanted() to the worker
   /// While the user drags a slider, waits briefly for the coarse curve, so that slider and curve move together.
   void catch_up();
   void draw();
@@ -52,7 +52,7 @@ class App {
   Session session_;
   Screen screen_;
   Evaluator evaluator_;
-  std::atomic<bool> is_catching_up_ = false;  ///< true while catch_up() waits for results; they then do not wake run()
+  std::atomic<bool> is_catching_up_ = false;  ///< while true, catch_up() waits for results, and they do not wake run()
   Worker worker_;
   Actions actions_;
   Input input_;
@@ -64,12 +64,12 @@ struct ProgramOptions : AppOptions {
   std::string measured_path;           ///< CSV of measured points; empty: none
   std::size_t frames = 0;              ///< number of frames to draw; 0: until the window is closed
   std::string screenshot_path;         ///< PNG of the last frame; empty: none
-  std::string panel = {};              ///< name of the first panel; empty: the map
+  std::string panel = {};              ///< panel that the window shows first; empty: the map
   std::string session_path = {};       ///< session file that replaces the scene; empty: none
-  std::vector<Setting> settings = {};  ///< options --set: changes of the scene in `session_path`
+  std::vector<Setting> settings = {};  ///< changes of the scene in `session_path`, from --set and similar options
 };
 
-/// Shows the window. If `frames` is given, prints the durations of the frames. Errors: those of dolp/errors.hpp.
+/// Shows the window. If `frames` is not 0, prints the durations of the frames. Errors: those of dolp/errors.hpp.
 void run_program(const Scene& scene, const ProgramOptions& options);
 
 }  // namespace dolp::explore

@@ -121,8 +121,8 @@ namespace {
 
 using Path = const std::string&;
 
-/// A path for saving: the name of the scene file with `ending`. The folder is the one in which the user last saved
-/// while this scene file was open; at first, the folder of the scene file.
+/// A path for saving: the name of the scene file without its suffix, followed by `ending`. If the file saved last
+/// belongs to this scene, the path is in the folder of that file, otherwise in the folder of the scene file.
 std::string suggested_path(const Ui& ui, const std::string& ending) {
   const std::filesystem::path file = ui.session.scene().name();
   const std::filesystem::path folder = file == ui.saved.first ? ui.saved.second : file.parent_path();
@@ -243,7 +243,7 @@ constexpr Command kCommands[] = {
     {"Help", "Shortcuts and hints", "Ctrl+H", [](Ui& ui) { ui.shows_help = true; }},
 };
 
-/// Names the area of the next menu or entry. If BeginMenu() opened a menu, name_item() would name another item.
+/// Names the area of the menu or entry drawn next. After BeginMenu() opens a menu, name_item() names a wrong item.
 void name_next(const std::string& name, const char* text) {
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   name_area(name, {corner, {corner.x + ImGui::CalcTextSize(text).x, corner.y + ImGui::GetTextLineHeight()}});

@@ -24,7 +24,7 @@ void heading(const char* text) {
   ImGui::Separator();
 }
 
-/// Draws a fitted interval as bars at the lower edge of the last slider. An open interval reaches the slider's end.
+/// Marks a fitted interval at the lower edge of the slider drawn last. Draws an open end at the slider's end.
 void draw_interval(const Control& control, const FitInterval& interval) {
   const ImVec2 corner = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
   const auto at = [&](const std::optional<double>& value, double otherwise) {
@@ -90,7 +90,7 @@ struct Controls {
     return session.message().is_error ? session.message().text : "";
   }
 
-  /// Calls `draw`. If this removes the error of the field `id`, also removes the message that shows the same error.
+  /// Calls `draw`. If the field `id` then no longer has an error, also removes this error from the session's message.
   void draw_fields(const std::string& id, const std::function<void()>& draw) {
     const std::string before = fields.reason(id);
     draw();

@@ -11,10 +11,9 @@ namespace dolp::explore {
 namespace {
 
 constexpr float kCurveWidth = 2.0F;
-// Heights in lines of text.
-constexpr float kRoomForTwo = 18.0F;        // in a higher view the legend has two lines
-constexpr float kRoomForResiduals = 17.0F;  // in a higher view a plot of residuals is below the curve
-constexpr float kLeastResiduals = 7.0F;
+constexpr float kRoomForTwo = 18.0F;        // height in lines of text; in a taller view, the legend has two lines
+constexpr float kRoomForResiduals = 17.0F;  // height in lines of text; a taller view also has a plot of residuals
+constexpr float kLeastResiduals = 7.0F;     // least height of the plot of residuals, in lines of text
 
 struct Shown {
   const Curve* curve;

@@ -105,8 +105,8 @@ void Input::begin_frame() {
   }
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
-  // Sets the mouse to its position at this event. If the window has the focus, the position may be outside the window,
-  // because the user may drag beyond the edge.
+  // Sets the mouse to its position at this event. A position outside the window counts only if the window has the
+  // focus, because then the user may be dragging beyond the edge.
   constexpr float kNowhere = std::numeric_limits<float>::lowest();
   const bool is_seen = is_inside_ || glfwGetWindowAttrib(window_, GLFW_FOCUSED) != 0;
   set_mouse(is_seen ? mouse_ : ImVec2(kNowhere, kNowhere), buttons_);

@@ -63,7 +63,7 @@ class Input {
   std::array<bool, 5> buttons_{};
 };
 
-/// True in the frame in which a key of GLFW goes down. ImGui::IsKeyPressed() has key codes that depend on its version.
+/// True in the frame in which the key with GLFW's code `key` goes down. ImGui's own codes depend on its version.
 bool is_pressed(int key);
 
 void name_item(const std::string& name);  ///< adds the area of the item drawn last to Input::areas()

@@ -19,7 +19,7 @@ Scale values_range(const std::vector<NamedLine>& lines, bool is_log) {
   return range_of(std::move(all), is_log);
 }
 
-/// Draws lines, with gaps at missing values. Their names are above the plot if `is_above` is true, otherwise inside.
+/// Draws lines, with gaps at missing values. The names of the lines are above the plot if `is_above`, otherwise in it.
 void draw_lines(const Plot& plot, const std::vector<double>& xs, const std::vector<NamedLine>& lines,
                 bool is_above = false) {
   plot.clip();
@@ -57,7 +57,8 @@ void mark_spectrum(const Plot& plot, const Scene& scene) {
   plot.unclip();
 }
 
-/// The line of a quantity along a sweep, with gaps where the model fails. It is dim until the sweep is finished.
+/// The line of a quantity over the zeniths or wavelengths of `sweep`, with gaps where the model fails. The line is
+/// faint while its points are outdated.
 NamedLine line_of(const Sweep& sweep, Plotted quantity, const CurveStyle& style, const std::string& name) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   NamedLine line{name, sweep.is_finished() ? style : stale(style), {}};

@@ -76,7 +76,7 @@ class Plot {
 };
 
 inline const ImVec2 kGap{std::numeric_limits<float>::quiet_NaN(), 0.0F};  ///< a point that makes a gap in a line
-/// Scales the width and the dashes with the size of the text.
+/// Draws a line through `points`. The width and the dashes scale with the size of the text.
 void draw_line(ImDrawList* list, const std::vector<ImVec2>& points, const CurveStyle& style, float width);
 
 /// Draws text. `at` is its upper left corner for `anchor` (0, 0), and its centre for `anchor` (0.5, 0.5).

@@ -19,9 +19,9 @@ class Texture {
   Texture& operator=(const Texture&) = delete;
   ~Texture();
 
-  /// Replaces the image by `count` rows of `count` colours, the lowest row first; a row begins on the left.
+  /// Replaces the image by `count` rows of `count` pixels, the lowest row first; a row begins on the left.
   void set(const std::vector<ImU32>& colours, std::size_t count);
-  /// Draws the image without the outer halves of its edge cells: `min` and `max` are the middles of the corner cells.
+  /// Draws the image with the centres of its corner pixels at `min` and `max`. Cuts off what lies beyond these points.
   void draw(ImDrawList* list, ImVec2 min, ImVec2 max) const;
 
  private:

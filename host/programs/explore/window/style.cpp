@@ -23,7 +23,6 @@ constexpr std::array kRedBlue = {Rgb{5, 48, 97},     Rgb{33, 102, 172},  Rgb{67,
                                  Rgb{209, 229, 240}, Rgb{247, 247, 247}, Rgb{253, 219, 199}, Rgb{244, 165, 130},
                                  Rgb{214, 96, 77},   Rgb{178, 24, 43},   Rgb{103, 0, 31}};
 
-// Colours of curves: first for the dark theme, then for the light theme.
 constexpr Themed kOrange{IM_COL32(230, 159, 0, 255), IM_COL32(196, 124, 0, 255)};
 constexpr Themed kSkyBlue{IM_COL32(86, 180, 233, 255), IM_COL32(0, 114, 178, 255)};
 constexpr Themed kGreen{IM_COL32(0, 158, 115, 255), IM_COL32(0, 134, 98, 255)};
@@ -146,7 +145,7 @@ void tooltip(const std::string& text) {
   const bool is_still = io.MouseDelta.x == 0.0F && io.MouseDelta.y == 0.0F && !ImGui::IsAnyMouseDown();
   if (!is_still) still_since_s = now_s;
   if (now_s - still_since_s < kTooltipDelay_s) return;
-  // The tooltip is beside the panel or above the item. Below the item it would hide other values.
+  // Puts the tooltip right of the ImGui window, or above the item if there is no room. Below, it would hide values.
   const float width = 28.0F * ImGui::GetFontSize();
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const ImVec2 first = ImGui::GetItemRectMin(), last = ImGui::GetItemRectMax();

@@ -32,13 +32,13 @@ struct CurveStyle {
   float gap;
 };
 
-/// The styles of the current curve, of the overlay, and of a pin with Pin::colour = `pin`.
-/// Source: M. Okabe, K. Ito, Color Universal Design (2008).
+/// Styles of the current curve, of the overlay, and of a pin. The overlay is the curve of the other slope distribution.
+/// A pin is a kept curve; `pin` is its Pin::colour. Colours: M. Okabe, K. Ito, Color Universal Design (2008).
 CurveStyle current_style();
 CurveStyle overlay_style();
 CurveStyle pin_style(std::size_t pin);
 CurveStyle stale(const CurveStyle& style);   ///< a fainter style, for outdated or hidden curves
-ImU32 band_colour(const CurveStyle& style);  ///< for the area between dolp_low and dolp_high
+ImU32 band_colour(const CurveStyle& style);  ///< the style's colour, but more transparent, to fill areas
 
 inline constexpr Themed kTextColour{IM_COL32(225, 228, 232, 255), IM_COL32(24, 26, 30, 255)};
 inline constexpr Themed kDimColour{IM_COL32(150, 156, 163, 255), IM_COL32(96, 101, 108, 255)};
@@ -58,7 +58,7 @@ inline constexpr Themed kCursorColour{IM_COL32(255, 255, 255, 200), IM_COL32(40,
 void load_font(float pixels);
 inline constexpr float kFontPixels = 15.0F;  ///< default size of the font
 
-float scaled(float pixels);  ///< converts a length, given for text of kFontPixels, to the current text size
+float scaled(float pixels);                ///< `pixels` times the current text size, divided by kFontPixels
 std::string shown(std::string_view text);  ///< `text`, or ascii(text) if the font has no Greek
 std::string ascii(std::string_view text);  ///< `text` with names instead of Greek letters and signs
 

@@ -13,7 +13,7 @@ void cell(const std::string& text, ImU32 colour = kTextColour) {
   coloured_text(colour, text);
 }
 
-/// The influence of an effect on DOLP in percentage points. "≤" marks the bound of a dropped effect, "≈" an estimate.
+/// Influence of an effect on DOLP in percentage points: "≤ bound" if the run drops the effect, otherwise "≈ estimate".
 std::string influence_text(const Effect& row) {
   if (!row.bound && !row.influence) return "";
   const double points = 100.0 * row.bound.value_or(row.influence.value_or(0.0));
@@ -27,7 +27,7 @@ bool is_stale(const Session& session) { return !session.effects().empty() && !se
 void draw_row(const Session& session, const Effect& row) {
   const bool is_absent = row.state == EffectState::kAbsent;
   const ImU32 colour = is_absent || is_stale(session) ? kDimColour : kTextColour;
-  const bool is_slopes = row.name == "distribution";  // without this effect the surface is smooth
+  const bool is_slopes = row.name == "distribution";  // removing this effect makes the surface smooth
   const std::string removed = is_slopes ? "roughness" : row.name;
   const std::string without = is_absent ? "" : without_text(session, removed);
   cell(row.name, colour);

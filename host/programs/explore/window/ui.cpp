@@ -276,7 +276,7 @@ void draw_all(Ui& ui, const std::function<void()>& catch_up) {
   ImGui::SetNextWindowPos(viewport->WorkPos);
   ImGui::SetNextWindowSize(viewport->WorkSize);
   ImGui::Begin("dolp", nullptr, kFixed);
-  ImGui::PushItemFlag(ImGuiItemFlags_NoTabStop, true);  // Tab skips all items but text fields, which clear this flag
+  ImGui::PushItemFlag(ImGuiItemFlags_NoTabStop, true);  // Tab stops only at text fields, which clear this flag
   const ImVec2 all = ImGui::GetContentRegionAvail();
   const float em = ImGui::GetFontSize();
   const float left = std::clamp(0.36F * all.x, 19.0F * em, 22.0F * em);

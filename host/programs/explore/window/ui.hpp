@@ -23,15 +23,15 @@ class Actions {
   // The next four functions start work in the background. save_plot() makes an .svg, .pdf or .png of curves and map.
   void save_plot(const std::string& path, const Scale& x, const Scale& y);
   void export_table(const std::string& path);
-  void find_true_error();
+  void find_true_error();  ///< compares DOLP of the curve with the evaluator `reference`
   void fit();
   void prefer(const std::function<void(Preferences&)>& change);  ///< changes and stores the preferences
   const Preferences& preferences() const { return preferences_; }
 
   void finish();  ///< calls BackgroundTask::finish() of all tasks
-  /// Path of the picture to save with this frame. Empty if there is none, or if a closed dialog is still visible.
+  /// Path of the picture to save with this frame. Empty if there is none, or while a closed dialog fades out.
   std::string due_picture() const { return Clock::now() < picture_time_ ? "" : picture_path; }
-  bool is_true_error_old() const;  ///< the true error belongs to an earlier curve
+  bool is_true_error_old() const;  ///< the last find_true_error() was for an earlier curve
 
   std::string picture_path;  ///< file of the picture to save; empty: no picture
   bool is_quitting = false;
@@ -58,9 +58,10 @@ struct Ui {
   ShapeView shape_view = {};
   CurveView curves = {};
   PathDialog dialog = {};
-  std::pair<std::string, std::filesystem::path> saved = {};  ///< scene file, and the folder in which it was saved last
+  /// A scene file, and the folder where the user last saved a file for this scene; suggested_path() uses this folder.
+  std::pair<std::string, std::filesystem::path> saved = {};
   bool is_narrow = false;
-  std::string page = "curve";  ///< page of a narrow window: "curve", "effects", "accuracy"; "" shows View::panel
+  std::string page = "curve";  ///< page of a narrow window: "curve", "effects", "accuracy"; "": the panel View::panel
   bool shows_help = false;
 };
 

@@ -29,8 +29,8 @@ class CurveView {
   const Scale& y() const { return y_; }
 
  private:
-  /// Sets x_ and y_ to the ranges in `zoom`, if the user chose such ranges. Otherwise sets x_ to `zeniths`, and y_ to
-  /// `values`, or to a wider range while the user drags a slider. At the end, sets `values` to y_.
+  /// Sets x_ and y_ to the ranges in `zoom`, which the user chose. Without such a range, x_ becomes `zeniths`, and y_
+  /// becomes `values`; but while the user drags a slider, y_ only grows. Copies y_ to `values`.
   void choose_axes(const Session& session, Zoom& zoom, const Scale& zeniths, Scale& values);
   void edit_axes(View& view, AxisEditor& editor, const Plot& plot, const std::string& values);
 
@@ -48,7 +48,7 @@ void draw_spectrum(Session& session, AxisEditor& editor, ImVec2 size);
 /// Draws the reflectances R_s and R_p of a facet over the local angle of incidence, and over wavelength at one angle.
 void draw_smooth(Session& session, AxisEditor& editor, ImVec2 size);
 
-/// Draws an element of the Mueller pBRDF in the plane of incidence, for light from the zenith of the cursor.
+/// Draws a Mueller pBRDF element over the view zenith in the plane of incidence, for light from the cursor's zenith.
 class ScatteringView {
  public:
   void draw(Session& session, ImVec2 size);
@@ -76,7 +76,7 @@ void draw_fit_result(Session& session);
 
 void draw_sky(const Session& session, ImVec2 size);  ///< DOLP over the directions of the source, as a polar map
 
-/// Stores in View::ranges the range that the user typed for an axis of wavelengths or of the map.
+/// Stores a typed range in View::ranges. `axis` is the axis of wavelengths or an axis of the map.
 void set_range(Session& session, const MapAxis& axis, const AxisEditor::Change& change);
 
 /// Draws map, contour lines, colour bar and cursor. A click or drag calls Session::set_map_cursor().
@@ -93,14 +93,14 @@ class MapView {
   };
   const PlottedDescription& quantity() const { return described(quantity_); }
   void update(const Session& session);
-  Scale colour_range() const;  ///< values of the first and of the last colour
+  Scale colour_range() const;  ///< automatic range of the values that the colours show
   ImU32 colour(double position) const;
   void edit_axes(Session& session, AxisEditor& editor, const Plot& plot);
   double colour_position(double value) const;
   void draw_contours(const Plot& plot) const;
   void draw_bar(const Plot& plot) const;
 
-  // The inputs of the last update(), which computed the members below.
+  // Inputs of the last update(). From them it computed the members from colour_scale_ to contours_.
   std::size_t version_ = 0;
   Plotted quantity_ = Plotted::kDolp;
   bool is_log_ = false;

@@ -80,7 +80,8 @@ std::optional<std::size_t> draw_list(const std::string& id, float width, const s
                                      const std::string& note, std::optional<std::size_t> chosen,
                                      const std::vector<ListEntry>& entries) {
   ImGui::SetNextItemWidth(width);
-  const ImVec2 corner = ImGui::GetCursorScreenPos();  // name_item() could name the open list instead
+  // Stores the area of the closed list. name_item() would store a wrong area while the list is open.
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
   name_area(id, {corner, {corner.x + ImGui::CalcItemWidth(), corner.y + ImGui::GetFrameHeight()}});
   std::optional<std::size_t> clicked;
   if (!ImGui::BeginCombo(("##" + id).c_str(), shown(current).c_str(), ImGuiComboFlags_HeightLarge)) {

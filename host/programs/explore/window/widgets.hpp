@@ -64,7 +64,7 @@ class AxisEditor {
     std::optional<Scale> range;  ///< typed range; empty: an automatic one
     bool is_log = false;
   };
-  using Check = std::function<std::string(const Scale& range)>;  ///< why the range is refused, or ""
+  using Check = std::function<std::string(const Scale& range)>;  ///< returns why a range is refused, or ""
 
   /// Draws the small window if the user opened it for the axis `label`. `numbers` is the area of the axis's numbers.
   std::optional<Change> draw(const std::string& label, const Area& numbers, const Scale& now, const Check& check);

@@ -44,7 +44,7 @@ auto interruptible(const Body& body) {
       const py::gil_scoped_release end_of_call;
       result.wait();
     }
-    throw interrupt;  // holds the Python exception of the signal, taken before the wait
+    throw interrupt;  // the exception that Python raised for the signal, such as KeyboardInterrupt
   }
   return result.get();
 }
@@ -109,7 +109,7 @@ dolp::Value value_of(const std::string& key, const py::handle& value) {
   if (py::isinstance<py::float_>(value)) return value.cast<double>();
   if (py::isinstance<py::str>(value)) return bytes_of(value);
   if (py::isinstance<py::list>(value) && py::len(value) > 0 && !py::isinstance<py::float_>(value[py::int_(0)]))
-    return dolp::TomlText{bytes_of(py::module_::import("json").attr("dumps")(value))};  // a list of names or of bands
+    return dolp::TomlText{bytes_of(py::module_::import("json").attr("dumps")(value))};  // a JSON list is valid TOML
   if (!py::isinstance<py::dict>(value)) return value.cast<std::vector<double>>();
   const auto range = value.cast<std::map<std::string, py::object>>();
   for (const auto& [name, item] : range) {

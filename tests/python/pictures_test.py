@@ -58,8 +58,8 @@ class Pictures(PackageCase):
             table = plot_table.Slice(dataset, dict.fromkeys(plot_table.SYMBOLS))
         self.assertEqual(table.place, "q = 5, n = 1.4, k = 0.2")
         np.testing.assert_allclose(table.sigma[plot_table.drawn_columns(table)], [0.1, 0.18, 0.24, 0.34, 0.42, 0.5])
-        # A picture shows the peak of every curve. At 90 degrees DOLP may have a limit although I has none, as with a
-        # diffuse part. Then the picture does not show this limit.
+        # The vertical axis of a picture includes the peak of every curve. With a diffuse part, I has no value at 90
+        # degrees. A table then has the limit of DOLP towards 90 degrees, but a picture does not show it.
         for diffuse in (0, 0.1):
             dolp.write_table(self.scene.with_({"surface.diffuse": diffuse, "surface.masking": "v-cavity"}), self.folder / "t.nc",
                              evaluator="cpu", theta_deg=np.linspace(0, 90, 91), sigma=[0, *np.linspace(0.5, 2, 60)], q=2)

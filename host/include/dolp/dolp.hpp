@@ -14,8 +14,8 @@
 // Units and names are as on the command line and in files: angles in degrees, wavelengths in um, temperatures in K.
 // On the same device the library and the command line compute the same numbers, bit for bit.
 //
-// Errors: exceptions derived from std::exception. A call that throws changes nothing and leaves no file; only a
-// cancelled write_table leaves its finished parts.
+// Errors: exceptions derived from std::exception. A call that throws changes nothing and leaves no file. Only
+// write_table leaves the parts of its table that are finished.
 // Threads: each thread may use separate objects. Several threads may also share an Evaluator or a Table; their calls
 // then wait for each other. A callback (`progress`, `phase` or `take`) must not call the Evaluator that called it; such
 // a call throws InputError.
@@ -95,9 +95,9 @@ class DOLP_EXPORT Scene {
   /// The given or default value of a key, in the unit of the key. Empty if the scene does not use the key: a surface
   /// with a material does not use surface.n. Errors: InputError if the key is unknown or its value is not a number.
   std::optional<double> number(std::string_view key) const;
-  /// The word or text of a key; "true" or "false" for a flag. Empty if the scene does not use the key or has no text.
+  /// A key's word or text; "true" or "false" for a flag. Empty if the text is empty or the scene does not use the key.
   std::optional<std::string> word(std::string_view key) const;
-  /// The values of a key whose value is an axis or a pair of numbers. Empty if the scene lacks the key.
+  /// The numbers of a key that has an axis, a pair of numbers or a list of pairs. Empty if the scene lacks the key.
   std::vector<double> numbers(std::string_view key) const;
   /// The materials and bands in [grid]. In points, the columns material and band_um contain positions in these lists.
   const AxisLabels& labels() const;
@@ -132,8 +132,8 @@ struct BuiltInMaterial {
   std::string source;
 };
 DOLP_EXPORT std::vector<BuiltInMaterial> materials();
-/// The built-in material with this full name; else the only one whose name begins with these words; else the only one
-/// whose name contains these words. Ignores case. Errors: InputError.
+/// The built-in material with this name. A part of the name, in whole words, is enough if only one material has it.
+/// Materials whose names begin with the part come first. Ignores case. Errors: InputError if none or several remain.
 DOLP_EXPORT BuiltInMaterial material(const std::string& name);
 
 /// Results at points, in the order of the points: computed, or interpolated in a table.
@@ -153,21 +153,21 @@ class DOLP_EXPORT Table {
  public:
   /// Reads a table that dolp wrote as .nc. Errors: InputError.
   static Table read(const std::filesystem::path& path);
-  /// Makes a table, for example from a part of another table. Then `values.attributes` may be the file_attributes()
-  /// of the other table. Error messages begin with `name`. Errors: InputError if an axis, attribute or column is wrong.
+  /// Makes a table. For a part of another table, `values.attributes` may be the file_attributes() of the other table.
+  /// Error messages begin with `name`. Errors: InputError if an axis, attribute or column is wrong.
   static Table of(TableValues values, const std::string& name = "table");
 
   const TableValues& values() const;
-  /// The attributes in a file of this table: values().attributes and further ones, such as a hash of the values.
+  /// The attributes that write() gives a .nc file: values().attributes and a few more, such as a hash of the values.
   std::vector<Attribute> file_attributes() const;
 
   Table(const Table&) = default;
   Table& operator=(const Table&) = default;
   ~Table() = default;
 
-  /// Interpolates in the table at points. An axis without a column in `points` gets its only value or, if it has
-  /// several, the value in the table's scene. Error estimates include the interpolation error. Errors: InputError for a
-  /// point outside the axes, and for a table that lacks the attribute `scene`, an axis or a quantity that lookup needs.
+  /// Interpolates in the table at points. If `points` has no column for an axis, all points get the only value on this
+  /// axis or, if there are several, the value in the table's scene. Error estimates include the interpolation error.
+  /// Errors: InputError for a point outside the axes, or if the table lacks a necessary axis, quantity or attribute.
   Results lookup(const std::vector<Column>& points, const Progress& progress = {}) const;
 
   /// Writes the table as .nc, .csv or .npy, by the suffix. The file is complete or absent. Errors: InputError, IoError.
@@ -202,15 +202,15 @@ class DOLP_EXPORT Evaluator {
   /// Computes the table part by part, so that memory does not grow with the table. `take` gets each part as a Table
   /// whose axes have only some of the values. An exception from `take` ends the call.
   void table_parts(const Scene& scene, const std::function<void(const Table&)>& take, const RunOptions& options = {});
-  /// Writes the table to a file (.nc, .csv or .npy) part by part, so that memory does not grow with the table. A
-  /// cancelled or killed call leaves its finished parts beside the file. A later call with `resume` uses these parts.
-  /// With `shard`, writes only this shard, to a file with "N-of-M" before its suffix. Keeps a complete .nc shard of the
-  /// same program, scene, n, k, irradiance E0, evaluator and keep_all, without computing. Errors: InputError, IoError.
+  /// Writes the table to a file (.nc, .csv or .npy), part by part as in table_parts(). A cancelled or killed call
+  /// leaves its finished parts beside the file, and a later call with `resume` uses these parts. With `shard`, writes
+  /// only this shard, to a file with "N-of-M" before its suffix. A complete .nc file of this shard stays if it has the
+  /// same program, scene, n, k, irradiance, evaluator and keep_all. Errors: InputError, IoError.
   Report write_table(const Scene& scene, const std::filesystem::path& path, const RunOptions& options = {},
                      const Shard& shard = {});
   /// Computes a response table (see response.hpp) and the albedo over the scene's theta, sigma and q. First applies
   /// surface_settings() to the scene, because material, wavelength and radiation do not influence the table. The
-  /// tolerance applies to response_error / albedo. Errors: InputError if the scattering is "multiple".
+  /// scene's tolerance limits response_error / albedo. Errors: InputError if the scattering is "multiple".
   Table response(const Scene& scene, const RunOptions& options = {});
   /// Writes the response table to a .nc file part by part. Errors: InputError, IoError.
   Report write_response(const Scene& scene, const std::filesystem::path& path, const RunOptions& options = {});
@@ -244,7 +244,7 @@ DOLP_EXPORT Report write_lookup(const std::filesystem::path& table, const std::f
 DOLP_EXPORT Report merge(const std::vector<std::filesystem::path>& shards, const std::filesystem::path& path,
                          const std::string& history = {});
 
-/// All effects of the scene, and what a run at these points does with them. Effect::influence has the tolerance 1e-3.
+/// All effects of the scene, and what a run at these points does with them.
 DOLP_EXPORT std::vector<Effect> effects(const Scene& scene, const std::vector<Column>& points, bool keep_all = false);
 
 /// The plan for a table over the scene's [grid]: kept and dropped effects, reasons, memory, and estimated CPU time.

@@ -10,7 +10,7 @@ enum class EffectState : std::uint8_t {
   kAbsent,     ///< the scene does not have the effect
   kKept,       ///< computed
   kDropped,    ///< the run leaves the effect out, because a bound shows that the result hardly changes
-  kNotNeeded,  ///< a choice of the model on which no kept effect depends, such as the masking without a specular part
+  kNotNeeded,  ///< a choice of the model that no kept effect uses, for example the masking if there is no specular part
 };
 
 constexpr const char* name_of(EffectState state) {
@@ -27,7 +27,7 @@ enum class Part : std::uint8_t {
   kEmission,
   kPathRadiance,
   kDiffuse,
-  kProfile  ///< difference of the radiance of the surroundings from its mean over directions
+  kProfile  ///< radiance of the surroundings minus its mean over directions
 };
 
 /// An effect that a scene can have, and what a run over given entries does with it.
@@ -39,7 +39,7 @@ struct Effect {
   std::optional<Part> part = {};  ///< contribution that the effect adds; empty for choices of the model
   /// For a dropped effect: upper bound, over all entries, of the change of (Q/I, U/I) that dropping it causes.
   std::optional<double> bound = {};
-  /// For a kept effect: the largest change of (Q/I, U/I) that dropping it would cause at a few examined entries.
+  /// For a kept effect: the largest change of (Q/I, U/I) without it, at a few entries computed with tolerance 1e-3.
   std::optional<double> influence = {};
 };
 

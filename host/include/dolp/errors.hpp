@@ -16,7 +16,7 @@ class DOLP_EXPORT InputError : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
-/// No Vulkan device is usable, the device was lost, or this process is a fork of one that uses Vulkan (status 3).
+/// No Vulkan device is usable, the device was lost, or this process is a fork of one that uses Vulkan (exit status 3).
 class DOLP_EXPORT DeviceError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

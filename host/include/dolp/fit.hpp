@@ -42,12 +42,12 @@ struct DOLP_EXPORT MeasuredData {
   /// Measured values are fractions. Comment lines begin with #. Errors: InputError with file, line, column and value.
   static MeasuredData from_csv(const std::string& csv, const std::string& name = "data",
                                std::vector<Setting> settings = {});
-  /// Reads the CSV and the settings of "FILE" or "FILE:KEY=VALUE,KEY=VALUE". FILE "-" is stdin. Errors: InputError.
+  /// Reads "FILE" or "FILE:KEY=VALUE,KEY=VALUE": the CSV FILE ("-" is stdin), and settings. Errors: InputError.
   static MeasuredData read(const std::string& argument);
 };
 
-/// A number of the scene that a fit varies from `low` to `high`. The fit searches along a coordinate from 0 at `low` to
-/// 1 at `high`. The coordinate is linear in the number or, if is_logarithmic(), in its logarithm.
+/// The range from `low` to `high` over which a fit varies the number of a key. The fit searches along a coordinate that
+/// is 0 at `low` and 1 at `high`. It is linear in the number or, if is_logarithmic(), in the logarithm of the number.
 struct DOLP_EXPORT FitRange {
   std::string key;
   double low = 0.0;
@@ -82,9 +82,9 @@ DOLP_EXPORT const std::vector<std::string>& loss_names();
 /// The systematic error that a fit assumes in the model.
 enum class ModelError {
   kNone,
-  /// The true value at a point may lie anywhere in the bracket: the range that is possible with all bounces of light
-  /// (key emission.bracket). A residual is the distance of the measured value from the bracket. The 95 % interval of a
-  /// parameter contains all values with chi^2 below the 95 % quantile for one degree of freedom per point.
+  /// The true value may lie anywhere in the bracket: the range that is possible with all bounces of light (key
+  /// emission.bracket). A residual is the distance of a measured value from the bracket. In the 95 % interval, chi^2 is
+  /// below the 95 % quantile of the chi^2 distribution with one degree of freedom per point.
   kBracket,
 };
 
@@ -101,7 +101,7 @@ struct FitOptions {
   std::function<void(const std::string&)> phase = {};  ///< gets the name of each phase before it begins; may be empty
   Loss loss = Loss::kSquares;                          ///< all except kSquares need data with uncertainties
   ModelError model_error = ModelError::kNone;          ///< kBracket needs data with uncertainties
-  std::vector<Comparison> compare = {};                ///< each combination of the compared words gets a fit
+  std::vector<Comparison> compare = {};                ///< the fit is repeated with each combination of words
   std::filesystem::path output = {};  ///< file for the scene with the fitted values; "-" is stdout; empty: no file
   /// File (.png, .pdf or .svg) for a picture with data, model and residuals, which Matplotlib draws. Empty: no picture.
   std::filesystem::path plot = {};
@@ -120,7 +120,7 @@ struct FitParameter {
   std::string key;
   double value = 0.0;
   std::optional<double> standard_error;  ///< from the covariance matrix, as if parameters at a bound were fixed
-  /// 68.27 % and 95 % intervals. Without uncertainties they need more points than parameters; else all ends are empty.
+  /// 68.27 % and 95 % intervals. All ends are empty if data without uncertainties have no more points than parameters.
   FitInterval interval_68, interval_95;
   /// The intervals with all uncertainties multiplied by sqrt(reduced chi^2). Empty unless the fit is doubtful or bad.
   std::optional<FitInterval> scaled_68 = {}, scaled_95 = {};
@@ -136,8 +136,8 @@ struct FitMinimum {
 struct FitNumbers {
   std::vector<FitParameter> parameters = {};  ///< in the order of FitOptions::vary
   double chi_square = 0.0;                    ///< sum of the losses of all residuals; the loss kSquares is the square
-  std::size_t degrees_of_freedom = 0;         ///< points minus parameters, but all points with ModelError::kBracket
-  std::optional<double> p_value = {};         ///< empty without uncertainties, and for losses except kSquares
+  std::size_t degrees_of_freedom = 0;         ///< points minus parameters; with kBracket, the number of points
+  std::optional<double> p_value = {};         ///< empty unless data have uncertainties and the loss is kSquares
   std::string fit_quality = {};         ///< "good", "doubtful" (p < 0.05), "bad" (p < 0.001); empty without p_value
   std::vector<FitMinimum> minima = {};  ///< all minima that the fit found, the best first
   std::vector<std::string> degeneracies = {};  ///< combinations of parameters that the data do not determine, in words

@@ -25,7 +25,7 @@ inline constexpr NumberRange kPositiveRange{0.0, std::numeric_limits<double>::in
 inline constexpr NumberRange kWavelengthUmRange{0.1, 1e4};
 /// If all wavelengths in um are above this number, they are probably in nm.
 inline constexpr double kLikelyNanometres = 1000.0;
-/// A temperature in K below this is probably in degrees Celsius: few surfaces are colder than -213 degrees Celsius.
+/// A temperature below this number is probably in degrees Celsius instead of K, because few surfaces are so cold.
 inline constexpr double kLikelyCelsius_K = 60.0;
 inline constexpr NumberRange kToleranceRange{1e-10, 1e-2};
 inline constexpr NumberRange kAxisCountRange{1.0, 1e6};

@@ -10,7 +10,7 @@
 
 namespace dolp {
 
-/// Values of one variable at scattered points. `name` is the name of the column in CSV files of points: theta_deg,
+/// Values of one variable at a list of points. `name` is the name of the column in CSV files of points: theta_deg,
 /// sigma, q, n, k, wavelength_um, ... For Mueller matrices: theta_i_deg, theta_r_deg, delta_phi_deg, sigma, q, n, k.
 struct Column {
   std::string name;
@@ -24,7 +24,7 @@ struct EvaluatorOptions {
   std::string evaluator = "vulkan";  ///< vulkan, cpu (kernel source compiled as C++) or reference (adaptive quadrature)
   /// For the evaluator "vulkan": position in devices(), or a part of the name of a device. Empty means the best device.
   std::string device = {};
-  /// Makes dispatches short. Then a call ends soon after Progress returns false, and other programs can draw meanwhile.
+  /// Splits work on the GPU into short dispatches. Then a cancelled call ends soon, and other programs can draw, too.
   bool is_interactive = false;
 };
 
@@ -45,7 +45,7 @@ struct Shard {
 struct TableCheckOptions {
   std::size_t samples = 64;  ///< number of entries to compute again; all entries if the table has fewer
   std::uint64_t seed = 1;    ///< seed for the choice of entries
-  bool named_files = false;  ///< read n, k and E0 from the files that the scene names, not from the table
+  bool named_files = false;  ///< read n, k and irradiance from the files that the scene names, not from the table
   Progress progress = {};    ///< may be empty
 };
 

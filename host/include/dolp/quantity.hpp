@@ -16,8 +16,8 @@ namespace dolp {
 /// status after the last one.
 /// Units: Stokes parameters are exitances, in W m-2 um-1 at one wavelength and W m-2 over a band; in bistatic mode they
 /// are radiances, in W m-2 sr-1 um-1 and W m-2 sr-1. The other quantities have unit 1.
-/// Conventions: Q = I_s - I_p keeps its sign; U = V = 0 in hemispherical mode. Over a band, rho is a weighted mean. The
-/// weight is the emission pi B(T). Without emission it is the incident radiation; without both, it is constant.
+/// Q = I_s - I_p; U = V = 0 in hemispherical mode. Over a band, the reflectance rho is a weighted mean. The weight is
+/// the emission pi B(T) or, in a scene without emission, the incident radiation. Without both, the weight is constant.
 enum class Quantity : std::uint8_t {
   kDolp,    ///< sqrt(Q^2 + U^2) / I; negative if I is negative, NaN if I is 0
   kQOverI,  ///< Q / I, signed: positive if s-polarised radiation prevails
@@ -45,7 +45,7 @@ inline constexpr std::array<Quantity, kQuantityCount> kAllQuantities = enumerato
 /// Some of the quantities, in the order of the enumeration.
 using Quantities = std::vector<Quantity>;
 
-/// What a quantity needs: nothing, a run that computes rho or the moments, or a scene with emission or a bracket.
+/// What a quantity needs: rho or moments (integrals over the facets) from the run; emission or a bracket in the scene.
 enum class QuantityNeeds : std::uint8_t { kNothing, kReflectance, kMoments, kEmission, kBracket };
 
 struct QuantityDescription {
@@ -55,7 +55,7 @@ struct QuantityDescription {
   const char* ancillary;  ///< names of the variables with the quantity's error bound and status; "" if none
   QuantityNeeds needs;
 
-  /// True if results at points omit the quantity when the scene lacks the emission or the bracket that it needs.
+  /// True if the quantity needs emission or a bracket. Only then can results at points lack the quantity.
   constexpr bool is_optional() const { return needs == QuantityNeeds::kEmission || needs == QuantityNeeds::kBracket; }
 };
 

@@ -9,7 +9,7 @@
 
 namespace dolp {
 
-/// Results of one entry of a grid or one scattered point.
+/// Results of one entry of a grid, or of one point.
 struct PointResult {
   QuantityArray<double> values;  ///< one value per quantity; NaN if the quantity has no value
   std::uint32_t status = 0;      ///< bits of the enumeration Status

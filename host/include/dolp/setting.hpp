@@ -64,8 +64,8 @@ class DOLP_EXPORT Value {
 };
 
 /// A dotted key of a scene ("surface.sigma") and its value. If the scene lacks the TOML table of the key, the setting
-/// adds the table. A setting also removes the keys that exclude its key, which Key::rivals lists. For example, a
-/// setting of surface.n removes surface.material, because a scene cannot have both.
+/// adds the table. A setting also removes the keys that a scene cannot have together with its key (see Key::rivals).
+/// For example, a setting of surface.n removes surface.material.
 struct DOLP_EXPORT Setting {
   std::string key;
   Value value;

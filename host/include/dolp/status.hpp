@@ -17,7 +17,7 @@ enum Status : std::uint32_t {
   kModelInaccurate = 32,
 };
 
-/// Largest estimated error of I, as a fraction of I, for which the status does not get the bit kModelInaccurate.
+/// If the estimated error of I is above this fraction of I, the status gets the bit kModelInaccurate.
 inline constexpr double kLargestModelChange = 0.05;
 
 struct StatusBit {

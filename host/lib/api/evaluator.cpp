@@ -66,7 +66,8 @@ std::unique_ptr<ModelEvaluator> make_evaluator(const EvaluatorOptions& wanted, b
   VulkanOptions options;
   options.device = wanted.device;
   options.needs_double = needs_double;
-  if (wanted.is_interactive) options.max_tile_invocations = 2'048;  // a dispatch takes a few ms, even on two CPU cores
+  // Dispatches of a few ms, even if two CPU cores run Vulkan.
+  if (wanted.is_interactive) options.max_tile_invocations = 2'048;
   return std::make_unique<VulkanEvaluator>(options);
 }
 

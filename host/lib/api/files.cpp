@@ -27,7 +27,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Reads the points in a file. Ignores columns named like a result. Errors: InputError if `output` is an input, too.
+/// Reads the points in a file. Ignores columns with names of results. Errors: InputError if `output` is an input file.
 Points load_points(const std::filesystem::path& path, PointsKind kind, std::vector<std::string> inputs,
                    const std::filesystem::path& output) {
   inputs.push_back(path.string());

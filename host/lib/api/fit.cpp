@@ -146,8 +146,8 @@ struct Bracketed {
   double model, low, high;
 };
 
-/// At each zenith angle, the value of the fitted model and its bracket. This range contains the value with all
-/// bounces of light. Empty if the scene has no bracket, or if the data contain emissivities or wavelengths.
+/// The fitted model at each zenith angle, and its bracket: the range that contains the value with all bounces of light.
+/// Empty if the scene has no bracket, or if the data contain emissivities or wavelengths.
 std::vector<Bracketed> bracketed(const Best& best, MeasuredData data, const std::vector<double>& theta_deg,
                                  const FitOptions& options, ModelEvaluator& evaluator) {
   const Measurement first = data.measurements.front();

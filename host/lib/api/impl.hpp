@@ -51,7 +51,7 @@ void check_output_is_no_input(const std::filesystem::path& output, const std::ve
 /// The results at points of a scene. Their units and attributes come from `head`, the head of a table of this scene.
 Results results_of(const std::vector<PointResult>& points, const Quantities& quantities, const TableHead& head);
 
-/// Makes points from columns. A column with one value applies it to all points. Errors: InputError for a wrong column.
+/// Makes points from columns. If a column has one value, all points use it. Errors: InputError for a wrong column.
 Points points_of_columns(const std::vector<Column>& columns, PointsKind kind);
 
 /// Refuses Vulkan in a process that was forked from one that has used Vulkan. A fork does not copy the threads of the
@@ -59,7 +59,7 @@ Points points_of_columns(const std::vector<Column>& columns, PointsKind kind);
 void check_no_fork();
 
 /// Makes an evaluator, on a device with double precision if `needs_double`. Errors: InputError if no evaluator has the
-/// wanted name, or if cpu or reference gets the name of a device. DeviceError if vulkan finds no usable device.
+/// wanted name, or if a device is given but the evaluator is not vulkan. DeviceError if there is no usable device.
 std::unique_ptr<ModelEvaluator> make_evaluator(const EvaluatorOptions& wanted, bool needs_double);
 
 struct Evaluator::Impl {

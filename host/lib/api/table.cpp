@@ -40,7 +40,7 @@ bool is_variable(std::string_view name) {
          std::ranges::any_of(kAllAxes, is_described) || std::ranges::any_of(kAllQuantities, is_described);
 }
 
-/// Refuses invalid and repeated names. A file stores a long text as a variable, so the text needs a name of its own.
+/// Refuses invalid and repeated names. A file stores a long text as a variable, so it cannot have a variable's name.
 void check_attributes(const std::vector<Attribute>& attributes, const std::string& name) {
   std::set<std::string_view> names;
   for (const Attribute& attribute : attributes) {
@@ -72,8 +72,8 @@ void check_values(const TableValues& table, const std::string& name) {
   }
 }
 
-/// Refuses a table that lacks an axis of the scene's grid: a lookup would use a single value, such as surface.sigma.
-/// Refuses axis values that the grid does not list: dolp did not compute these entries, so their errors are unknown.
+/// Refuses a table without an axis of the scene's grid: its value on this axis is unknown. Refuses axis values that the
+/// grid does not list: dolp did not compute these entries, so their errors are unknown.
 void check_computed(const TableHead& table, const SceneValues& scene, const std::string& name) {
   constexpr double kFloatRounding = 0x1p-23;  // relative rounding of axis values in single precision
   for (const Axis axis : kAllAxes) {

@@ -1,9 +1,9 @@
-// Constants that control the cost or the accuracy of fits. Tests chose all of them, except one that is marked "Proved".
-// Three numbers beside a constant are costs: the number of parameter sets that a fit evaluates with half the constant,
-// with the constant, and with twice the constant. Each number is a mean over the 20 problems of `dolp-bench fit
-// --first-set 900 --entries 20`. With all these values the fits find all global minima. For a constant without numbers,
-// half and double change no result. The objective is chi^2, or the sum of another loss. The scale is the rise of the
-// objective at one standard deviation from a minimum. The growth is (objective - its minimum) / scale.
+// Constants for the cost or the accuracy of fits. The objective is chi^2, or the sum of another loss. The scale is the
+// rise of the objective one standard deviation from a minimum. The growth is (objective - minimum) / scale. Tests gave
+// all values, except one that is marked "Proved". Three numbers beside a constant are costs: the number of parameter
+// sets that a fit evaluates with half the constant, with the constant, and with twice the constant. Each is a mean over
+// the 20 problems of `dolp-bench fit --first-set 900 --entries 20`. In all three cases the fits find all global minima.
+// A constant has no numbers if half of it and twice of it change no result.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ inline constexpr double kAssumedUncertainty = 1e-3;
 
 /// A parameter counts as at its bound if its coordinate (0 to 1 over its range) is closer than this to 0 or 1.
 inline constexpr double kAtBound = 1e-6;
-/// A report omits a component of an undetermined combination if it is below this share of the largest component.
+/// A parameter belongs to an undetermined combination if its component is above this share of the largest component.
 inline constexpr double kInDirection = 0.1;
 inline constexpr double kDoubtfulBelow = 0.05;  ///< a fit is doubtful if its p-value is below this
 inline constexpr double kBadBelow = 0.001;      ///< a fit is bad if its p-value is below this
@@ -29,8 +29,8 @@ inline constexpr double kBadBelow = 0.001;      ///< a fit is bad if its p-value
 inline constexpr double kFirstStep = 0.01;  // 1354, 1421, 1425
 inline constexpr double kLeastStep = 1e-6;
 inline constexpr double kMostStep = 0.05;  // 1363, 1421, 1354
-/// Two limits for the change of the model's values in a step of finite differences: kSeenShare times the smallest
-/// uncertainty, and kErrorsOfAChange times the numerical error of the values. The larger limit counts.
+/// A step of finite differences should change the model's values by at most the larger of two numbers: kSeenShare times
+/// the smallest uncertainty, and kErrorsOfAChange times the numerical error of the values.
 inline constexpr double kSeenShare = 0.2;          // 1398, 1421, 1425
 inline constexpr double kErrorsOfAChange = 100.0;  // 1416, 1421, 1379
 /// Largest factor between the steps of finite differences in one linearisation and in the next.
@@ -41,8 +41,8 @@ inline constexpr double kMostChangeOfStep = 10.0;  // 1414, 1421, 1415
 inline constexpr double kLeastRatio = 1e-3;         // 1421, 1421, 1421
 inline constexpr double kPredictedRatio = 0.5;      // 1402, 1421, 1505
 inline constexpr double kRadiusOfNeighbours = 1.0;  // 1400, 1421, 1412
-/// A path is straight if derivatives at its start predict the residuals at its end: the squared error of the prediction
-/// is below this share of (squared change of the residuals + scale).
+/// A path counts as straight if derivatives at its start predict the residuals at its end well enough: the squared
+/// error of this prediction is below kBent * (squared change of the residuals along the path + scale).
 inline constexpr double kBent = 0.05;  // 1458, 1421, 1381
 
 /// Number of points of the Sobol sequence for each start of a descent.
@@ -55,25 +55,26 @@ inline constexpr double kCoarseGain = 0.1;  // 1358, 1421, 1416
 inline constexpr double kFarAbove = 30.0;  // 1413, 1421, 1428
 inline constexpr int kPointsOfALine = 8;   // 1386, 1421, 1489
 
-/// Tolerance for the ends of intervals: largest relative error of sqrt(growth).
+/// An interval ends where the growth reaches a limit. This is the largest relative error of sqrt(growth) at an end.
 inline constexpr double kRootTolerance = 5e-3;  // 1435, 1421, 1404
-/// A profile ends a descent if derivatives predict that a step lowers the objective by less than kProfileGain * scale.
+/// In profiles, descents end if derivatives predict that a step lowers the objective by less than kProfileGain * scale.
 inline constexpr double kProfileGain = 1e-3;  // 1442, 1421, 1401
 /// Largest number of points that are computed to find one end of an interval. The first kProfileSecants steps follow
-/// secants. The later steps are bisections, because secants fail where a profile jumps.
+/// secants. The later steps are bisections, because secants fail where the profile is discontinuous.
 inline constexpr int kMostProfilePoints = 25;  // 1415, 1421, 1421
 inline constexpr int kProfileSecants = 8;      // 1415, 1421, 1416
-/// A profile jumps if the points beside an end are closer together than this share of their distance to the minimum.
+/// A profile counts as discontinuous at an end if the last point below the limit of the growth and the first point
+/// above it are closer together than kLeastGap * (distance to the minimum).
 inline constexpr double kLeastGap = 1e-3;  // 1422, 1421, 1418
-/// Each point of a profile is at most this many times as far from the minimum as the point before.
+/// Largest factor by which one step along a profile increases the distance from the minimum.
 inline constexpr double kMostGrowth = 3.0;  // 1414, 1421, 1427
-/// A descent of a profile need not compute derivatives at its end if its growth is below this share of the 68 % limit.
+/// A profile's descent computes derivatives at its end only if the growth there is above this share of the 68 % limit.
 inline constexpr double kTrustedShare = 0.8;  // 1424, 1421, 1329
 inline constexpr double kFirstProbe = 0.01;   // 1411, 1421, 1415
-/// The search for other branches of a valley begins this far beyond an end, in widths of the interval.
+/// To find other branches of a valley, the search goes beyond an interval by this share of the interval's width.
 inline constexpr double kBeyond = 0.02;  // 1425, 1421, 1410
 /// A point beyond an end of an interval lies on another branch if its growth is below this share of the growth limit.
-/// Proved: the end itself cannot be taken for such a point, because kRootTolerance gives it at least 0.99 of the limit.
+/// Proved: the growth at the end itself is not below. By kRootTolerance it is at least 0.99 of the limit.
 inline constexpr double kClearlyLower = 0.97;  // 1421, 1421, 1793
 
 /// For contours, descents end if derivatives predict that a step lowers the objective by less than kNodeGain * scale.

@@ -43,7 +43,7 @@ bool is_on_bound(double coordinate) {
   return coordinate <= kRounding || coordinate >= 1.0 - kRounding;
 }
 
-/// Keeps `step` for the held parameters. For all other parameters, minimises the damped sum of squares in their ranges.
+/// A step of the Levenberg-Marquardt method within the ranges. Held parameters keep their components of `step`.
 Eigen::VectorXd bounded_step(const Linearisation& where, Eigen::VectorXd step, const std::vector<Eigen::Index>& held,
                              double damping, const Eigen::VectorXd& weights) {
   std::vector<Eigen::Index> free;
@@ -95,8 +95,8 @@ struct Walk {
     if (!where.jacobian.allFinite()) minimum->objective = std::numeric_limits<double>::infinity();
     is_done = !std::isfinite(minimum->objective);
     if (is_done) return;
-    // A parameter leaves its bound only if steps of the other parameters do not lower the objective. At k = 0 the model
-    // is an even function of k: finite differences at this bound predict a decrease that does not exist.
+    // A parameter leaves its bound only if steps of the other parameters do not lower the objective. The reason is the
+    // bound k = 0: the model is an even function of k, so finite differences there predict a decrease that is not real.
     std::vector<Eigen::Index> held = minimum->held;
     for (Eigen::Index j = 0; j < where.at.size(); ++j) {
       if (is_on_bound(where.at[j])) held.push_back(j);
@@ -121,7 +121,7 @@ struct Walk {
   /// Moves to the tried point if the objective is lower there. Otherwise the next step is shorter (Nielsen 1999).
   void judge(Linearisation tried, const DescentOptions& options) {
     constexpr double kLeastRadius = 1e-8, kMostRadius = 1e8;
-    constexpr double kLeastDecrease = 1e-8;  // relative to the objective
+    constexpr double kLeastDecrease = 1e-8;  // a descent ends after a smaller decrease (relative to the objective)
     const double found = objective(tried.residuals, options.loss);
     const double ratio = (minimum->objective - found) / promised;
     if (!(ratio > kLeastRatio)) {
@@ -154,7 +154,7 @@ void refresh(Residuals& residuals, std::vector<Walk>& walks, const DescentOption
   }
 }
 
-/// Computes the derivatives of descents that ended above secant_below, if their derivatives are stale or updated.
+/// Where a descent ended with an objective above secant_below, replaces Broyden's updates by computed derivatives.
 void finish(Residuals& residuals, std::vector<Walk>& walks, const DescentOptions& options) {
   std::vector<Linearisation*> guessed;
   for (Walk& walk : walks) {

@@ -33,8 +33,8 @@ struct DescentOptions {
   int most_steps = 40;
   /// The descent ends if derivatives predict that the next step lowers the objective by less than least_gain * scale.
   double least_gain = 1e-5;
-  /// A value of the objective. If set, Broyden's updates may replace computed derivatives as long as the derivatives
-  /// predict the steps well. A descent that ends with a higher objective computes the derivatives at its end.
+  /// If set, Broyden's updates replace computed derivatives as long as they predict the steps well. Where a descent
+  /// ends with an objective above this value, it computes the derivatives.
   std::optional<double> secant_below = {};
 };
 
@@ -51,15 +51,14 @@ struct Minimum {
 /// evaluator for the points to try, and one for the finite differences. Errors: errors of the evaluator; Cancelled.
 void descend(Residuals& residuals, std::vector<Minimum>& all, const DescentOptions& options);
 
-/// A point that follow() finds, starting from the point `near`. The parameters `held` get their coordinates from `to`.
+/// A minimum for follow() to find near the point `near`. For parameters in `held` it has the coordinates of `to`.
 struct Neighbour {
   const Minimum* near;
   std::vector<Eigen::Index> held;
   Eigen::VectorXd to;  ///< a coordinate for each parameter; unused for parameters not in `held`
 };
 
-/// For each neighbour, minimises the objective over the coordinates that are not held. The descent begins where the
-/// derivatives at the point `near` predict this minimum.
+/// Minimises the objective with the held coordinates fixed. Begins where derivatives at `near` predict the minimum.
 std::vector<Minimum> follow(Residuals& residuals, const std::vector<Neighbour>& all, const DescentOptions& options);
 
 /// Predicts a neighbour from the derivatives at the point `near`: its coordinates and its sum of squared residuals.

@@ -190,7 +190,7 @@ class Fit {
   }
 
   /// Degrees of freedom: number of points minus number of parameters. With a model error it is the number of points,
-  /// because then an interval ends at a limit of chi^2 itself, not of the growth of chi^2.
+  /// because then chi^2 itself has a limit at the ends of an interval. Otherwise the growth of chi^2 has a limit.
   std::size_t freedom() const {
     return model_.observation_count() - (model_.has_model_error() ? 0 : model_.parameters().size());
   }
@@ -225,7 +225,7 @@ class Fit {
     return std::pow(boost::math::quantile(t, 0.5 * (1.0 + level)), 2);
   }
 
-  /// The covariance matrix. With a model error its elements are NaN: inside of a bracket residuals do not change.
+  /// The covariance matrix. With a model error its elements are NaN, because residuals are 0 everywhere in a bracket.
   Covariance find_covariance() const {
     if (!model_.has_model_error()) return covariance_of(minima_.front(), options_.loss, result_.scale);
     const Eigen::Index count = minima_.front().where.at.size();
@@ -287,7 +287,7 @@ class Fit {
     descend(fine_, bottoms, {options_.loss, result_.scale});
     Minimum& bottom = bottoms.front();
     if (!bottom.has_converged || bottom.objective >= minima_.front().objective) return false;
-    // If the new objective is lower by less than the scale, the new minimum is the best minimum, found more exactly.
+    // If the objective is lower by less than the scale, the new point replaces the best minimum as a better estimate.
     if (bottom.objective > minima_.front().objective - result_.scale) minima_.erase(minima_.begin());
     minima_.insert(minima_.begin(), std::move(bottom));
     return true;

@@ -20,7 +20,7 @@ namespace dolp::fit {
 struct FitResult : FitNumbers {
   Eigen::MatrixXd correlation;  ///< NaN for parameters at a bound and for parameters that the data do not determine
   std::optional<double> reduced_chi_square;  ///< empty without degrees of freedom
-  /// Rise of chi_square at one standard deviation from a minimum. Without uncertainties, the mean squared residual.
+  /// Rise of chi_square one standard deviation from a minimum: 1 with uncertainties, else the mean squared residual.
   double scale = 1.0;
   std::size_t determined = 0;          ///< rank of the Jacobian: number of parameters that the data determine
   double numerical_error = 0.0;        ///< largest ratio of the model's error bound at a point to the uncertainty
@@ -52,10 +52,9 @@ struct Contours {
 /// Levels of `growth` for the contours at 68.27 % and 95 %: quantiles of chi^2 with two degrees of freedom.
 inline constexpr std::array kContourLevels = {2.2957, 5.9915};
 
-/// Computes Contours for the two parameters with the largest correlation. Empty if no correlation is known. The grid
-/// lies along the principal axes of their covariance. It spreads from the best minimum until the outer contour is
-/// enclosed. If this needs more parameter sets than the fit used, the grid becomes coarser or stays incomplete. Errors:
-/// errors of the evaluator; Cancelled.
+/// Computes Contours for the two most correlated parameters. Empty if no correlation is known. The grid lies along the
+/// principal axes of their covariance, and spreads from the best minimum until it encloses the outer contour. If this
+/// costs more than the fit, the grid becomes coarser or stays incomplete. Errors: errors of the evaluator; Cancelled.
 std::optional<Contours> contours_of(const Model& model, ModelEvaluator& evaluator, const FitResult& result,
                                     const FitOptions& options);
 

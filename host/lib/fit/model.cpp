@@ -19,7 +19,7 @@
 namespace dolp::fit {
 namespace {
 
-// One call of the evaluator computes all parameter sets that differ only in these keys, as scattered points.
+// Parameter sets that differ only in these keys become points of one list, which one call of the evaluator computes.
 constexpr std::array<std::string_view, 5> kPointKeys = {"surface.n", "surface.k", "surface.sigma", "surface.wind_m_s",
                                                         "surface.q"};
 
@@ -40,7 +40,7 @@ Eigen::RowVector2d components_of(Observable observable, const PointResult& point
   const Eigen::RowVector2d q_u(point[Quantity::kStokesQ] / point[Quantity::kStokesI],
                                point[Quantity::kStokesU] / point[Quantity::kStokesI]);
   switch (observable) {
-    case Observable::kDolp:  // at 90 degrees DOLP may be finite where Q/I and U/I are not
+    case Observable::kDolp:  // at a zenith of 90 degrees, DOLP may be finite although Q/I is not
       return q_u.allFinite() ? q_u : Eigen::RowVector2d(point[Quantity::kDolp], 0.0);
     case Observable::kQOverI:
       return {q_u[0], 0.0};

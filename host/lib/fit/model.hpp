@@ -53,9 +53,9 @@ class Model {
  private:
   struct Group {
     const MeasuredData* data = nullptr;
-    Eigen::Index first_row = 0;  ///< row of the first measurement of the data set in Prediction::components
-    SceneValues scene;  ///< scene of the data set; if the data have wavelengths, points replace the scene's wavelength
-    std::optional<EmissionModel> other_end;  ///< with a model error: emission model for the second end of the bracket
+    Eigen::Index first_row = 0;              ///< row of the first measurement of the data set in Prediction::components
+    SceneValues scene;                       ///< scene of the data set; wavelengths in the data replace its wavelength
+    std::optional<EmissionModel> other_end;  ///< with a model error: emission model of the bracket's other end
     std::vector<double> wavelength_um;       ///< wavelengths in the data, ascending; empty if the data have none
     std::vector<OpticalConstants> indices;   ///< n and k at these wavelengths, if the material is tabulated
   };

@@ -42,7 +42,6 @@ class Side {
     return last == points_.rend() ? nullptr : &last->found;
   }
 
-  /// The next point of the profile to compute. Its descent begins near the nearest known point.
   Neighbour next() {
     ++tries_;
     distance_ = std::clamp(next_distance(), 0.0, most_);
@@ -91,8 +90,8 @@ class Side {
     for (; !is_done(); ++rise_, tries_ = 0) {
       const PointPosition above = first_above();
       if (above == points_.cbegin()) continue;
-      // If the growth at the start is just below the rise, points close to the start would count as the end. So the end
-      // must be clearly higher than the start, or reach the rise.
+      // A point is an end if its growth is close to the rise. The growth at the start may be that close already. So the
+      // growth at the end must also be clearly larger than at the start, or reach the rise.
       const double least = std::min(wanted(), points_.front().root + kRootTolerance * wanted());
       const auto met = std::find_if(points_.cbegin() + 1, points_.cend(), [&](const ProfilePoint& p) {
         return p.root >= least && std::abs(p.root - wanted()) <= kRootTolerance * wanted();
@@ -115,8 +114,8 @@ class Side {
     for (; !is_done(); ++rise_) ends_[rise_] = coordinate(distance);
   }
 
-  /// The next distance to compute: where a line through two points reaches wanted(), the root of the rise. The points
-  /// are the nearest ones below and above it or, if no point lies above it, the last two points.
+  /// The next distance to compute: where a line through two points reaches wanted(), the square root of the rise. The
+  /// two points are the last one below wanted() and the first one above. If none is above, the line uses the last two.
   double next_distance() const {
     if (points_.size() == 1) return first_distance();
     const PointPosition above = first_above();
@@ -146,7 +145,7 @@ class Side {
 
   Eigen::Index parameter_;
   int direction_;
-  double most_;   ///< largest distance that stays in the range of the parameter
+  double most_;   ///< largest distance: up to a bound of the range, or back to the interval from another branch
   double least_;  ///< objective of the best minimum
   const ProfileOptions* options_;
   std::vector<ProfilePoint> points_;  ///< points in the order of their distances
@@ -166,7 +165,7 @@ void merge(std::vector<Stretch>& all, Stretch stretch) {
   all.insert(std::ranges::find_if(all, [&](const Stretch& other) { return other.low > stretch.low; }), stretch);
 }
 
-/// An end of an interval, as far as it is known: a search for other branches may move it.
+/// An end of an interval. A search for other branches may still move it.
 struct ProfileEnd {
   Eigen::Index parameter;
   std::size_t rise;
@@ -193,7 +192,7 @@ class Profiler {
 
   Profiles run() {
     constexpr int kMostSearches = 4;
-    constexpr double kKeptRise = 1.6;  // contours need points with a growth up to this times the 95 % rise
+    constexpr double kKeptRise = 1.6;  // contours use points whose growth is below kKeptRise * rises[1]
     complete(0);
     for (int i = 0; i < kMostSearches && !result_.lower && search_other_branches(); ++i) {
     }
@@ -281,9 +280,10 @@ class Profiler {
     return first < sides_.size();
   }
 
-  /// Descents that search for other branches beyond `end`. A descent begins near the last point below the rise of each
-  /// side, unless a straight path (is_straight) leads to this point from the point nearest to `end`. A further descent
-  /// begins at the lowest point of a side beyond `end`, if the growth at this point is clearly below the rise.
+  /// Descents that search for other branches beyond `end`. Each side has a last point below the rise. The descents
+  /// begin beyond `end`, near these points. They leave out the point nearest to `end`, and the points to which a
+  /// straight path leads from it, see is_straight(). Such points are on the same branch. If a side has points beyond
+  /// `end`, and the growth at the lowest of them is clearly below the rise, another descent begins there.
   std::vector<Neighbour> ways_beyond(const ProfileEnd& end) const {
     if (result_.stretches.size() == 1) return {};  // the profile of a single parameter has no other branch
     const std::vector<Stretch>& all = result_.stretches[static_cast<std::size_t>(end.parameter)][end.rise];

@@ -9,7 +9,7 @@
 namespace dolp::fit {
 namespace {
 
-/// Two offsets from a coordinate to neighbours, both of which lie in [0, 1] too.
+/// Offsets from a coordinate to its two neighbours. The signs are chosen so that both neighbours lie in [0, 1].
 std::array<double, 2> offsets_at(double at, double step) {
   const double inward = at + step > 1.0 ? -step : step;
   const bool has_both_sides = at - step >= 0.0 && at + step <= 1.0;
@@ -112,9 +112,10 @@ void Residuals::differentiate(Linearisation& point, Eigen::Index j, const Predic
   point.steps[j] = next_step(point.steps[j], point, *beside);
 }
 
-// The error of a central difference with step s has two parts. An error e of the model's values causes e/s. The third
-// derivative causes s^2 F/(6 L^3) if the values have the size F and vary over the length L. The sum of both is smallest
-// if the step changes the values by (3 e F^2)^(1/3). The next step aims at this change, or at `seen` if it is smaller.
+// A central difference with step s has two errors. If the model's values have the error e, the first is e/s. If they
+// have the size F and vary over the length L, the second is s^2 F/(6 L^3). The sum is smallest for s = L (3 e/F)^(1/3).
+// This step changes the values by F s/L = (3 e F^2)^(1/3), here called `balanced`. But a change of the size `seen` is
+// large enough, see kSeenShare. So the next step aims at the smaller of the two changes.
 double Residuals::next_step(double step, const Linearisation& point, const Prediction& beside) const {
   const double change = (beside.components - point.components).cwiseAbs().maxCoeff();
   if (!std::isfinite(change) || change <= 0.0) return step;

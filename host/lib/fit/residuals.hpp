@@ -52,7 +52,7 @@ class Residuals {
   ModelEvaluator& evaluator_;
   Progress progress_;
   Eigen::VectorXd measured_, weights_;
-  std::vector<bool> is_length_;  ///< for each measurement: true for DOLP, the length of a row of components
+  std::vector<bool> is_length_;  ///< for each measurement: true if it is DOLP, the length of (Q/I, U/I)
   std::size_t evaluations_ = 0;
 };
 

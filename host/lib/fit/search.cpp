@@ -70,18 +70,18 @@ double scale_of(const SearchOptions& options, const Minimum& minimum) {
   return minimum.objective / std::max(1.0, freedom);
 }
 
-/// Moves a point perpendicular to `line`, to where the derivatives predict the smallest sum of squared residuals.
+/// Moves a point perpendicular to `line` to the floor of the valley: to the least predicted sum of squared residuals.
 Eigen::VectorXd on_floor(const Eigen::VectorXd& point, const Eigen::VectorXd& residuals,
                          const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& line) {
   const Eigen::VectorXd along = line.normalized();
   const Eigen::MatrixXd across = jacobian - jacobian * along * along.transpose();
-  constexpr double kFlatShare = 1e-12;  // axes with a smaller share of the largest eigenvalue count as flat
+  constexpr double kFlatShare = 1e-12;  // an axis is flat if its eigenvalue is below this share of the largest
   const PrincipalAxes axes = principal_axes(across.transpose() * across);
   const Eigen::VectorXd moved = point - axes.inverse(kFlatShare) * across.transpose() * residuals;
   return moved.cwiseMax(0.0).cwiseMin(1.0);
 }
 
-/// True if the objective never rises by more than `scale` above its lowest value so far, beginning with `from`.
+/// True if each point's objective is at most `scale` above the lowest value before it. The first value is `from`.
 bool falls(double from, std::span<const Linearisation> points, Loss loss, double scale) {
   double least = from;
   return std::ranges::all_of(points, [&](const Linearisation& point) {
@@ -92,7 +92,7 @@ bool falls(double from, std::span<const Linearisation> points, Loss loss, double
   });
 }
 
-/// True if falls() is true for points on the line from one minimum to another, or for these points moved by on_floor().
+/// True if the objective falls() on the straight line from one minimum to another, or on the valley floor beside it.
 bool leads_down(Residuals& residuals, const Minimum& from, const Minimum& to, const SearchOptions& options) {
   const double scale = scale_of(options, to);
   const Eigen::VectorXd line = to.where.at - from.where.at;
@@ -127,8 +127,8 @@ std::vector<Minimum> distinct(std::vector<Minimum> all, Residuals& residuals, co
   return kept;
 }
 
-/// Descends from several points, a few steps per round, and returns where the descents end. After each round, drops a
-/// descent if a straight path (is_straight) leads from its point to a lower point of another descent.
+/// Descends from several points, a few steps per round, and returns where the descents end. Drops a descent if its
+/// derivatives predict the residuals at a lower point of another descent: both probably reach the same minimum.
 std::vector<Minimum> descend_apart(Residuals& residuals, std::vector<Minimum> starts, const SearchOptions& options,
                                    const DescentOptions& descent) {
   std::vector<Minimum> arrived, passed;

@@ -15,9 +15,9 @@ struct SearchOptions {
   std::size_t starts = 24;  ///< largest number of descents
   std::uint64_t seed = 1;   ///< 1: the Sobol sequence itself; other seeds shift the sequence by a random vector
   Loss loss = Loss::kSquares;
-  bool has_uncertainties = true;  ///< without them `scale` is a guess, and residuals give the scale at each minimum
-  double scale = 1.0;             ///< rise of the objective one standard deviation from a minimum
-  std::function<void(std::size_t done, std::size_t total)> count = {};  ///< reports the progress in descents
+  bool has_uncertainties = true;  ///< if false, objective / degrees of freedom replaces `scale` at minima
+  double scale = 1.0;             ///< rise of the objective at one standard deviation from a minimum
+  std::function<void(std::size_t done, std::size_t total)> count = {};  ///< counts the descents that are done
 };
 
 /// Finds the distinct minima of the objective, the lowest first. Descents begin at the parameters' start (if given) and
@@ -35,15 +35,15 @@ struct Stretch {
 
 struct ProfileOptions {
   std::array<double, 2> rises{};  ///< values of the growth at the ends of the 68 % and 95 % intervals
-  double from = 0.0;              ///< lowest objective, or 0 with a model error; growth = (objective - from) / scale
-  double scale = 1.0;             ///< rise of the objective one standard deviation from a minimum
+  double from = 0.0;   ///< lowest objective, or 0 with ModelError::kBracket; growth = (objective - from) / scale
+  double scale = 1.0;  ///< rise of the objective at one standard deviation from a minimum
   Loss loss = Loss::kSquares;
-  std::function<void(std::size_t done, std::size_t total)> count;  ///< reports the progress in sides of profiles
+  std::function<void(std::size_t done, std::size_t total)> count;  ///< counts the sides of profiles that are done
 };
 
 struct Profiles {
-  /// For each parameter and each of ProfileOptions::rises: where the growth, minimised over all other parameters, is
-  /// below the rise. The stretches are disjoint and ascending.
+  /// For each parameter and each of ProfileOptions::rises: the intervals in which the growth is below the rise. The
+  /// growth is minimised over all other parameters. The intervals are disjoint and ascending.
   std::vector<std::array<std::vector<Stretch>, 2>> stretches;
   std::vector<Minimum> points = {};  ///< computed points of the profiles
   /// A point with an objective below the best minimum, if the profiles found one. Then the search missed a minimum.
@@ -52,9 +52,9 @@ struct Profiles {
 
 /// Computes the profile likelihoods of all parameters. `minima` begins with the best minimum. At each minimum a profile
 /// has two sides, towards smaller and larger values of the parameter. A side follows the valley of the objective until
-/// the growth reaches a rise, which gives one end of an interval. A bent valley may have another branch beyond the end.
-/// To find it, descents begin beyond the end, near points of other sides. If such a descent ends below the rise, the
-/// profile continues there. Errors: errors of the evaluator; Cancelled.
+/// the growth (see ProfileOptions) reaches one of `rises`. There the interval ends. Beyond this end, a bent valley may
+/// have another branch. To find it, descents begin beyond the end, near known points of the valley. If the growth where
+/// such a descent ends is below the rise, the profile continues there. Errors: errors of the evaluator; Cancelled.
 Profiles profiles_of(Residuals& residuals, const std::vector<Minimum>& minima, const ProfileOptions& options);
 
 }  // namespace dolp::fit

@@ -95,7 +95,6 @@ def flag(name: str, value: Any) -> bool:
 
 
 def axis_values(name: str, values: Any) -> list[float]:
-    """The values of an axis of numbers as a list. `values` is a number or a list."""
     if isinstance(values, str):
         raise InputError(f"{name}: {short(values)} is a text; numpy.linspace(first, last, count) makes a range of numbers")
     array = floats(name, values)

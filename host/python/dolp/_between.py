@@ -10,20 +10,20 @@ import xarray as xr
 from ._arguments import floats
 from ._native import InputError
 
-_MOST = 5  # values of the key that a lookup uses: four give the result, the fifth gives the error estimate
+_MOST = 5  # most values of the key that a lookup uses: four give the result, a fifth gives the error estimate
 _LEAST = 3  # with fewer values of the key the error estimate is infinite
-_SAFETY = 16.0  # ratio of error estimate to the change of the result by the fifth value; kInside in core/table is equal
+_SAFETY = 16.0  # error estimate / change of the result by one more value of the key; equal to kInside in core/table
 _MISSED, _RHO_MISSED = 2, 16  # status bits: DOLP, or rho, misses its tolerance
 _SMOOTH = ("stokes_i", "stokes_q", "stokes_u", "stokes_v", "rho_i", "rho_q", "albedo", "emissivity_s", "emissivity_p",
            "dolp_low", "dolp_high")
 
 
 def between_tables(table: xr.Dataset, key: str, at: Any, look_up: Callable[[xr.Dataset], xr.Dataset]) -> xr.Dataset:
-    """The results at the value `at` of the scene key `key`, a dimension of the table. A polynomial interpolates
-    between the results that `look_up` returns at the four nearest values of the key.
+    """The results at the value `at` of a scene key. The key is a dimension of the table. A polynomial interpolates
+    between the results that `look_up` returns at the two to four nearest values of the key.
 
-    A polynomial through five values would give another result. The error estimate includes `_SAFETY` times the
-    difference of the two results. Errors: InputError if `at` is outside the table.
+    A second polynomial uses one more value. The error estimate includes `_SAFETY` times the difference of the two
+    polynomials. Errors: InputError if `at` is outside the table.
     """
     value = floats(key, at)
     if value.ndim > 0:
@@ -68,7 +68,7 @@ def between_tables(table: xr.Dataset, key: str, at: Any, look_up: Callable[[xr.D
 
 
 def _weights(values: np.ndarray, used: np.ndarray, at: float) -> np.ndarray:
-    """Lagrange weights of `values` for interpolation at `at`. The weight is 0 if a position is not in `used`."""
+    """Lagrange weights of `values` for interpolation at `at`. Only values at the positions `used` have a weight."""
     weights = np.zeros(len(values))
     for i in used:
         weights[i] = np.prod([(at - values[j]) / (values[i] - values[j]) for j in used if j != i])

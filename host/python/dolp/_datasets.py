@@ -61,7 +61,7 @@ def concatenated(tables: list[xr.Dataset], key: str, values: np.ndarray) -> xr.D
     joined.attrs.pop("scene_hash", None)
     computed = _attributes_of(first).get(_COMPUTED)
     _set_attribute(joined, _COMPUTED, "\n".join(filter(None, [computed, f"{key}={values.tolist()}"])))
-    if "scene_overrides" in first.attrs:  # removes the override of `key`, which is the value of the first table only
+    if "scene_overrides" in first.attrs:  # removes the line with `key`, which has only the first table's value
         before, _, after = f"\n{first.attrs['scene_overrides']}\n".rpartition(f"\n{key}=")
         rest = after.partition("\n")[2]
         joined.attrs["scene_overrides"] = f"{before}\n{rest}".strip("\n")
@@ -72,7 +72,7 @@ def native_table(table: xr.Dataset) -> _native.Table:
     """Converts a Dataset to a table of the library.
 
     A scalar coordinate becomes an axis with one value or, if its name is a scene key, sets this key of the scene.
-    Dimensions may have any names and order: an axis lies along the dimension of the coordinate with the axis's name.
+    Dimensions may have any names and order: the coordinate with the name of an axis tells the dimension of the axis.
     """
     attributes = _attributes_of(table)
     overrides = [str(attributes.get("scene_overrides", "")), *_values_of_keys(table, str(attributes.pop(_COMPUTED, "")))]

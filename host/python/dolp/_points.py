@@ -104,7 +104,6 @@ def _dimensions(points: Mapping[str, np.ndarray],
 
 
 def _with_real_index(points: Mapping[str, Array]) -> Mapping[str, Array]:
-    """The points, with n and k instead of a complex n."""
     if not np.iscomplexobj(points.get("n")):
         return points
     if "k" in points:

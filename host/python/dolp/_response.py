@@ -19,9 +19,9 @@ def response(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **axe
 
     `axes` (theta_deg, sigma or wind_m_s, q) replace axes of the scene. Material, wavelength and radiation of the scene
     do not matter. The dimension beta has angles of incidence on a facet. Let r_s and r_p be reflectances of a smooth
-    surface at beta. Without a diffuse part and with k_s = 1, the sum of response_i (r_s + r_p) / 2 over beta is rho_i,
-    and the sum of response_q (r_s - r_p) / 2 is rho_q. With masking smith or v-cavity, emission_i and emission_q are
-    weights for the direct emission.
+    surface at these angles. Then rho_i is the sum of response_i * (r_s + r_p) / 2 over beta, and rho_q is the sum of
+    response_q * (r_s - r_p) / 2, if k_s is 1 and there is no diffuse part. With masking smith or v-cavity, emission_i
+    and emission_q give the direct emissivities in the same way, from 1 - r_s and 1 - r_p.
 
     >>> r = dolp.response(scene, theta_deg=[0, 60], sigma=[0.1, 0.2])
     >>> r.response_i.dims, bool(abs(r.response_i.sum("beta") - r.albedo).max() < 1e-12)
@@ -97,14 +97,15 @@ def _coefficients(beta: xr.DataArray) -> xr.DataArray:
 
 
 def _size(mean: xr.DataArray, half: xr.DataArray) -> xr.DataArray:
-    """Factor of response_error: largest 2^m |a_m| of the Chebyshev coefficients a_m of mean and half / sin^2 beta."""
+    """The largest 2^m |a_m|, the factor of response_error in rho_error. The a_m are Chebyshev coefficients of `mean`
+    and of `half` / sin^2 beta. `mean` and `half` are half the sum and half the difference of r_s and r_p."""
     growth = xr.DataArray(2.0 ** np.arange(mean.sizes["beta"]), dims="m")
     curves = mean, half / np.sin(np.deg2rad(mean.beta)) ** 2
     return np.maximum(*((growth * abs(curve.dot(_coefficients(mean.beta), "beta"))).max("m") for curve in curves))
 
 
 def _distance(response: xr.Dataset, index: xr.DataArray, r_s: xr.DataArray, r_p: xr.DataArray) -> xr.DataArray:
-    """Largest error of the polynomials for (r_s + r_p) / 2 and (r_s - r_p) / 2 through the values at beta."""
+    """Largest error of the polynomials that replace (r_s + r_p) / 2 and (r_s - r_p) / 2 between the angles beta."""
     beta, c0 = response.beta, float(response.attrs["c0"])
     x = np.polynomial.chebyshev.chebpts1(_ANGLES)
     cosine = xr.DataArray(c0 * np.sinh(0.5 * (1 + x) * np.arcsinh(1 / c0)), dims="angle")

@@ -47,7 +47,7 @@ class Scene:
             raise TypeError(f"text: must be a str, not {type(text).__name__}")
 
     def with_(self, values: Mapping[str, Any]) -> Scene:
-        """A copy of the scene with new values of the given keys. Other values stay, such as the empty title here.
+        """A copy of the scene with new values of some keys. Other keys keep their values, here the title.
 
         >>> scene.with_({"surface.q": 4, "grid.sigma": {"from": 0.1, "to": 1, "count": 5, "spacing": "log"}}).title
         ''

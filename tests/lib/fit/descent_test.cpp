@@ -4,9 +4,9 @@
 namespace dolp::fit {
 namespace {
 
-// If a step would cross the bound of a parameter, predict_step ends the step of this parameter on the bound and
-// computes the other parameters again by least squares. Then it halves the step of this parameter. The damping of a
-// step is proportional to kScale. Here kScale is tiny, so that damping does not change the steps.
+// If a step of predict_step would leave the range of a parameter, this parameter gets a step that ends on the bound.
+// Least squares then give new steps of the other parameters. Last, the step to the bound is halved, so this test
+// doubles it again. The damping of steps is proportional to kScale, which is so tiny here that damping has no effect.
 TEST(PredictStep, ParametersLeaveTheBounds_OthersAreSolvedAgain) {
   constexpr double kScale = 1e-14;
   constexpr double kRounding = 1e-6;  // rounding error of normal equations with almost parallel columns

@@ -1,4 +1,4 @@
-// Fits find known truths, and name what the data do not determine.
+// Tests that fits find the true values of synthetic data, and name the parameters that the data do not determine.
 #include <map>
 
 #include "fit_support.hpp"

@@ -29,7 +29,7 @@ TEST_F(FitTest, IntervalEnds_LieWhereTheBestOfTheOthersHasGrownSo) {
       const FitResult held =
           fitted(data, {number("surface.n", 1.1, 4.0)}, {}, {"surface.sigma=" + std::to_string(*end)});
       // The growth is chi^2 minus its minimum. The search for an end allows an error of 0.5 % of sqrt(growth), which is
-      // 1 % of the growth. The tolerance is 1.5 %, because to_string writes only six digits.
+      // 1 % of the growth. The tolerance is 1.5 %, because to_string writes only six decimals.
       EXPECT_NEAR(held.chi_square - result.chi_square, is_95 ? 3.841 : 1.0, 0.015 * (is_95 ? 3.841 : 1.0));
     }
   }
@@ -44,8 +44,9 @@ TEST_F(FitTest, DoubtfulFit_ScaledIntervalsAreThoseOfLargerUncertainties) {
   for (Measurement& one : data.measurements) *one.uncertainty *= std::sqrt(*result.reduced_chi_square);
   const FitResult wider = fitted(data, parameters);
   EXPECT_EQ(fit_quality(wider.p_value), "good");
-  // Tolerance of an end, as a share of its distance from the best value. The search for an end allows an error of 0.5 %
-  // of sqrt(growth), where the growth is chi^2 minus its minimum.
+  // Tolerance of an end, as a share of its distance from the best value. sqrt(chi^2 - minimum) is nearly proportional
+  // to this distance. The search for an end allows an error of 0.5 % of the root, so two ends may differ by 1 %. The
+  // tolerance is twice as large.
   constexpr double kRoot = 0.02;
   for (std::size_t j = 0; j < 2; ++j) {
     const FitParameter &one = result.parameters[j], &other = wider.parameters[j];

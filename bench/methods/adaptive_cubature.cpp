@@ -48,7 +48,7 @@ class Cubature final : public Solver {
       double values[2];
       double errors[2];
       // With ERROR_LINF libcubature stops when both errors are at most setting * max(|r_i|, |r_q|). The maximum is r_i,
-      // by which the studies divide errors, too.
+      // because |r_q| <= r_i. So `setting` limits the error divided by r_i, which the studies measure.
       const int status =
           routine_(2, integrand, &integral, 2, kLow, kHigh, kMostEvaluations, 0.0, setting, ERROR_LINF, values, errors);
       if (status != 0) throw Unavailable("libcubature gave up");

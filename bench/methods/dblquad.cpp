@@ -58,8 +58,8 @@ class Dblquad final : public Solver {
     add_times(reply["times_s"].get<std::vector<double>>(), solution);
   }
 
-  // Adds the times of one entry to those of the whole call: its first repeat to the first repeat of the call, its
-  // second repeat to the second, and so on.
+  // Each entry is computed and timed several times. Adds the first time of an entry to the first time of the whole
+  // call, the second time to the second, and so on, up to the smallest number of repeats.
   static void add_times(const std::vector<double>& times_s, Solution& solution) {
     if (solution.answers.size() == 1) solution.own_times_s.assign(times_s.size(), 0.0);
     solution.own_times_s.resize(std::min(solution.own_times_s.size(), times_s.size()));

@@ -27,9 +27,9 @@ using Pair = std::array<double, 2>;
 using EntryWords = std::array<std::uint32_t, 4>;
 
 constexpr double kTimeout = 600.0;                   // longest time of one dispatch, in seconds
-constexpr std::size_t kMostIterations = 1U << 14U;   // per invocation; lavapipe would stop it after 65,535
-constexpr std::size_t kMostSamples = 1U << 26U;      // per dispatch; the time limit is checked between dispatches
-constexpr std::size_t kMostShapes = 1U << 12U;       // per call of solve(); each shape has a masking table of 4 kB
+constexpr std::size_t kMostIterations = 1U << 14U;   // per invocation; lavapipe stops invocations after 65,535
+constexpr std::size_t kMostSamples = 1U << 26U;      // evaluations per dispatch, after which the time is checked
+constexpr std::size_t kMostShapes = 1U << 12U;       // slope distributions per call of solve(), 4 kB of tables each
 constexpr std::size_t kMostInvocations = 1U << 22U;  // per call of solve(); limits the memory
 constexpr std::uint32_t kZenithUnit = 1U << 16U;
 
@@ -77,8 +77,8 @@ class DeviceRule final : public Solver {
       const std::size_t zeniths = std::min(most_zeniths, nodes - first);
       for (std::size_t i = 0; i < data.size(); ++i) {
         const MomentsEntry entry = data[i];
-        // KernelData may contain a direction several times, each time with other lines at which dolp splits the
-        // integral. The product rule does not split the integral, so it takes the first copy.
+        // KernelData may contain a direction several times, because dolp may split its integral in several ways. The
+        // product rule does not split the integral, so it takes the first copy.
         const auto direction = static_cast<std::uint32_t>(entry.theta % data.directions);
         words_.push_back(
             {direction, entry.shape, entry.index, static_cast<std::uint32_t>(first + kZenithUnit * zeniths)});

@@ -16,10 +16,10 @@ namespace dolp::bench {
 using std::numbers::inv_sqrtpi;
 using std::numbers::pi;
 
-/// Tables of three integrals from a slope x to infinity:
-///   probability(x) = int p dtau,   first(x) = int g p dtau,   height(x) = int g p (tau - x) dtau
-/// p(tau) is the density of slopes along one azimuth. The weight g is 1 for `smith`, 1/sqrt(1 + tau^2) for `integral`.
-/// The nodes have equal steps of X = asinh(tau/width_). Quintic Hermite polynomials interpolate between the nodes.
+/// Tables of three integrals over slopes t from tau to infinity:
+///   probability(tau) = int p dt,   first(tau) = int g p dt,   height(tau) = int g p (t - tau) dt
+/// p(t) is the density of slopes along one azimuth. The weight g is 1 for `smith`, 1/sqrt(1 + t^2) for `integral`. The
+/// tables have nodes at equal steps of asinh(tau/width_). Quintic Hermite polynomials interpolate between the nodes.
 class MaskingTails {
  public:
   MaskingTails(const Entry& entry);
@@ -45,7 +45,7 @@ class MaskingTails {
   double m_;
   double q_;
   double norm_;           ///< p(0)
-  double width_;          ///< the nodes have equal steps of X = asinh(tau/width_)
+  double width_;          ///< the nodes have equal steps of asinh(tau/width_)
   double tail_exponent_;  ///< height(tau) is proportional to tau^tail_exponent_ at large tau
   double end_tau_;
   std::optional<Interpolant> height_, first_, probability_;
@@ -53,7 +53,7 @@ class MaskingTails {
 
 namespace {
 
-constexpr double kStep = 1.0 / 24.0;      // step of X between nodes of MaskingTails; the interpolation error is 1e-12
+constexpr double kStep = 1.0 / 24.0;      // step of asinh(tau/width_) between nodes; the interpolation error is 1e-12
 constexpr double kEndOverWidth = 1e6;     // last tau/max(1, m); integrals at larger tau are powers of tau to 1e-12
 constexpr double kVerticalSlope = 1e100;  // limit of sampled_slope(), so that the square of the slope does not overflow
 using CellRule = boost::math::quadrature::gauss<double, 4>;
@@ -162,7 +162,8 @@ MaskingTails::Interpolant MaskingTails::interpolant(const std::vector<Node>& nod
   std::vector<double> y, slope, curvature;
   for (const Node& node : nodes) {
     const auto [in_tau, twice_in_tau] = derivatives(node, value);
-    const double stretch2 = width_ * width_ + node.tau * node.tau;  // (dtau/dX)^2; d^2 tau/dX^2 is tau
+    // The derivatives with respect to X = asinh(tau/width_) need (dtau/dX)^2 = stretch2 and d^2 tau/dX^2 = tau.
+    const double stretch2 = width_ * width_ + node.tau * node.tau;
     y.push_back(node.*value);
     slope.push_back(in_tau * std::sqrt(stretch2));
     curvature.push_back(twice_in_tau * stretch2 + in_tau * node.tau);
@@ -231,11 +232,11 @@ RunningBeam DirectSurface::beam(double cos_r, double sin_r) const {
   return beam;
 }
 
-// Masking G of a facet with tilt alpha. The rest of this comment is about `integral` masking. Only the beam with the
-// larger zenith angle theta matters, because the masking of one beam decreases with theta. A neighbour with slope tau >
-// mu = cot(theta) hides the share kappa g (tau - mu) of the facet, where kappa = 1/(cos(alpha) (mu + tan(alpha))) and g
-// is the weight of MaskingTails. The mean share is 1 - G = kappa height(mu). But if 2 theta - alpha > pi/2, neighbours
-// steeper than tau_b = tan(alpha - 2 theta) hide the whole facet. Then
+// Masking G of a facet with tilt alpha. With `integral` masking only the beam with the larger zenith angle theta
+// matters, because G decreases with theta. Let mu = cot(theta) and kappa = 1/(cos(alpha) (mu + tan(alpha))). Another
+// facet of slope t > mu hides the share kappa g(t) (t - mu) of this facet, where g is the weight of MaskingTails. The
+// mean over t is 1 - G = kappa height(mu). But if 2 theta - alpha > pi/2, slopes t above tau_b = tan(alpha - 2 theta)
+// hide the whole facet: their share is 1. Then
 //   1 - G = kappa (height(mu) - height(tau_b) - (tau_b - mu) first(tau_b)) + probability(tau_b)
 double DirectSurface::attenuation(const RunningBeam& beam, double cos_alpha, double tan_alpha, double cos_beta) const {
   if (entry_.masking == Masking::kNone) return 1.0;

@@ -60,8 +60,8 @@ class DirectSurface {
   /// Width m of the slope distribution, m^2 = 2 sigma^2.
   double width() const { return m_; }
 
-  /// Density P(t) = D cos^4(alpha) of the slopes t = tan(alpha) in the plane of the two slope components, where D is
-  /// the density of facet normals. Without unit.
+  /// Joint density P of the two slope components, at the slope tan(alpha). P is D cos^4(alpha), where D is the density
+  /// of facet normals.
   double slope_density(double tan2_alpha) const;
 
   /// The slope that a random facet exceeds with this probability. The facet normals have the density D cos(alpha).
@@ -70,8 +70,8 @@ class DirectSurface {
   /// The running beam with the zenith angle whose cosine is cos_r > 0 and whose sine is sin_r.
   RunningBeam beam(double cos_r, double sin_r) const;
 
-  /// Contribution of the facet that reflects the running beam into the fixed beam. Its M01 (`q`) is 0 if the fixed beam
-  /// is normal to the facet or to the surface, because the angle from which M01 is computed is then undefined.
+  /// Contribution of the facet that reflects the running beam into the fixed beam. `q` is 0 if the fixed beam is normal
+  /// to the facet or to the surface, because the plane of incidence or the vertical plane is then undefined.
   Reflected reflected(const RunningBeam& beam, double cos_alpha, double tan_alpha, double cos_beta) const;
 
  private:

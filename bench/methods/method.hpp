@@ -52,7 +52,7 @@ struct TookTooLong : Unavailable {
 
 struct SolverOptions {
   std::string device = {};     ///< Vulkan device: position or part of the name, empty for the default
-  double time_limit_s = 20.0;  ///< of one call, or of one entry with dblquad; for methods that might not end
+  double time_limit_s = 20.0;  ///< longest time of one call; for dblquad, of one entry
   std::vector<std::string> pythons = {"/usr/bin/python3", "python3"};  ///< tried in turn until one has SciPy
 };
 

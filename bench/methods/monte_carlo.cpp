@@ -12,7 +12,7 @@
 namespace dolp::bench {
 namespace {
 
-/// A uniform random number in (0, 1). Every standard library gives the same numbers.
+/// A uniform random number in (0, 1). Unlike std::uniform_real_distribution it does not depend on the library.
 double uniform(std::mt19937_64& random) {
   constexpr double kUnit = 0x1p-53;
   return (static_cast<double>(random() >> 11U) + 0.5) * kUnit;

@@ -41,7 +41,7 @@ KernelWork count_operations(const MomentsRequest& request, std::size_t workgroup
   const OperationCounts before = counted_operations();
   std::size_t pieces = 0;
   double evaluations = 0.0;
-  double slowest = 0.0;  // operations if each of the `lanes` invocations that run together did as many as the slowest
+  double slowest = 0.0;  // sum over vectors: `lanes` times the operations of the slowest invocation
   double most = 0.0;
   for (std::size_t group = 0; group < count; ++group) {
     const std::size_t first = group * all / count * vulkan::kLocalSize;

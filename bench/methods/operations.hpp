@@ -7,17 +7,18 @@
 
 namespace dolp::bench {
 
-/// Operations of the float kernels for one request, including those that make the masking tables.
+/// Arithmetic operations of the float kernels for one request. Kernels that make the masking tables are included.
 struct KernelWork {
   OperationCounts counts;  ///< operations for all entries, extrapolated from the counted invocations
   double evaluations = 0.0;
-  /// Largest possible share of the lanes of a device that compute. `lanes` neighbouring invocations run together. The
-  /// count assumes that each waits for the slowest only at its end. On a device, invocations also wait within loops.
+  /// Upper bound of the share of vector lanes that are busy, one invocation per lane. A finished invocation waits for
+  /// the slowest invocation in its vector. On a device invocations also wait within loops, so the share is smaller.
   double busy_lanes = 1.0;
 };
 
-/// Counts the operations of `workgroups` evenly spread workgroups, and extrapolates to the whole request. Accuracy: a
-/// few percent, if the other workgroups resemble the counted ones. Domain: requests that has_kernel_for accepts.
+/// Counts the operations in an evenly spread sample of workgroups, and extrapolates to the whole request. Accuracy: a
+/// few percent, if the sample is typical. `workgroups`: size of the sample. `lanes`: size of a vector. Domain: requests
+/// that has_kernel_for accepts.
 KernelWork count_operations(const MomentsRequest& request, std::size_t workgroups, std::size_t lanes);
 
 }  // namespace dolp::bench

@@ -19,8 +19,8 @@ layout(std430, binding = DOLP_BINDING_RULE) readonly buffer Product { real4 prod
 layout(std430, binding = DOLP_BINDING_MOMENTS) writeonly buffer Sums { real2 sums[]; };  // r_i, r_q
 
 // The facet that reflects one beam into the other. Its slope is t = tan(alpha). phi_h is its azimuth relative to the
-// fixed beam. `along` and `across` are components of its normal (t cos(phi_h), t sin(phi_h), 1), perpendicular to the
-// fixed beam: `along` in the vertical plane of this beam, `across` horizontal.
+// fixed beam. Two components of the facet normal (t cos(phi_h), t sin(phi_h), 1) are perpendicular to the fixed beam:
+// `along` in the vertical plane of this beam, and `across`, which is horizontal.
 struct Bisector {
   real slope2;   // t^2
   real along;    // cos(theta) t cos(phi_h) - sin(theta)

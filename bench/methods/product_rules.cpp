@@ -15,7 +15,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr auto kSmithBy = DirectSurface::SmithBy::kClosedForm;  // takes little time: it is computed once per zenith
+constexpr auto kSmithBy = DirectSurface::SmithBy::kClosedForm;  // computed only once per zenith, so its time is small
 
 Answer product_rule(const DirectSurface& surface, const Rule& rule) {
   std::vector<double> cos_azimuths;

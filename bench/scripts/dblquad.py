@@ -190,7 +190,7 @@ def main(arguments):
         print("usage: dblquad.py --version | dblquad.py REQUEST", file=sys.stderr)
         return 2
     import warnings
-    warnings.simplefilter("ignore")  # stated_error shows if dblquad misses a tolerance
+    warnings.simplefilter("ignore")  # dblquad warns if it misses a tolerance; stated_error shows this too
     print(json.dumps(timed(json.loads(arguments[0]))))
     return 0
 

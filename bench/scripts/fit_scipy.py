@@ -1,10 +1,15 @@
 #!/usr/bin/env python3
-"""Fits parameters by SciPy's least_squares, which calls `dolp.evaluate`, as a user without `dolp fit` would do it.
+"""Fits parameters with SciPy's least_squares, which calls `dolp.evaluate`. A user without `dolp fit` would do the same.
 
-The argument is JSON. `package` is the folder of the Python package dolp. `scene` (a text) and `tolerance` define the
-model. Lists with one item for each parameter: `columns` (its keyword of dolp.evaluate), `low`, `high`, `start`. Lists
-with one item for each measurement: `theta_deg`, `measured` (Q/I). `uncertainty` is one number for all measurements.
-Prints JSON: `values`, `chi_square`, `time_s`, `calls` of dolp.evaluate. One call computes a whole Jacobian.
+The argument is a JSON object with these members:
+  package              folder of the Python package dolp
+  scene, tolerance     text of the scene, and its tolerance
+  columns              for each parameter, its keyword argument of dolp.evaluate
+  low, high, start     for each parameter, the ends of its range, and the value at which the fit starts
+  theta_deg, measured  for each measurement, the zenith, and Q/I
+  uncertainty          one number for all measurements
+Prints a JSON object with `values`, `chi_square`, `time_s` and `calls`. `calls` is the number of calls of dolp.evaluate.
+One call computes a whole Jacobian.
 """
 import json
 import sys

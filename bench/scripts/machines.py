@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints a Markdown table of where and when studies were measured: machines.py RESULT.json..."""
+"""Prints a Markdown table with the date and the machine of each study. Usage: machines.py RESULT.json..."""
 import json
 import sys
 

@@ -47,8 +47,8 @@ def line_of(name, rows):
 
 
 def intervals_of(result):
-    """Yields both ends of each 95 % interval, as distances from the true value. The unit of length is half the width
-    of the interval. Leaves out intervals with an open end."""
+    """Yields both ends of each 95 % interval, as distances from the true value. The distances are divided by half the
+    width of the interval. Leaves out intervals with an open end."""
     for row in sets_of(result):
         for truth, (low, high) in zip(row["truth"], row["interval_95"]):
             if low is not None and high is not None:

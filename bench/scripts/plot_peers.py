@@ -37,8 +37,9 @@ def time_table(result):
 
 
 def ratio_text(row):
-    """The time of a method divided by the time of dolp. In the first of two numbers, dolp interpolates. In the second,
-    dolp integrates every entry. A star marks a method that has the cheapest setting for each entry, with hindsight."""
+    """A text with two ratios. Each is the time of a method divided by a time of dolp. For the first ratio dolp
+    interpolates between entries, for the second it integrates every entry. A star means that the method ran with the
+    cheapest setting for each entry. Such settings can be chosen only with hindsight."""
     cells = []
     for prefix in ("table_", ""):
         ratio = row.get(f"{prefix}ratio", row.get(f"hindsight_{prefix}ratio"))

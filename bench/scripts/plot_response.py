@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Draws properties of response tables: weights, accuracy against number of angles, time against number of materials.
 
-Usage: plot_response.py -o FIGURE.png, with the package dolp on PYTHONPATH. Prints the figures of bench/README.md.
+Usage: plot_response.py -o FIGURE.png, with the package dolp on PYTHONPATH.
+Prints the numbers that bench/README.md states.
 """
 import argparse
 import sys
@@ -55,14 +56,17 @@ def transform(count):
 
 
 def errors(counts):
-    """Largest error of rho_i and rho_q, divided by rho_i, for each index and number K of angles. The values come from a
-    response table with K angles, the true values from `dolp table`. The response table replaces the Fresnel
-    reflectances by sums of K Chebyshev polynomials."""
+    """For each refractive index and each number K of angles: the largest error of rho_i and rho_q, divided by rho_i.
+    The errors are those of a response table with K angles, which replaces the Fresnel reflectances by sums of K
+    Chebyshev polynomials. The true values come from `dolp table`."""
     scene = SCENE.with_({"accuracy.tolerance": TIGHT})
     response = dolp.response(scene, evaluator="cpu", **GRID)
     c0, most = response.attrs["c0"], response.sizes["beta"]
-    sums = np.polynomial.chebyshev.chebvander(transform(most)[0], most - 1)  # column m: polynomial T_m at the angles
-    of_i = response.response_i.values @ sums  # item m: rho_i of a material whose Fresnel reflectance is T_m
+    # Column m of `sums` has the values of the Chebyshev polynomial T_m at the angles of the response table.
+    # of_i[..., m] is rho_i of an imaginary material whose (R_s + R_p)/2 is T_m. of_q[..., m] is rho_q of an imaginary
+    # material whose (R_s - R_p)/(2 sin^2 beta) is T_m.
+    sums = np.polynomial.chebyshev.chebvander(transform(most)[0], most - 1)
+    of_i = response.response_i.values @ sums
     of_q = (response.response_q * np.sin(np.deg2rad(response.beta)) ** 2).values @ sums
     found = np.empty((len(INDICES), len(counts)))
     for i, index in enumerate(INDICES):

@@ -1,8 +1,8 @@
 """Styles and helpers that the figures and tables of all studies share."""
 import textwrap
 
-# Colours of Okabe and Ito, which colour-blind readers can tell apart. A method has the same colour in float and double,
-# and a rule has the same colour on the CPU and with Vulkan.
+# Colours of Okabe and Ito, which colour-blind readers can tell apart. A method has the same colour in float and double.
+# A quadrature rule has the same colour on the CPU and with Vulkan.
 STYLES = {
     "midpoint": ("midpoint", "#E69F00", "s", "-"),
     "gauss": ("Gauss", "#009E73", "D", "-"),

@@ -23,7 +23,7 @@ struct Case {
 const std::vector<Case>& cases();
 
 /// A request of `count` entries. The first entry is the case itself. In the other entries, theta, sigma and q differ
-/// from the case by up to 1e-3 (relative). So all entries take equal time, but no computation serves two of them.
+/// from the case by up to 1e-3 (relative). So all entries take equal time, but no two entries can share a computation.
 MomentsRequest neighbourhood(const Case& which, std::size_t count);
 
 }  // namespace dolp::bench

@@ -51,7 +51,7 @@ ordered_json device_json(const std::string& choice) {
   }
 }
 
-/// The widest vector instructions of the processor, out of the sets that change the speed of kernels.
+/// The widest vector instructions of the processor. Considers only the sets that change the speed of kernels.
 const char* vector_instructions() {
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx512f")) return "AVX-512";

@@ -15,7 +15,7 @@ struct EffectSetting {
   SceneValues scene;
 };
 
-/// Scenes that differ only in one effect. The study divides their times by the time of the first.
+/// Scenes that differ only in one effect. The study divides their times by the time of the first scene.
 struct EffectGroup {
   std::string effect;
   std::string mode;  ///< "hemispherical" or "bistatic"

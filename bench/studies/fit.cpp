@@ -84,8 +84,8 @@ ordered_json coverage_json(const ordered_json& rows, const char* part) {
 }
 
 /// Fits the data with SciPy's least_squares, which starts in the middle of the search ranges. Returns the output of
-/// fit_scipy.py, and the largest difference between a parameter of SciPy and the same parameter in `result`, in
-/// standard errors. Returns null if SciPy or xarray is missing.
+/// fit_scipy.py with one more number: the largest distance between a fitted value of SciPy and the value of the same
+/// parameter in `result`, in standard errors of the parameter. Returns null if SciPy or xarray is missing.
 ordered_json scipy_json(const FitSet& set, const MeasuredData& data, const fit::FitResult& result) {
   const std::string script = DOLP_BENCH_SCRIPTS "/fit_scipy.py";
   if (run_child({kPython, "-c", "import scipy, xarray"}, ChildErrors::kHidden).status != 0) return {};
@@ -245,7 +245,8 @@ std::string table_text(const ordered_json& result) {
   return text;
 }
 
-/// Warns of each data set with a wrong interval (SetOutcome::is_consistent), and of each missed global minimum.
+/// Warns of each data set whose intervals are not consistent with the true values, see SetOutcome::is_consistent. Also
+/// warns of each fit that missed the global minimum.
 void warn(ordered_json& result) {
   for (const ordered_json& row : result["results"]) {
     if (row["part"] != "set") continue;

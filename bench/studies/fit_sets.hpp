@@ -47,14 +47,15 @@ MeasuredData synthetic_data(const FitSet& set, std::size_t number, ModelEvaluato
 struct SetOutcome {
   fit::FitResult result;
   double chi_square_of_truth = 0.0;
-  double chi_square_from_truth = 0.0;    ///< objective at the minimum that a descent from the true values reaches
+  double chi_square_from_truth = 0.0;    ///< chi^2 at the minimum that a descent from the true values reaches
   std::size_t held_68 = 0, held_95 = 0;  ///< numbers of 68 % and 95 % intervals that contain the true value
   double time_s = 0.0;
 
-  /// True if every interval contains its true value. A 68 % interval may miss it if chi^2 at the true values exceeds
-  /// the minimum by more than 1, a 95 % interval if by more than 3.84. Meaningful only if FitSet::model_error is kNone.
+  /// True if every interval contains its true value or is right to exclude it. A 68 % interval is right to exclude it
+  /// if chi^2 at the true values exceeds the minimum by more than 1. For a 95 % interval, this limit is 3.84. The
+  /// result is meaningful only if FitSet::model_error is kNone.
   bool is_consistent() const;
-  /// True if a descent from the true values does not reach a lower objective than the fit.
+  /// True unless a descent from the true values reaches a chi^2 that is lower than that of the fit by more than 0.01.
   bool is_global() const;
 };
 

@@ -12,7 +12,7 @@
 
 namespace dolp::bench {
 
-/// The entries at which the study compares the errors of all methods, for one masking.
+/// Entries with one masking. At these entries the study compares the errors of all methods.
 struct PeerSample {
   PeerSample(Masking which, const std::vector<NestedGrid::Place>& sample_places);
 
@@ -56,7 +56,7 @@ class PeerSettings {
   /// The first setting that meets the tolerance at all entries of the sample; null if there is none.
   const TriedSetting* reaching(double tolerance);
 
-  /// Stores `error`, a larger error of the setting that was found on another grid. `reaching` then uses this error.
+  /// Stores `error`, a larger error that `setting` has on another grid. `reaching` then uses this error.
   void reject(const TriedSetting& setting, double error);
 
   /// The reason why `reaching` found no setting.

@@ -74,8 +74,8 @@ const std::vector<Target> kTargets = {
     {"native float build, same cores and entries", {"native-float"}, {"integral", "smith"}, 0.9, "ratio"}};
 constexpr double kTargetTolerance = 1e-4;
 
-/// The request whose time is measured. For a batched method: the largest grid that does not take longer than
-/// effort.grid_s. Otherwise: the sample.
+/// The request whose time is measured. For a batched method, it requests the largest nested grid that is expected to
+/// take at most effort.grid_s. For any other method, it requests the entries of the sample.
 PeerBatch timed_batch(const Method& method, Solver& solver, const PeerSample& sample, double setting,
                       const Effort& effort) {
   if (!method.is_batched) return whole_sample(sample);
@@ -208,8 +208,8 @@ ordered_json Study::measured_row(const Method& method, Solver& solver, const Pee
   return row;
 }
 
-/// The time per entry that ratios compare: the time in kernels, or row[otherwise] if the method has no kernels. Empty
-/// if the row has neither.
+/// The time per entry from which a ratio is computed. It is the time in kernels, or row[otherwise] if the method has no
+/// kernels. Empty if the row has neither time.
 std::optional<double> compared_time(const ordered_json& row, const char* otherwise = "time_s") {
   for (const char* key : {"kernel_time_s", otherwise}) {
     if (row.contains(key)) return row[key].get<double>();

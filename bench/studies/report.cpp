@@ -13,7 +13,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr double kAcceptedSpread = 0.2;
-constexpr double kAcceptedLoad = 0.3;  // largest load per core, before the study, without a warning
+constexpr double kAcceptedLoad = 0.3;  // a larger load per core at the start of the study causes a warning
 
 /// The first four names, and how many more there are.
 std::string some_of(const std::vector<std::string>& names) {

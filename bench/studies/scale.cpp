@@ -103,7 +103,8 @@ std::vector<std::string> table_command(const StudyOptions& options, const Folder
   return command;
 }
 
-/// The row of a table that one process computes, with the time to copy its file.
+/// Measures a table that one process computes. Returns a row of the results. For comparison with the time of the table,
+/// the row also has the time in which `cp` copies the file.
 ordered_json size_row(const StudyOptions& options, const Size& size) {
   const Folder folder;
   const auto begin = std::chrono::steady_clock::now();
@@ -122,7 +123,8 @@ ordered_json size_row(const StudyOptions& options, const Size& size) {
           {"raw_times_s", {time_s}}};
 }
 
-/// The row of a table in shards: all shards run at the same time, and then `dolp merge` joins them.
+/// Measures a table in `count` shards, which run at the same time. Then `dolp merge` joins their files. Returns a row
+/// of the results.
 ordered_json shards_row(const StudyOptions& options, const Size& size, std::size_t count) {
   const Folder folder;
   const auto begin = std::chrono::steady_clock::now();

@@ -26,7 +26,7 @@ class StudyRun {
   /// Starts the JSON: name of the study, context, and the meanings of `error` and `time_s` in its rows.
   void describe(const std::string& study, const std::string& error, const std::string& time_s);
 
-  /// The JSON, so that a study can add anything except rows.
+  /// The JSON. A study writes everything into it except the rows, which `finish` adds.
   nlohmann::ordered_json& json() { return json_; }
 
   /// Increases the number of rows that the progress bar expects.
@@ -53,7 +53,7 @@ class StudyRun {
 struct StudyParts {
   std::function<void(StudyRun&)> measure;
   std::function<std::string(const nlohmann::ordered_json&)> table_text;                ///< table for the terminal
-  std::function<void(nlohmann::ordered_json&)> warn = [](nlohmann::ordered_json&) {};  ///< adds warnings
+  std::function<void(nlohmann::ordered_json&)> warn = [](nlohmann::ordered_json&) {};  ///< adds warnings to the JSON
 };
 
 /// Runs a study with a progress bar, prints its table and warnings, and writes its JSON. Errors: IoError if the file

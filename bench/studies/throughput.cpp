@@ -44,7 +44,9 @@ constexpr std::array<GridSize, 8> kGrids = {{{32, 32, 32},
                                              {256, 64, 64},
                                              {256, 128, 64},
                                              {256, 128, 128}}};
-constexpr std::size_t kMainGrid = 1;         // position in kGrids of the grid that all parts except `grids` use
+// Position of the main grid in kGrids. The part `grids` also runs the other grids, and `materials` runs kMaterialGrids.
+// All other parts run only the main grid.
+constexpr std::size_t kMainGrid = 1;
 constexpr GridSize kSmallGrid = {2, 2, 16};  // for a first run without timing, which compiles the kernels
 constexpr std::size_t kQuickEntries = std::size_t{24} * 24 * 24;
 constexpr std::size_t kFullRepeats = 5;
@@ -139,7 +141,7 @@ struct MaterialAxes {
   std::vector<Spectrum> bands = {};
   std::vector<double> temperature_K = {};
   bool has_all_materials = false;
-  double polarised_diffuse = 0.0;  ///< k_d, the share of diffuse reflection; the diffuse light is polarised
+  double polarised_diffuse = 0.0;  ///< factor k_d of the diffuse reflection, which is polarised here
 };
 
 Layer layer(const OpticalConstants& index, double thickness_um) { return {{.constant = index}, thickness_um}; }
@@ -349,8 +351,8 @@ void Study::run_materials(Masking masking) {
   for (std::size_t i = 0; i < kQuickRepeats; ++i) {
     for (const std::unique_ptr<TimedScene>& one : all) one->repeat();
   }
-  // The time of the kernels only. From the results of the kernels, the host computes the moments of each index. This
-  // time of the host does not count.
+  // Only the time of the kernels counts. It leaves out the time in which the host computes the moments of each index
+  // from the results of the kernels.
   const auto kernels_s = [&](std::size_t i) { return all[i]->work().kernel_s; };
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto entries = static_cast<double>(all[i]->entries().size());

@@ -1,4 +1,4 @@
-// The study of the window: real events drag sliders on a virtual display.
+// The study of the window. On a virtual display, the program xdotool drags sliders with mouse events.
 #include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>

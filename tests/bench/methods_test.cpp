@@ -109,8 +109,8 @@ std::string test_name(const testing::TestParamInfo<std::string>& tested) {
 }
 INSTANTIATE_TEST_SUITE_P(Registry, BenchMethod, testing::ValuesIn(method_names()), test_name);
 
-// At this tight tolerance the test would find errors of the masking tables (`integral` and `smith` masking), and errors
-// of the integrand near the horizon, where the integral ends.
+// The tolerance is so tight that small errors would fail the test: errors of the masking tables, which `integral` and
+// `smith` masking use, and errors of the integrand near the horizon, where the integral ends.
 TEST(BenchFormulas, AdaptiveCubature_TightTolerance_AgreesWithReferenceForBothDistributions) {
   const std::unique_ptr<Solver> hcubature = solver_of("hcubature");
   for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {

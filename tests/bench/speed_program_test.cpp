@@ -106,7 +106,7 @@ TEST_F(BenchProgram, Json_Rows_ReachTheToleranceAndCompareWithTheKernels) {
       EXPECT_GE(row["entries"], 512);
     }
   }
-  ASSERT_EQ(result["targets"].size(), 3U);  // for libcubature, the product rule and the native build
+  ASSERT_EQ(result["targets"].size(), 3U);  // ratios to libcubature, to the product rule and to the native build
   for (const json& target : result["targets"]) {
     EXPECT_EQ(target["met"], target["ratio"].get<double>() >= target["wanted"].get<double>()) << target.dump();
   }

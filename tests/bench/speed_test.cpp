@@ -1,4 +1,5 @@
-// Parts of the speed studies: the kernel source compiled for the CPU, Gauss rules on the device, counted operations.
+// Tests of what the speed studies use: the kernel source compiled for the CPU, Gauss rules on the device, and the count
+// of arithmetic operations.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,7 +37,8 @@ double largest_difference(const std::vector<Answer>& a, const std::vector<Answer
   return largest;
 }
 
-// The native build is compiled from the same kernel source as the kernels of the device.
+// The native build is compiled from the same kernel source as the kernels of the device. It may evaluate more nodes
+// than the device, but not fewer.
 TEST(BenchNative, Grid_HasTheDevicesNodesOrMoreAndItsMoments) {
   constexpr double kTolerance = 1e-4;
   const std::unique_ptr<Solver> native = solver_of("native-float");

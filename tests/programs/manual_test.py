@@ -2,8 +2,8 @@
 """Tests the manual: its commands work, its generated parts are current, and its links have targets.
 
 Usage: manual_test.py BUILD [TEST...]    BUILD is the folder that has dolp; ctest runs each test separately
-The test runs the blocks ```sh and ```python of FILES_WITH_COMMANDS unchanged and in order. The blocks of a file run
-in a new folder with host, bench and the programs of quickstart.sh. Blocks with a text of NOT_RUN do not run.
+The test runs the blocks ```sh and ```python of FILES_WITH_COMMANDS unchanged and in order. It skips blocks that
+contain a key of NOT_RUN. The blocks of a file run in a new folder with host, bench and what quickstart.sh builds.
 """
 import csv
 import functools
@@ -22,7 +22,7 @@ BUILD = pathlib.Path("build/release")
 FILES_WITH_COMMANDS = ("README.md", "host/programs/cli/README.md", "host/lib/fit/README.md", "host/core/scene/README.md")
 BLOCK_TIMEOUT_S = 300  # for a sanitizer build on two busy cores; in a release build a block takes seconds
 
-# Blocks that contain one of these texts do not run. The second text is the reason.
+# A block that contains one of these keys does not run. The value of the key is the reason.
 NOT_RUN = {
     "quickstart.sh": "builds the program",
     "tests/run.sh": "runs this test",
@@ -30,8 +30,8 @@ NOT_RUN = {
     "export PATH": "has no effect beyond its own shell; the test sets PATH likewise",
 }
 
-# Prints rho_i and rho_q of all entries in one line. Then prints for each entry a line with the three arrays that
-# RHO_IN_CPP passes to README's GLSL function.
+# Is appended to the Python code of README.md. Prints rho_i and rho_q of all entries in one line. Then prints for each
+# entry a line with the three arrays that the GLSL function of README.md takes. RHO_IN_CPP reads these lines.
 PRINT_RHO = """
 print(*np.stack([rho_i, rho_q], axis=-1).ravel())
 for w, v in zip(table.response_i.values.reshape(-1, 24), table.response_q.values.reshape(-1, 24)):
@@ -186,7 +186,7 @@ class Manual(unittest.TestCase):
                         self.assertIn(anchor, anchors(target.read_text(encoding="utf-8")))
 
     def test_model_has_one_place(self):
-        """Only shaders/physics/README.md describes the model. No file mentions the description that it replaced."""
+        """Only shaders/physics/README.md describes the model. No file mentions the file that described it before."""
         former = "MODEL" + ".md"
         for path in ROOT.rglob("*"):
             parts = path.relative_to(ROOT).parts

@@ -49,7 +49,7 @@ TEST_F(Mueller, Points_RepeatedInOrderWithAllElements) {
   EXPECT_EQ(f.at("m00")[0], f.at("m00")[1]);
   EXPECT_EQ(f.at("m02")[0], -f.at("m02")[1]);
   EXPECT_NE(f.at("m02")[0], 0.0);
-  EXPECT_GT(f.at("m00")[3], f.at("m00")[2]);  // geometry 2 is farther from its mirror direction
+  EXPECT_GT(f.at("m00")[3], f.at("m00")[2]);  // row 3 is near the mirror direction, row 2 is not
 }
 
 TEST_F(Mueller, Evaluators_AgreeWithinTheirStatedErrors) {

@@ -16,12 +16,12 @@ const std::vector<std::string> kIsothermal = {"--set", "surroundings.temperature
 const std::vector<std::string> kBistatic = {"--set", "geometry.mode=bistatic", "--set",
                                             "source.relative_irradiance=0.5"};
 // The surface is as warm as its surroundings, so emitted and reflected polarisation cancel. Only the source polarises
-// the radiation. The run then needs no moments: integrals of the pBRDF over all directions.
+// the radiation. So the run does not need the moments, which are integrals of the pBRDF over all directions.
 const std::vector<std::string> kBeamAlone = {"--set", "surroundings.temperature_K=300",
                                              "--set", "geometry.mode=bistatic",
                                              "--set", "source.relative_irradiance=0.5"};
-// Relative error of the predicted number of evaluations. The number of quadrature nodes is a rounded real
-// number. In float a device may round it to another integer than the CPU.
+// Relative error of the predicted number of evaluations. The number of quadrature nodes of an integral is a
+// rounded real number. A device computes it in float and may so get another integer than the CPU.
 constexpr double kOrderRounding = 0.05;
 // Relative error of the predicted number of evaluations if `dolp plan` counts the evaluations of only 256 entries.
 constexpr double kSampling = 0.1;

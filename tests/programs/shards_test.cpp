@@ -85,7 +85,7 @@ TEST_F(Shards, MergedAgain_AreTheTableOfOneRun_WithEveryMasking) {
   }
 }
 
-// There are more shards than directions, so shards also divide the axes of wavelength and n.
+// There are 14 shards but only 7 zeniths. So the shards also divide the axis of the two wavelengths.
 TEST_F(Shards, OfSeveralAxes_MergeIntoTheTableAndItsCsv) {
   ASSERT_EQ(dolp({"table", "grid.toml", "-o", "one.csv"}).status, 0);
   for (int i = 1; i <= 14; ++i) {
@@ -316,7 +316,7 @@ TEST_F(Resume, OverADamagedPartialFile_GivesTheSameBits) {
   };
   const std::vector<std::pair<std::string, std::string>> damaged = {
       {"", progress},                      // removed
-      {values.substr(0, 1000), progress},  // cut before the end of the values of the first part
+      {values.substr(0, 1000), progress},  // cut within the values of the first part
       {values.substr(0, 5'000'000), progress},
       {content("one.nc") + values, progress},                 // the finished table stands before the values
       {overwritten(values, 400'000), progress},               // 64 bytes in the first part overwritten

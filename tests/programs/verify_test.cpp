@@ -132,8 +132,8 @@ TEST_F(Verify, ValueOfAnyQuantityThatIsOff_IsFound) {
   const TableValues table = make_table({"--set", "grid.theta_deg=[0.001, 40, 60, 80]"});
   for (const Quantity quantity : quantities) {
     const double right = table[quantity][0];
-    // Entry 0 has a theta near 0, so its DOLP is tiny. The error of a tiny DOLP does not limit the error of I. For I,
-    // `dolp verify` then uses another bound.
+    // `dolp verify` divides the error of DOLP by DOLP to bound the relative error of I. Entry 0 has a theta near 0 and
+    // a tiny DOLP, so this bound is useless. With its other bound of I, `dolp verify` must find the wrong I.
     put_value(at("t.nc"), quantity, 0, right + 0.05 * std::max(1.0, std::abs(right)));
     const nlohmann::json json = verify_json(kAccuracy);
     EXPECT_EQ(json["failures"].size(), 1U) << description_of(quantity).name;
@@ -230,7 +230,7 @@ TEST_F(Verify, EstimateBeyondTheToleranceWithoutStatus2_IsFoundByTheTolerance) {
 }
 
 TEST_F(Verify, EntriesThatAreNan_AreComparedAsSuch) {
-  // Without masking rho diverges at 90 degrees. It is NaN there, with the status bits 1 and 4.
+  // Without masking rho diverges at 90 degrees. It is NaN there, and the status has the bits with the values 1 and 4.
   const TableValues table = make_table({"--set", "surface.masking=none", "--set", "grid.theta_deg=[30, 90]"});
   const std::size_t diverges = table.position(1, 0, 0);
   ASSERT_TRUE(std::isnan(table[Quantity::kRhoI][diverges]));

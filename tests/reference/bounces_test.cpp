@@ -114,8 +114,8 @@ TEST(ReferenceBounces, Sum_IsPhysical) {
   }
 }
 
-// The pBRDF diverges in the mirror direction, because after two bounces grooves of every azimuth reflect light into
-// this direction. At zenith 0 these grooves are right-angled, and the pBRDF diverges as well.
+// The pBRDF diverges in the mirror direction: at every azimuth of grooves there is a slope that sends light into this
+// direction after two bounces. For light at zenith 0 this slope is 45 degrees, and the pBRDF diverges as well.
 TEST(ReferenceBounces, MirrorDirection_IsWhereTwoBouncesDiverge) {
   const Surface surface = grooves(Distribution::kCauchy, 0.4, 2.0);
   const auto twice = [&](double theta_r_deg, double delta_phi_deg) {
@@ -142,9 +142,9 @@ TEST(ReferenceBounces, ScatterOfTheEvaluator_IsTheSum) {
   for (std::size_t e = 0; e < 16; ++e) EXPECT_EQ(matrix.m[e], f[e / 4][e % 4]);
 }
 
-// Integrates the pBRDF elements f_00 and f_01 over the horizontal components x and y of the direction of reflection.
-// The solid angle is dx dy / cos(theta_r). The polar coordinates in the plane of x and y have their centre at the
-// mirror direction, where the pBRDF diverges.
+// Integrates the elements 00 and 01 of reference_scattering(), which is the pBRDF times both cosines, over the
+// horizontal components x and y of the direction of reflection. The solid angle is dx dy / cos(theta_r). The polar
+// coordinates in the plane of x and y have their centre at the mirror direction, where the pBRDF diverges.
 std::complex<double> hemispherical(const Surface& surface, const OpticalConstants& index, double theta_deg) {
   constexpr int kSectors = 12, kRings = 3;
   const double centre = -std::sin(theta_deg * kRadPerDeg);
@@ -153,7 +153,8 @@ std::complex<double> hemispherical(const Surface& surface, const OpticalConstant
     for (int ring = 0; ring < kRings; ++ring) {
       const auto in_sector = [&](double chi) {
         const double reach = std::sqrt(1.0 - std::pow(centre * std::sin(chi), 2)) - centre * std::cos(chi);
-        const auto at = [&](double y) {  // at the horizon, y = 1, d distance/dy is 0 and cancels the infinite 1/cosine
+        // At the horizon, y = 1, the factor 1 - y of the area cancels the infinite 1/cosine.
+        const auto at = [&](double y) {
           const double distance = reach * y * (2.0 - y);
           const double x = centre + distance * std::cos(chi), across = distance * std::sin(chi);
           const double sine = std::hypot(x, across);

@@ -155,7 +155,7 @@ TEST(ReferenceGrooves, FirstBounceAlone_IsSingleScatteringAndDirectEmission) {
     const double m = std::numbers::sqrt2 * point.shape.sigma;
     const reference::Goal goal{.relative = kPlainTolerance};
     const auto own = [](const reference::Values<2>& value) { return value; };
-    const auto over_slopes = [&](double u) {  // slope t = m u with the density P: 2 pi t P dt = 2 u exp(-u^2) du
+    const auto over_slopes = [&](double u) {  // the slope is m u; u has the probability density 2 u exp(-u^2)
       const auto at_chi = [&](double chi) -> reference::Values<2> {
         const reference::GrooveLight light = reference::light_in_groove(m * u, std::sin(chi), std::cos(chi),
                                                                         zenith_from_deg(point.theta_deg), point.index);
@@ -186,7 +186,7 @@ TEST(ReferenceGrooves, LimitsOfTheMaterial) {
 
 TEST(ReferenceGrooves, SmoothSurface_IsFresnels) {
   constexpr double kSigma = 1e-3;
-  constexpr double kTolerance = 2e-4;  // rough - mirror is of the order of the mean square of slopes below 1: 2.4e-5
+  constexpr double kTolerance = 2e-4;  // rough and mirror differ by about the mean of t^2 for slopes t < 1: 2.4e-5
   for (const OpticalConstants index : {kPaint, kMetal}) {
     for (const double theta_deg : {0.0, 60.0}) {
       const Moments mirror = all_bounces({kCauchy, theta_deg, {0.0, 2.0}, index});

@@ -83,7 +83,7 @@ TEST(ReferenceMasking, G1_HeavyTails_KeepTheWholeDensity) {
 
 TEST(ReferenceMasking, G1_SingularDensity_MatchesIntegrationOverTheSlope) {
   constexpr double kTolerance = 1e-10;  // error of the exp-sinh rule; the integrand falls as t^(1 - 2q)
-  constexpr double kSigma = 0.3, kTheta = 0.9, kAlpha = 0.4;  // angles for which the integral ends at an infinite slope
+  constexpr double kSigma = 0.3, kTheta = 0.9, kAlpha = 0.4;  // for these angles the integral extends to infinity
   const double sin_theta = std::sin(kTheta), cos_theta = std::cos(kTheta);
   boost::math::quadrature::exp_sinh<double> to_infinity;
   boost::math::quadrature::tanh_sinh<double> finite;

@@ -103,8 +103,8 @@ TEST(ReferenceMoments, SmithAlbedoAt60Degrees_MatchesTheModelDocument) {
 }
 
 TEST(ReferenceMoments, Grazing_IsTheLimit) {
-  // The moments at theta and at 90 degrees differ by less than 100 cos(theta). (Apart from logarithms, the moments are
-  // linear in cos(theta) near 90 degrees.)
+  // Near 90 degrees the moments change about linearly with cos(theta). So the test allows a difference of
+  // 100 cos(theta) between the moments at theta and at 90 degrees.
   constexpr double kOffset_deg = 1e-4;
   const double tolerance = 100.0 * kOffset_deg * kRadPerDeg;
   for (const Masking masking : kMaskings) {
@@ -151,9 +151,9 @@ Surface surface_of(Distribution distribution, Masking masking, double sigma, dou
   return surface;
 }
 
-// The azimuth Delta_phi at which v-cavity masking has a kink. At this azimuth (cos(theta_i) + cos(theta_r))
-// min(cos(theta_i), cos(theta_r)) = cos^2(beta). Two values of theta_r have the kink at Delta_phi = 180 degrees:
-// 3 theta_i - 180 and 60 + theta_i / 3 degrees. The test splits the integral over theta_r at these two values.
+// The azimuth Delta_phi at which v-cavity masking has a kink. There, with the angle of incidence beta on the facet,
+// cos^2(beta) = (cos(theta_i) + cos(theta_r)) min(cos(theta_i), cos(theta_r)). If theta_r is 3 theta_i - 180 degrees or
+// 60 + theta_i / 3 degrees, Delta_phi is 180 degrees. The test splits the integral over theta_r at these two zeniths.
 double bend_deg(double theta_i_deg, double theta_r_deg) {
   const double c_i = std::cos(theta_i_deg * kRadPerDeg), c_r = std::cos(theta_r_deg * kRadPerDeg);
   const double sines = std::sin(theta_i_deg * kRadPerDeg) * std::sin(theta_r_deg * kRadPerDeg);

@@ -34,8 +34,8 @@ constexpr double kNegligible = 1e-12;
 // Relative rounding error of a closed form, which has fewer than 16 operations.
 constexpr double kClosedFormRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
-/// Two settings of the reference, which computes each case with both. If a moment has no closed form, the program
-/// writes its value with `fine`, and an error that is at least the difference between `fine` and `coarse`.
+/// Two settings of the reference evaluator, which computes each case twice. If a moment has no closed form, the program
+/// writes the value computed with `fine`. The error in the file is at least the difference of the two values.
 struct Refinements {
   dolp::ReferenceOptions coarse;
   dolp::ReferenceOptions fine;
@@ -164,7 +164,7 @@ std::string csv_line(const Row& row) {
   return line + "," + c.name + "," + row.origin + "\n";
 }
 
-// Renames the file at the end, so that other programs find either the old or the complete new file.
+// Writes to a temporary file and renames it to `path`. So other programs find either the old or the complete new file.
 void write(const std::filesystem::path& path, const std::string& command, const std::vector<Row>& rows) {
   const std::filesystem::path part = path.string() + ".part";
   std::ofstream file(part);

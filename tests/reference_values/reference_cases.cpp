@@ -9,7 +9,7 @@ namespace {
 
 // Smallest q of random cases with smith masking. With the Cauchy distribution their moments exist only for q > 1.5.
 constexpr double kSmallestSmithQ = 1.53;
-// Distance of a case from a zenith at which two slopes that split the integral coincide. It is far above rounding.
+// Distance of the cases "beside-..." from a special zenith, see hard_cases(). It is far above rounding.
 constexpr double kBeside_deg = 1e-7;
 
 constexpr OpticalConstants kMetal{27.0, 90.0};

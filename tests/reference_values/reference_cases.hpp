@@ -34,9 +34,10 @@ inline constexpr std::array<Group, 8> kGroups{{{Distribution::kCauchy, Masking::
                                                {Distribution::kGaussian, Masking::kVCavity},
                                                {Distribution::kGaussian, Masking::kSmith}}};
 
-/// The hard cases of a group: ends of every range, zeniths at which two slopes that split the integral coincide, and
-/// indices that reflect nothing or everything. Cauchy with smith masking has no cases with q up to 1.5, because the
-/// mean slope is infinite. V-cavity and smith masking have no cases at 90 degrees, because the moments are 0.
+/// The hard cases of a group: the ends of every range, indices that reflect nothing or everything, and special zeniths.
+/// The integral over slopes is split at some slopes; at a special zenith two of these slopes coincide. Cauchy with
+/// smith masking has no cases with q up to 1.5, because the mean slope is infinite. V-cavity and smith masking have no
+/// cases at 90 degrees, because the moments are 0.
 std::vector<Case> hard_cases(const Group& group);
 
 /// Random points: `count_a` of domain A (sigma 0.01 to 1.2, q 1.06 to 13, theta up to 89.5 degrees) and `count_b` of

@@ -10,7 +10,7 @@
 
 namespace dolp {
 
-/// The number of random draws from an environment variable, or `otherwise` if it is not set.
+/// How many random draws a test makes: the value of the environment variable, or `otherwise` if it is not set.
 inline std::size_t draws_wanted(std::size_t otherwise, const char* variable = "DOLP_PROPERTY_DRAWS") {
   const char* text = std::getenv(variable);
   return text != nullptr ? std::strtoul(text, nullptr, 10) : otherwise;

@@ -1,4 +1,4 @@
-// A scene of paint, and a session without its window, for tests.
+// For tests: a scene of paint, and a Session (state and commands of the window) that runs without a window.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -17,7 +17,8 @@ void* operator new(std::size_t size) {
   throw std::bad_alloc();
 }
 
-// Replaces the operator of the address sanitizer, whose memory must not go to std::free. operator delete calls free.
+// The operator delete below calls std::free. The address sanitizer has its own nothrow operator new, and its memory
+// must not go to std::free. So this operator replaces it.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   try {
     return ::operator new(size);

@@ -77,8 +77,8 @@ class RandomPoints : public Draws {
     }
   }
 
-  // The default case has the probability 0.4. It draws a second direction near the specular direction: zenith and
-  // azimuth are within 3 width_deg. width_deg is about sigma in degrees, at most 30.
+  // The default case has the probability 0.4. Its second direction is near the mirror direction of the first: zenith
+  // and azimuth differ by at most 3 width_deg. width_deg is about sigma in degrees, at most 30.
   BeamAngles angles(double sigma, const OpticalConstants& index) {
     BeamAngles a{zenith(), zenith(), uniform(-180.0, 180.0)};
     const double width_deg = 60.0 * std::min(sigma, 0.5);

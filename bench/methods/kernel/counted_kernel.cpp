@@ -17,7 +17,7 @@ namespace counted_kernel {
 
 void count(std::uint64_t OperationCounts::*kind) { ++(counts.*kind); }
 
-/// A float that counts its operations. Operations between constants are free, because a compiler evaluates them.
+/// A float that counts its operations. Operations between constants do not count: a compiler evaluates them.
 class Counted {
  public:
   Counted() = default;

@@ -1,6 +1,6 @@
-// The code that native_kernel.cpp and counted_kernel.cpp share. Before these files include it, each defines the macro
-// DOLP_KERNEL_NAMESPACE, and in this namespace the types real, real2 and real4 and the function as_data. Masking and
-// row width are template arguments: they are constants for the compiler, as on a Vulkan device.
+// The code that native_kernel.cpp and counted_kernel.cpp share. Each defines, before it includes this file, the macro
+// DOLP_KERNEL_NAMESPACE, and in that namespace the types real, real2 and real4 and the function as_data. The
+// masking and the number of entries per row are template arguments: constants for the compiler, as on a Vulkan device.
 
 #include <algorithm>
 #include <array>

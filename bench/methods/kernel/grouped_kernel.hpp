@@ -19,7 +19,7 @@ struct GroupedWork {
 
   KernelData data;
   Rows rows;
-  std::vector<RowPiece> pieces;  ///< kernel row and piece of each invocation, in the order in which a device runs them
+  std::vector<RowPiece> pieces;  ///< kernel row and piece of the integral of each invocation, in the device's order
 };
 
 /// The kernels of shaders/ for one GroupedWork, which must outlive this object. Several threads may call the functions
@@ -31,8 +31,8 @@ class GroupedKernel {
   /// Fills the masking table of one shape. Call this for every shape before run_pieces.
   virtual void build_masking_table(std::size_t shape) = 0;
 
-  /// Runs invocations, from number `first` on. Each invocation writes Rows::width results, one for each entry for
-  /// which its kernel row has room. The size of `members`, divided by Rows::width, is the number of invocations.
+  /// Runs invocation `first` and its successors until `members` is full. Each invocation writes Rows::width results,
+  /// one for each entry of its kernel row. If the row has fewer entries, the other results are unused.
   virtual void run_pieces(std::size_t first, std::span<kernel::MomentsNode> members) = 0;
 };
 

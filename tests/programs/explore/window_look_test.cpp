@@ -65,7 +65,7 @@ TEST_F(WindowLook, Scale_ByKeys_ChangesTheSizeOfTheControls) {
     keys(larger);
     EXPECT_GT(height(), before);
   }
-  EXPECT_NEAR(height(), 1.21F * usual, 2.0F);  // sizes of text and margins are whole pixels
+  EXPECT_NEAR(height(), 1.21F * usual, 2.0F);  // two steps of 10 %; sizes of text and margins are rounded to pixels
   EXPECT_NEAR(scaled(10.0F), 12.1F, 0.5F);
   keys("ctrl+0");
   EXPECT_EQ(height(), usual);
@@ -99,13 +99,13 @@ TEST_F(WindowLook, LeastSize_ShowsOneThingAtATime) {
 TEST_F(WindowLook, Note_WaitsForTheMouseToRest_AndLeavesTheNextValueInSight) {
   const Area slider = app_->control_area("surface.sigma");
   Area next = app_->control_area("surface.q");
-  next.max = next.at(0.6F, 1.0F);  // leaves out the part under the mouse pointer
+  next.max = next.at(0.6F, 1.0F);  // without the right end, which the pointer on the sigma slider may cover
   const Area note{{slider.max.x + 150.0F, slider.min.y}, {slider.max.x + 300.0F, slider.max.y + 40.0F}};
   const std::string without = pixels(note);
   const double moved_s = ImGui::GetTime();
   move_to(slider.at(0.9F, 0.5F));
   const std::string next_before = pixels(next);
-  // The mouse does not move while the test waits for the note.
+  // A note appears only if the mouse rests. So this thread only waits for the note, then closes the window.
   std::jthread hand([&] {
     while (pixels(note) == without) std::this_thread::sleep_for(std::chrono::milliseconds(10));
     app_->close();

@@ -103,7 +103,7 @@ TEST(ExplorePanels, Spectrum_IsTheCurveOverWavelengthAtTheCursor_AndIsComputedWh
   session.set_theta(70.0);
   driver.settle();
   ASSERT_TRUE(session.spectrum().is_finished());
-  // The axis begins at half of the lower end of the band, 4 um. It ends at the last wavelength of the material.
+  // The band begins at 8 um, and the axis at half of this. The axis ends at the last wavelength of the material.
   EXPECT_EQ(session.wavelengths().scale, (Scale{4.0, 20.0}));
   const std::size_t at = 40;
   const Scene scene = session.spectral_scene().with("spectrum.wavelength_um", session.spectrum().at()[at]);

@@ -4,9 +4,9 @@
 Usage: plot_table.py TABLE.nc OUT.png [--q Q] [--wavelength UM] [--temperature K] [--n N] [--k K] [--material NAME] [--band FROM-TO]
        plot_table.py TABLE.nc OUT.png --rank THETA ...   ranks the materials of a table by DOLP at this zenith
 Of each axis except theta and sigma the picture shows one value. An option such as --q Q chooses the value nearest to Q.
-Without an option the picture shows the value nearest to the scene's value (the middle value if the scene has none), and
-the first material or band. One curve has the scene's sigma. In a table of wind speeds, wind replaces sigma. Entries
-with nonzero status are faint in curves, hatched in maps. Needs python3-netcdf4, python3-numpy and python3-matplotlib.
+Without an option the picture shows the first material or band, and of other axes the value nearest to the scene's value
+(the middle value if it has none). One curve has the scene's sigma. In a table of wind speeds, wind replaces sigma.
+Entries with nonzero status are faint or hatched. Needs python3-netcdf4, python3-numpy and python3-matplotlib.
 Exit status: 0 done, 2 usage or a file that is not such a table, 4 the picture could not be written.
 """
 import argparse
@@ -60,12 +60,12 @@ def text_of(dataset, name):
 
 
 def scene_part(dataset, part):
-    """The keys of one TOML table of the scene, such as surface, with the overrides. Empty if the scene is not TOML."""
+    """The keys of one TOML table of the scene, such as surface, changed by the overrides. Empty if it is not TOML."""
     try:
         keys = tomllib.loads(text_of(dataset, "scene")).get(part, {})
         for line in text_of(dataset, "scene_overrides").splitlines():
             if line.startswith(f"{part}."):
-                kept = {} if part == "spectrum" else keys  # a wavelength replaces a band, a band a wavelength
+                kept = {} if part == "spectrum" else keys  # has one key: a wavelength or a band
                 keys = {**kept, **tomllib.loads(line.removeprefix(f"{part}."))}
         return keys
     except ValueError:
@@ -114,7 +114,7 @@ class Slice:
     percent. In a table of wind speeds, `sigma` contains the wind speeds."""
 
     def __init__(self, dataset, wanted):
-        """`wanted`: a value for each axis in SYMBOLS and NAMED. None: the scene's value; in NAMED the first name."""
+        """`wanted`: a value for each axis in SYMBOLS and NAMED. If it is None, the scene's value or the first name."""
         for name in ("theta", "sigma", "q", "dolp"):
             if name not in dataset.variables:
                 raise NotATable(f"has no variable {name}; a table with DOLP is expected")
@@ -148,7 +148,7 @@ class Slice:
             return data[np.ix_(rows, columns)]
 
         self.dolp = 100.0 * values("dolp", np.nan)
-        if "stokes_i" in dataset.variables:  # if I is NaN, DOLP is only its limit toward 90 degrees: not drawn
+        if "stokes_i" in dataset.variables:  # where I is NaN, at 90 degrees, DOLP is a limit; not drawn
             self.dolp[np.isnan(values("stokes_i", np.nan))] = np.nan
         status = values("status", 0) if "status" in dataset.variables else np.zeros(self.dolp.shape, int)
         self.status = status & ~RHO_TOLERANCE_NOT_MET  # the picture shows DOLP, not rho

@@ -1,6 +1,8 @@
-// Tests the error bounds of moments with random entries that were not used to fit the rules. A finer rule or the
-// independent reference computes each moment again, which gives the error. Then climbs start from the entries with the
-// largest ratio of error to bound. A climb is a random search, near an entry, for a larger ratio.
+// Tests the error bounds that quadrature rules state for moments (reflectances times cos(theta)). The test uses random
+// entries that are not in the fit of the rules. An entry is a zenith angle, a roughness and a refractive index. A finer
+// rule or the independent reference computes each moment again. The difference is the error of the moment. Then the
+// test searches near the entries with the largest ratio of error to bound for entries with an even larger ratio. Such a
+// random search is called a climb.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +17,7 @@ struct HoldOutOptions {
   double tolerance = 1e-4;
   std::size_t entries = 1000;
   std::uint64_t seed = 1;
-  std::size_t climbs = 0;          ///< number of searches for a larger ratio, each near one of the worst random entries
+  std::size_t climbs = 0;          ///< number of climbs, each from one of the entries with the largest ratios
   bool against_reference = false;  ///< compare with the reference, which takes a second per entry on one core
   /// The test multiplies all error bounds of the rules by this number. If the bounds hold even with a small number,
   /// they are far above the errors.
@@ -39,8 +41,8 @@ struct HoldOut {
   CheckedEntry climbed;  ///< the entry with the largest ratio among the random entries and those that climbs found
 };
 
-/// Tests, on the CPU, the rules for the masking, scattering and distribution of `model`, which is a request without
-/// entries. Computes in double if the tolerance is too small for float.
+/// Tests rules on the CPU. `model` is a request without entries. Its masking, scattering and distribution select the
+/// rules. Computes in double if the tolerance is too small for float.
 HoldOut hold_out(const MomentsRequest& model, const HoldOutOptions& options);
 
 }  // namespace dolp

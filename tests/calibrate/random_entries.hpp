@@ -1,4 +1,5 @@
-// Random entries from the range of the model. A seed gives the same entries on every machine.
+// Random entries: a zenith angle, a roughness and a refractive index that the model accepts. The same seed gives the
+// same entries on every machine.
 #pragma once
 
 #include <cstdint>

@@ -21,10 +21,10 @@ namespace {
 
 constexpr std::array kTolerances = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8};
 constexpr double kCornerShare = 0.25;
-// Weight of the evaluations when an entry is computed again, because it missed its tolerance. In the first computation
-// the weight is 1. For scattered points the weight 1 would be right here, too. For a dense grid 30 would be right: a
-// run first computes one entry in 30 and interpolates the others, but afterwards computes every entry that misses its
-// tolerance. 8 is a compromise.
+// Weight of the evaluations when an entry is computed again, because it missed its tolerance. The evaluations of the
+// first computation have the weight 1. For separate points the ideal weight is 1, because a run computes every point.
+// For a dense grid it is 30: a run first computes only one entry in 30 and interpolates the others. Then it computes
+// every entry that misses its tolerance. 8 is a compromise.
 constexpr double kAgainWeight = 8.0;
 // The reflected light has the DOLP r_q / r_i. The error of this DOLP is at most (error of r_q + error of r_i) / r_i, so
 // at most 2 * (larger error) / r_i.
@@ -61,8 +61,9 @@ std::vector<Moments> computed(const MomentsRequest& request, const RuleModel& mo
   return moments;
 }
 
-/// Sum of ln(work) over all entries. The work of an entry is its number of evaluations. While the error of an entry is
-/// above `tolerance`, the entry is computed again with a smaller tolerance, and the evaluations have kAgainWeight.
+/// Sum of ln(work) over all entries. The work of an entry is its number of evaluations. While the error of an entry's
+/// DOLP is above `tolerance`, the entry is computed again with a smaller tolerance. Each evaluation then counts
+/// kAgainWeight times.
 double log_work(const MomentsRequest& all, double tolerance, const RuleModel& model) {
   std::vector<double> work(all.size(), 0.0);
   std::vector<std::uint32_t> wanted(all.size());

@@ -1,4 +1,5 @@
-// Search for the constants of quadrature rules (plan/rule.hpp) that minimise the evaluations for random entries.
+// Searches for the constants of quadrature rules (plan/rule.hpp) with which random entries need the fewest evaluations
+// of the integrand.
 #pragma once
 
 #include <cstddef>

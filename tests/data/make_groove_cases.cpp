@@ -1,5 +1,6 @@
-// make_groove_cases FILE.csv: writes moments that the reference computes for V-grooves with all bounces. The entries
-// are hard cases and random entries. Tests compare the kernels with these moments. The program takes minutes.
+// make_groove_cases FILE.csv: writes moments that the reference computes for V-grooves with all bounces. Tests compare
+// the kernels with these moments. Each line has one entry: a zenith angle, a roughness and a refractive index. Some
+// entries are chosen because they are hard to compute, the others are random. The program takes minutes.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -23,7 +24,8 @@ constexpr double kTolerance = 1e-7;
 // A random entry is left out if the reference gives its r_i with a relative error above this number.
 constexpr double kLeastKnown = 1e-3;
 constexpr std::uint64_t kSeed = 20261122;
-constexpr int kOrdinary = 12;  // random entries per distribution
+// Numbers of random entries of Domain::kOrdinary and Domain::kCorners, for each slope distribution.
+constexpr int kOrdinary = 12;
 constexpr int kCorners = 18;
 
 struct Case {

@@ -17,7 +17,8 @@ long most_threads() {
   return most != nullptr ? std::strtol(most, nullptr, 10) : -1;
 }
 
-/// Each running thread has such an object. The destructor lowers the count of threads, even after pthread_exit.
+/// Each running thread has such an object on its stack. The destructor lowers the count of threads when the thread
+/// ends, even if the thread calls pthread_exit().
 struct Counted {
   Counted() = default;
   Counted(const Counted&) = delete;

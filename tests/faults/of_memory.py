@@ -54,7 +54,9 @@ def allocation_in_lookup(driver):
 
 def allocation_with_driver(driver):
     """every 100th allocation of `eval` on a Vulkan device fails, in its driver too"""
-    # If the driver's compiler lacks memory, it may make a slightly different kernel without an error message.
+    # The 100th allocation fails in one try, the 200th in another try, and so on. Allocations of the driver count, too.
+    # If the driver's compiler lacks memory, it may make a slightly different kernel without an error message. So
+    # agree() compares the results.
     return allocations_of(driver, "eval", (), 10, 100, agree)
 
 

@@ -1,5 +1,5 @@
-// Counts which code a fuzzer reaches. libFuzzer finds the counters by the name of their section in the program file.
-// Code that GCC compiles calls the function below at each basic block.
+// Counts how often a fuzzer reaches each place in the code. libFuzzer finds the counters by the name of their section
+// in the program file. GCC inserts a call of the function below into each basic block.
 #include <array>
 #include <cstddef>
 #include <cstdint>

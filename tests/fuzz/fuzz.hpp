@@ -10,7 +10,8 @@
 
 namespace dolp::fuzz {
 
-/// The reader of this fuzzer. If it crashes or throws another exception, libFuzzer reports the input.
+/// Passes an input to the reader that this fuzzer tests. libFuzzer reports the input if the reader crashes or throws an
+/// exception other than InputError.
 void read(const std::string& text);
 
 template <class Reader>

@@ -46,7 +46,8 @@ TEST(HoldOut, PlantedUnderstatement_IsFound) {
   EXPECT_GT(planted.understated, options.entries / 2);
   EXPECT_LE(planted.understated, options.entries);
   EXPECT_GT(planted.worst.ratio, 100.0 * honest.worst.ratio);
-  // Now only the error of the worst entry surely exceeds its bound. hold_out() must find this entry.
+  // Now the bound of the worst entry is too small, but the bounds of other entries may still hold. hold_out() must find
+  // the worst entry.
   options.bound_share = 0.9 * honest.worst.ratio;
   const HoldOut lowered = held_out(options);
   EXPECT_GE(lowered.understated, 1U);

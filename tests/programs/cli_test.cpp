@@ -249,8 +249,9 @@ TEST_F(CommandLine, Json_EachEvaluator_HasTheContractsKeys) {
   }
 }
 
-// For a rough metal single scattering is wrong: it counts light that meets a second facet as emitted. Direct emission
-// leaves this light out. The summary must report the difference of DOLP between both models.
+// Two emission models differ in the light that meets a second facet. In the model 1 - rho, all this light counts as
+// emitted. In direct emission, none of it does. For a rough metal the DOLP of the two models differs much. The summary
+// must report this difference.
 TEST_F(CommandLine, Summary_MaskingWithADirectEmission_SaysWhatSingleScatteringLeavesOpen) {
   const std::vector<std::string> metal = {"--set", "surface.masking=smith", "--set", "surface.n=10",
                                           "--set", "surface.k=60"};

@@ -58,8 +58,8 @@ Words choices_of(const CLI::Option& option) {
   return words;
 }
 
-/// A text with a line for each word that may complete `line`: the word, a tab and a description. `line` has the words
-/// after `dolp`. The shell script puts a colon before the last word, so that an empty word is an argument, too.
+/// A line for each word that may complete the last word of `line`: the word, a tab and a description. `line` has the
+/// words after `dolp`. The shell scripts put a colon before its last word, because a shell may drop an empty word.
 std::string completing_words(const CLI::App& app, const Words& line) {
   const std::string current = line.empty() ? "" : line.back().substr(1);
   std::string found;

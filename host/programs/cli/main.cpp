@@ -22,7 +22,7 @@
 namespace dolp::cli {
 namespace {
 
-/// A hint for an unknown option: a similar option, or --set if its name is a key of scenes. Empty if there is no hint.
+/// A hint for an unknown option: an option with a similar name, or --set with the scene key of this name. May be empty.
 std::string option_hint(const CLI::App& command, const std::string& option) {
   constexpr std::size_t kMostMistakes = 2;
   const std::string given = option.substr(0, option.find('='));

@@ -202,7 +202,8 @@ TEST(ExplorePlots, Json_HasTheVisibleCurvesAndTheMap) {
   EXPECT_EQ(plots["map"]["rows"].size(), field.count);
   EXPECT_EQ(plots["map"]["rows"][2][5], 100.0 * field.values[2 * field.count + 5]);
   EXPECT_TRUE(plots["map"]["colours"].is_null() && !plots["map"]["is_signed"]);
-  // Pin and curve now have the same surface. So the name of the pin tells its temperature.
+  // The name of a pinned curve states how its surface differs from the surface of the main curve. From now on both
+  // surfaces are equal. So the name states the temperature, in which the scenes differ.
   driver.session.pins()[0].name = "";
   driver.session.set({{"surface.sigma", 0.15}, {"emission.temperature_K", 310.0}});
   driver.settle();

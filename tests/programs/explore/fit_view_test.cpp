@@ -139,7 +139,7 @@ TEST_F(FitWindow, RangeTypedBelowASlider_BoundsTheFit) {
     keys("Return");
   }
   fit();
-  EXPECT_EQ(number("surface.n"), 1.6);  // the end of the range next to the true value 1.7
+  EXPECT_EQ(number("surface.n"), 1.6);  // upper end of the range, because the true value 1.7 is larger
 }
 
 TEST_F(FitWindow, NearestMinimum_IsChosen_AndAClickVisitsTheLowest) {

@@ -69,8 +69,8 @@ std::string value_of(const Scene& scene, const std::string& key) {
 
 struct EditCase {
   std::vector<std::string> opened;  ///< settings with which the window opens
-  std::vector<std::string>
-      steps;  ///< "KEY=VALUE", several of them separated by ";", "reset KEY", or "reset" for all keys
+  /// A step is "KEY=VALUE", "reset KEY", or "reset" for all keys. "KEY=VALUE;KEY=VALUE" makes two changes in one step.
+  std::vector<std::string> steps;
   std::vector<std::string> expected;  ///< settings of the scene afterwards
   std::string message = "";           ///< text that the last message contains; empty: no message
   bool is_error = false;
@@ -97,7 +97,7 @@ const std::vector<EditCase> kEditCases = {
     {{"emission.bracket=true", "emission.temperature_K=310"},
      {"emission=none", "reset emission"},
      {"emission.temperature_K=310", "emission.bracket=true"}},
-    // A choice also changes the settings that it excludes.
+    // A setting may exclude other settings. The window then changes those settings, too, and says so in its message.
     {{"surface.masking=smith", "emission.bracket=true"},
      {"surface.scattering=multiple"},
      {"surface.masking=v-cavity", "emission.bracket=false"},
@@ -172,7 +172,7 @@ bool is_accepted(const SceneEdits& edits, const Changes& changes) {
   }
 }
 
-/// All combinations of the words of some keys that the scene reader accepts.
+/// A combination gives each of the keys one of its words. Returns all combinations that the scene reader accepts.
 std::vector<Changes> accepted_combinations(const std::vector<std::string>& keys) {
   std::vector<Changes> all = {{}};
   for (const std::string& key : keys) {
@@ -249,7 +249,8 @@ std::vector<JobPart> finish(Worker& worker) {
 
 TEST(ExploreWorker, RunningJob_EndsWhenItIsNoLongerWantedUnlessItIsBrief) {
   using Keys = std::vector<std::string>;
-  // next: keys of the jobs that are wanted while the job "first" runs. expected: keys of the results, in their order.
+  // While the job "first" runs, the worker gets a new list of jobs. next: keys of this list. expected: keys of the
+  // results, in their order. cancelled: how often a running job is cancelled.
   for (const auto& [is_brief, next, expected, cancelled] : {std::tuple{false, Keys{"new"}, Keys{"new"}, 1},
                                                             {false, Keys{"new", "first"}, Keys{"first", "new"}, 0},
                                                             {true, Keys{"new"}, Keys{"first", "new"}, 0},

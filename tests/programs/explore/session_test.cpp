@@ -43,7 +43,8 @@ TEST(ExploreSession, Results_AreStaleUntilTheSceneIsComputed_AndKeepTheirParamet
   expect_same(session.curve().points(), truth(session.scene(), session.curve().points()));
   EXPECT_LE(session.curve().worst_error(), 1e-3);
   EXPECT_GT(session.curve().worst_error(), 0.0);
-  // The overlay has the other slope distribution, with the same density D(0) of horizontal facets.
+  // The overlay is a second curve with a Gaussian slope distribution if that of the scene is Cauchy, and the reverse.
+  // Its sigma gives the same density D(0) of horizontal facets as the sigma of the scene.
   EXPECT_EQ(session.overlay()->scene().word("surface.distribution"), "gaussian");
   EXPECT_DOUBLE_EQ(*session.overlay()->scene().number("surface.sigma"), 0.4 / std::sqrt(2.0));
   driver.session.set("surface.distribution", "gaussian");
@@ -118,7 +119,7 @@ TEST(ExploreSession, Drag_GetsCoarseResultsInTurn_AndSaysSoOnce) {
     EXPECT_TRUE(curve_name(session).ends_with(", coarse"));
     EXPECT_NE(std::exchange(maps, session.map().version()), session.map().version());
   }
-  // When the curve has got a result, the overlay and the map come next, even if the curve has changed again.
+  // In a drag the map or the overlay is computed after each result of the curve, even if the curve has changed again.
   session.set("surface.sigma", 0.4);
   std::vector<Job> jobs = session.wanted();
   ASSERT_EQ(jobs.size(), 3U);
@@ -281,7 +282,7 @@ TEST(ExploreSession, Peak_IsTheLargestOfTheCurve_IsDrawn_AndItsCausesAddUp) {
   const Point at = peak.answer()->at;
   double sum = 0.0;
   for (const WithoutEffect& part : peak.without()) sum += part.radiates ? peak.contribution(part) : 0.0;
-  // Each contribution is the difference of two results, which may each be wrong by 1e-3.
+  // The contributions of emission and surroundings add up to Q/I, except for the errors of the computed results.
   EXPECT_NEAR(sum, at[Quantity::kQOverI], 2e-3);
   for (const Point& result : session.curve().points()) {
     if (!result.is_good()) continue;

@@ -269,7 +269,7 @@ TableCheck check_responses(const TableSample& sample, const SceneValues& scene, 
     QuantityCheck& of_variable = check.quantities.emplace_back();
     of_variable.name = described.name;
     for (std::size_t i = 0; i < request.size(); ++i) {
-      if (std::isnan(stated[i]) && std::isnan(reference_error[i])) continue;  // no weights, because rho has no value
+      if (std::isnan(stated[i]) && std::isnan(reference_error[i])) continue;  // no weights: rho is undefined there
       const auto of_entry = [&](const std::vector<double>& weights) {
         return std::span(weights).subspan(i * table.beta_deg.size(), table.beta_deg.size());
       };

@@ -48,7 +48,7 @@ class LookupAxis {
 
   /// Lagrange interpolation at a location. Uses the `count` axis values around it, or all values of a shorter axis. At
   /// a value of the axis, uses only this value. `shift` moves the window of used values up by this number of ranks,
-  /// but only while the window still contains the location. Domain: count from 2 to kMostStencil.
+  /// or down if it is negative. The location always stays inside the window. Domain: count from 2 to kMostStencil.
   Stencil stencil(const Location& location, std::size_t count, int shift = 0) const;
 
   /// The divided difference of data y_i at the coordinates x_i, with ranks i from first to first + count - 1, is the

@@ -165,7 +165,7 @@ std::string values_hash(const TableLayout& layout, const ValueSums& sums) {
   std::uint64_t hash = kHashStart;
   for (const Axis axis : kAllAxes) {
     const std::vector<double>& values = head.axes[axis];
-    if (description_of(axis).has_labels) {  // hashes the texts: a file with a part of a table numbers its labels anew
+    if (description_of(axis).has_labels) {  // hashes the texts: their numbers differ in a file with a part of the table
       for (const double value : values) hash = hashed(hashed(hash, head.label(axis, value)), std::uint64_t{0});
     } else if (axis != Axis::kTemperature || !values.empty()) {  // an old file, which lacks this axis, keeps its hash
       hash = hashed(hash, std::span(values));

@@ -79,7 +79,6 @@ inline constexpr const char* kValuesHash = "values_hash";
 /// One checksum per variable, in the order of for_each_variable. The table's checksum is the sum over its parts.
 using ValueSums = std::vector<std::uint64_t>;
 
-/// The checksums of a part of a table that begins at the positions `first`.
 ValueSums sums_of(const TableValues& part, const TableLayout& layout, const PerAxis& first);
 
 void add(ValueSums& sums, const ValueSums& of_part);

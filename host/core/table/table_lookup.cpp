@@ -18,20 +18,20 @@ namespace {
 
 constexpr auto kTheta = static_cast<std::size_t>(Axis::kTheta);
 constexpr auto kQ = static_cast<std::size_t>(Axis::kQ);
-// How many values an interpolation reads on each axis. The first two axes have labels and read one: 2 has no effect.
+// How many values an interpolation reads on each axis. On the first two axes, which have labels, it always reads one.
 constexpr std::array<std::size_t, kAxisCount> kWindow = {2, 2, 4, 4, 4, 4, 6, 6, 6};
 constexpr std::size_t kMostRows = std::size_t{4} * 4 * 4 * 4 * 6 * 6;  // most rows that an interpolation reads
 constexpr int kMostShift = 3;            // most values by which the read window moves away from unknown entries
 constexpr std::size_t kLeastValues = 4;  // an axis with fewer values gives no reliable error estimate
 // These five constants are tuned on 581,000 bistatic lookups. A failure is a lookup whose error exceeds the stated
-// error. The interpolation error is stated as a factor times the change of the result by one more value of the axis.
-// The factor is kAtEnds in the first and last interval, and if all values of the axis are read already. Otherwise it
-// is kInside. Failures: 147 with both factors halved, 2 with these values, 0 with both doubled.
+// error. The stated interpolation error is a factor times the change of the result if one more value of the axis is
+// used. The factor is kAtEnds in the first and last interval, and if the interpolation itself uses all values of the
+// axis. Otherwise it is kInside. Failures: 147 with both factors halved, 2 with these values, 0 with both doubled.
 constexpr double kInside = 16.0;
 constexpr double kAtEnds = 37.0;
-// The change may be small by chance. So it counts as at least kFastestFall times the change with one value fewer. On a
-// short axis (see is_short), it also counts as at least kFastestFallOfTwo times the change with two values fewer.
-// Failures: 44 with both factors halved, 2 with these values, 0 with both doubled.
+// This change may be small by chance. So the estimate uses at least kFastestFall times the change that one value fewer
+// gives. On a short axis (see is_short), it also uses at least kFastestFallOfTwo times the change from two values
+// fewer. Failures: 44 with both factors halved, 2 with these values, 0 with both doubled.
 constexpr double kFastestFall = 0.2;
 constexpr double kFastestFallOfTwo = 0.25;
 // For a kink of the masking, the stated error also contains kKinkMargin times the error that the kink causes.
@@ -100,7 +100,8 @@ std::vector<double> masking_kinks(const SceneModel& scene) {
   if (masking != Masking::kVCavity) return {};
   const CosSin view = cos_sin_deg(view_deg);
   const double cos_azimuth = cos_sin_deg(scene.geometry.relative_azimuth_deg).cos;
-  // The v-cavity masking min(1, G) has a kink at G = 1. hidden() is (1 - G) cos^2(angle of incidence).
+  // V-cavity masking is min(1, g), where g is a ratio of cosines. It has a kink at g = 1, and at equal zeniths if g < 1
+  // there. hidden() is (1 - g) cos^2(beta), where beta is the angle of incidence.
   const auto hidden = [&](double theta_deg) {
     const CosSin theta = cos_sin_deg(theta_deg);
     const double cos2_beta = 0.5 * (1.0 + theta.cos * view.cos + theta.sin * view.sin * cos_azimuth);
@@ -229,12 +230,12 @@ struct TableLookup::Rows {
 /// Estimates the interpolation error along one axis. Uses lines: a line has the entries that differ only in the value
 /// on this axis. Lines run through all corners of the cell around the point.
 struct TableLookup::Lines {
-  /// Effect on the result of one more value, below or above the others. It is a divided difference times distances().
+  /// Change of the result if one more axis value is used, below or above the others: divided difference * distances().
   struct Change {
     std::size_t first = 0;  ///< the first value that the change uses, as an index into the line
     std::size_t count = 0;
-    /// A change of level 0 uses one value more than the window, or the whole axis if it has no more values. Each next
-    /// level uses one value fewer. The change for a kink has the level kLevels.
+    /// At level 0, a change uses one value more than the window, or all values of the axis if these are fewer. At
+    /// level 1 it uses one value fewer, at level 2 two fewer. The change for a kink has the level kLevels.
     std::size_t level = 0;
   };
   static constexpr std::size_t kLevels = 3;  // levels 0, 1 and 2; only a short axis (see is_short) has level 2
@@ -244,10 +245,10 @@ struct TableLookup::Lines {
   boost::container::static_vector<Change, kMostChanges> changes;
   std::array<std::array<double, kMostChanges>, kMostValues>
       factors{};                                 ///< change j is the sum over i of factors[i][j] * (value i of a line)
-  std::array<std::size_t, kMostValues> along{};  ///< value i of line c has the table position begin[c] + along[i]
+  std::array<std::size_t, kMostValues> along{};  ///< value i of the line at corner c is entry begin[c] + along[i]
   std::size_t count = 0;
   Window::Corners begin;
-  double factor = 1.0;  ///< stated error / change: kInside or kAtEnds, times the sum of |weight| for each other axis
+  double factor = 1.0;  ///< stated error / change: kInside or kAtEnds, times, for each other axis, the sum of |weight|
   bool has_error = false;
   bool is_short = false;  ///< true if the axis has at most one value more than the window
   bool is_unknown = false;
@@ -291,9 +292,10 @@ struct TableLookup::Lines {
     }
   }
 
-  /// Adds a change for a kink of the masking. There, the entries contain the ramp max(theta - kink, 0) times a slope.
+  /// Adds a change for a kink of the masking. A kink adds the ramp max(theta - kink, 0), times a slope, to the entries.
   /// The slope is about (second difference of the entries) / (second difference of the ramp). The kink's interpolation
-  /// error is this slope times the ramp's error. Of several kinks, takes the one whose ramp has the largest error.
+  /// error is this slope times the interpolation error of the ramp. If the window has several kinks, only the one with
+  /// the largest error of its ramp counts.
   void add_kink(const LookupAxis& axis, double theta_deg, const Stencil& stencil, std::size_t start,
                 const std::vector<double>& kinks_deg) {
     const std::size_t last = stencil.first + stencil.count - 1;
@@ -310,7 +312,7 @@ struct TableLookup::Lines {
       kink_deg = kink;
     }
     if (largest == 0.0 || stencil.count < 3) return;
-    std::size_t middle = stencil.first + 1;  // rank nearest to the kink, with a neighbour on each side
+    std::size_t middle = stencil.first + 1;  // rank of the value nearest to the kink, ends of the window excluded
     while (middle + 1 < last && axis.coordinate_at(middle) + axis.coordinate_at(middle + 1) < 2.0 * kink_deg) ++middle;
     const std::span<const double> difference = axis.divided_difference(middle - 1, 3);
     const double of_ramp = difference[1] * std::max(axis.coordinate_at(middle) - kink_deg, 0.0) +
@@ -361,7 +363,7 @@ struct TableLookup::Lines {
     }
     if (largest[0] < 0.0) return kInfinity;
     if (largest[0] == 0.0) return 0.0;
-    // On a coarse axis, all changes of level 0 may be small by chance. So the changes from fewer values count too.
+    // On a coarse axis, all changes of level 0 may be small by chance. So levels 1 and 2, with fewer values, count too.
     largest[0] = std::max(largest[0], kFastestFall * largest[1]);
     if (is_short) largest[0] = std::max(largest[0], kFastestFallOfTwo * largest[2]);
     return factor * (largest[0] + std::max(largest[kLevels], 0.0));
@@ -403,7 +405,6 @@ bool TableLookup::make_known(Window& window, double theta_deg) const {
   std::size_t count = kWindow[kTheta];
   const int away = theta_deg > 45.0 ? -1 : 1;
   while (!is_known(window)) {
-    // The window moves away from unknown entries by up to kMostShift values. If this fails, the window becomes shorter.
     if (++shift > kMostShift) {
       shift = 0;
       if (--count < 2) return false;

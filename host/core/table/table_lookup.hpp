@@ -66,7 +66,7 @@ class TableLookup {
   std::vector<LookupAxis> axes_;   ///< axes in the table's order; an absent axis has one value
   PerAxis strides_ = {};           ///< step in the table from one value of an axis to the next
   Quantities interpolated_;        ///< the smooth quantities that are not 0 in the whole table
-  std::vector<char> is_known_;     ///< per theta, in ascending order: true if I is finite in all its entries
+  std::vector<char> is_known_;     ///< for each theta, ascending: true if I is finite in all entries with this theta
 };
 
 }  // namespace dolp

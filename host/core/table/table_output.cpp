@@ -21,7 +21,7 @@ constexpr std::string_view kIdentityEnd = "; ";
 fs::path partial_path(const fs::path& path) { return follow_links(path).string() + ".partial"; }
 fs::path progress_path(const fs::path& path) { return partial_path(path).string() + ".txt"; }
 
-/// A line of a progress file: a hash of `text`, then `text`. The hash reveals damage. Its start value is `hash`.
+/// A line of a progress file: a hash of `text`, then `text`. The hash reveals damage. `hash`: start value of the hash.
 std::string progress_line(std::uint64_t hash, std::string_view text) {
   return fmt::format("{:016x} {}\n", hashed(hash, text), text);
 }

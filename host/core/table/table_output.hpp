@@ -23,7 +23,7 @@ class TableOutput {
     std::vector<TableBox> parts = {};  ///< the parts that write() gets, in this order; empty: any parts in any order
     std::string identity = {};         ///< names and values that must be equal in a resumed run; empty: not resumable
     bool is_resumed = false;           ///< continues PATH.partial if this file exists
-    Progress progress = {};            ///< lets the user cancel while finished parts are read; called with done = 0
+    Progress progress = {};            ///< called with done = 0 while finished parts are read; false cancels the run
   };
   /// If `is_resumed`, reuses the finished parts of an earlier run, up to the first part that is missing or changed.
   /// Errors: errors of check_output_path; InputError if the partial file has another identity or is in use by another
@@ -54,10 +54,10 @@ class TableOutput {
 
   Job job_;
   TableFormat format_;
-  std::optional<AtomicFile> file_;  ///< has the values; nullopt for a .csv or .npy of one part, see only_part_
+  std::optional<AtomicFile> file_;  ///< NetCDF file with the values, even for a .csv; nullopt: see only_part_
   std::optional<TableStore> store_;
   std::optional<AtomicFile> progress_;  ///< the file PATH.partial.txt of a resumable table
-  TableValues only_part_;
+  TableValues only_part_;               ///< values of a .csv or .npy of one part, which needs no file_
   ValueSums sums_;
   std::size_t parts_done_ = 0;
   std::string note_;

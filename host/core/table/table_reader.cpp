@@ -26,7 +26,7 @@ constexpr std::size_t kMostAngles = 1024;                      // most angles of
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostShrinking = 1032;  // largest compression factor of deflate, which other tools may use
+constexpr std::size_t kMostShrinking = 1032;  // largest factor by which a tool may have compressed values (deflate)
 constexpr std::size_t kMostStoredTextBytes = 64U << 20U;  // size limit of a text; a scene has at most 16 MiB
 
 constexpr const char* kPartHint =
@@ -215,7 +215,6 @@ std::vector<Attribute> read_attributes(const Reader& reader) {
   return attributes;
 }
 
-/// Appends the texts that are stored as variables because they are too long for attributes.
 void append_long_texts(const Reader& reader, std::vector<Attribute>& attributes) {
   for (const char* name : {"title", "history", "scene", "scene_path", "scene_overrides", "surroundings_profile",
                            "coating", "reflectance", "materials", kSpectralData}) {

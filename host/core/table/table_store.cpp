@@ -85,7 +85,7 @@ class Writer {
     check(H5Pset_fapl_stdio(access.id()));  // the default driver would need a file with a name
     check(H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18));
     const Hdf5Handle creation = take(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
-    // Without the order of creation, the netCDF library can open a file only for reading.
+    // The netCDF library refuses to write to a file that does not store in which order its objects were created.
     check(H5Pset_link_creation_order(creation.id(), kOrdered));
     check(H5Pset_attr_creation_order(creation.id(), kOrdered));
     check(H5Pset_obj_track_times(creation.id(), false));  // without times, a scene gives the same bytes in each run
@@ -198,8 +198,8 @@ void put_attributes(const Writer& writer, const TableHead& head) {
   if (const std::string data = spectral_data_of(head); !data.empty()) put_more(writer, {{kSpectralData, data}});
 }
 
-/// Writes a coordinate. If `along` is null, the coordinate is an axis. Else its values lie along the axis `along`, or
-/// it has a single value and `along` is empty.
+/// Writes a coordinate. If `along` is null, the coordinate is an axis of its own. Else it has a value for each value of
+/// the axis `along`. If the table lacks this axis, its handle is empty, and the coordinate has a single value.
 template <class Described>
 Hdf5Handle put_coordinate(const Writer& writer, const Described& described, const std::vector<double>& values,
                           const Hdf5Handle* along = nullptr) {
@@ -213,7 +213,7 @@ Hdf5Handle put_coordinate(const Writer& writer, const Described& described, cons
   return variable;
 }
 
-/// Writes the labels of an axis as texts of variable length, because texts of one length crash the netCDF library.
+/// Writes the labels of an axis as texts of variable length, because texts of fixed length crash the netCDF library.
 Hdf5Handle put_labels(const Writer& writer, const TableHead& head, Axis axis) {
   const AxisDescription& described = description_of(axis);
   std::vector<const char*> labels;

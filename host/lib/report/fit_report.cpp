@@ -145,7 +145,7 @@ void add_misfit(ReportBuilder& report, const fit::Model& model, const FitResult&
                 "as many parameters as points: no interval can be given");
 }
 
-/// Adds the share of each parameter's allowed range that its 95 % interval covers, and how to narrow the interval.
+/// If the fit assumes a model error (the bracket), adds how much of each parameter's range its 95 % interval covers.
 void add_model_error(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   if (!model.has_model_error()) return;
   const auto is_empty_95 = [](const auto& parameter) { return parameter.interval_95.is_empty; };

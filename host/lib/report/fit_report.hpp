@@ -16,7 +16,6 @@ struct ComparedModel {
 
 void add_fit(ReportBuilder& report, const fit::Model& model, const fit::FitResult& result);
 
-/// Adds the contours around the minimum, or the reason why there are none.
 void add_contours(ReportBuilder& report, const fit::Model& model, const fit::FitResult& result,
                   const std::optional<fit::Contours>& drawn);
 

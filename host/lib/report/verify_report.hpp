@@ -26,7 +26,7 @@ struct HardCaseReport {
   std::string left_out;  ///< why a precision is missing; empty if none is missing
   std::size_t failures() const;
 };
-/// A line for each combination of precision, distribution and masking, and for each failing case. `all`: for each case.
+/// A line for each combination of precision, distribution and masking. A case has a line if it fails or `all` is true.
 ReportBuilder hard_case_report(const HardCaseReport& cases, bool all);
 
 ReportBuilder device_report(const DeviceList& list);

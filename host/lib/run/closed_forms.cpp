@@ -21,7 +21,7 @@ double steep_share(const Surface& surface, const SlopeShape& shape) {
 }
 
 constexpr double kRelativeError = 1e-12;
-constexpr double kAgreement = 1e-13;  // the quadrature stops if two successive approximations differ relatively by less
+constexpr double kAgreement = 1e-13;  // relative difference of two successive approximations that ends the quadrature
 constexpr double kReflectanceRounding = 8.0 * std::numeric_limits<double>::epsilon();  // error bound of 1 - absorptance
 
 // Below this cosine the integrand counts as 0: there it is negligible, and the square of the cosine may underflow.
@@ -41,7 +41,8 @@ constexpr double kHorizon_deg = 90.0;
 // A facet with a slope up to kMirrorSlope turns the reflected ray by at most this angle.
 constexpr double kMirrorSpread_deg = 2.0 * kMirrorSlope * 180.0 / std::numbers::pi;
 
-/// Adds r_i and r_q times each function of the sky at `zenith_deg`. Their errors cover zeniths up to `spread_deg` away.
+/// Appends a column for each function of the sky: r_i and r_q times the function at `zenith_deg`. The error of a column
+/// includes the change of the function up to `spread_deg` away.
 void add_sky(Moments& moments, const SkyBasis& sky, double zenith_deg, double spread_deg) {
   const Eigen::RowVectorXd at = sky.at(zenith_deg);
   const Eigen::RowVectorXd above = sky.at(std::max(zenith_deg - spread_deg, 0.0));
@@ -72,7 +73,8 @@ Moments closed_form(const Surface& surface, const Direction& direction, const Sl
 Moments grazing_limit_moments(const FacetOptics& index, double q) {
   boost::math::quadrature::tanh_sinh<double> integrator;
   const double critical = critical_angle(index);
-  // Integrates over psi = pi/2 - phi: near x = 0 the integrand is not smooth, and sin(psi) rounds less than cos(phi).
+  // The integrand is not smooth near x = cos(phi) = 0. There sin(psi), with psi = pi/2 - phi, has a smaller rounding
+  // error than cos(phi). So the integral is over psi.
   const auto integral = [&](auto&& of_cosine) {
     // Boost refuses nodes that round to an end of the interval, unless the integrand has this unused second parameter.
     const auto integrand = [&](double psi, double) {

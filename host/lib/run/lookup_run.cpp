@@ -32,8 +32,7 @@ std::optional<double> value_of(const SceneValues& scene, Axis axis) {
   return values[axis];
 }
 
-/// How messages name the values of an axis. Sigma appears as a wind speed if the points give wind speeds. If the points
-/// give neither sigma nor wind speeds, the scene decides.
+/// How messages name the values of an axis. Sigma appears as a wind speed if the points, or else the scene, have winds.
 struct AxisWords {
   bool is_wind = false;
   const char* name = "";
@@ -53,7 +52,6 @@ AxisWords words_of(Axis axis, const SceneValues& scene, const Points& points) {
   return {false, description_of(axis).column};
 }
 
-/// The value of each point on an axis: from the points, else the only value of the axis, else from the scene.
 std::vector<double> values_of(Axis number, const TableLookup& lookup, const SceneValues& scene, const Points& points) {
   const LookupAxis& axis = *lookup.axis(number);
   const AxisWords words = words_of(number, scene, points);
@@ -112,13 +110,13 @@ void check_index(const TableLookup& lookup, const SceneValues& scene, const Poin
   }
 }
 
-constexpr std::size_t kLines = 3;        // lines of entries along an axis, each at other values of the remaining axes
-constexpr std::size_t kParts = 4;        // number of equal parts of an axis; the cells at their ends are examined
-constexpr std::size_t kStretch = 8;      // number of values around a cell that a lookup in the cell needs
+constexpr std::size_t kLines = 3;        // number of examined lines of entries per axis; along a line, only it varies
+constexpr std::size_t kParts = 4;        // kParts + 1 cells (see lookup_forecast) of an axis are examined
+constexpr std::size_t kStretch = 8;      // values computed around a cell: lookups read six, and one more for the error
 constexpr std::size_t kLeastValues = 4;  // smallest number of values for which a lookup states an error
-// A lookup reads six values along theta, sigma and q (OfSix), and four along each other axis (OfFour). In dense grids,
-// the stated error is proportional to the spacing of the values to the power kOrder. In the middle of a cell, the
-// interpolation may increase the errors of the entries by the factor kWeights, the sum of the absolute weights.
+// A lookup reads six values along theta, sigma and q, and four along each other axis. kOrderOf...: in dense grids, the
+// stated error is proportional to this power of the spacing of the values. kWeightsOf...: in the middle of a cell, the
+// interpolation increases the errors of the entries at most by this factor, the sum of the absolute weights.
 constexpr double kOrderOfSix = 5.0;
 constexpr double kOrderOfFour = 3.0;
 constexpr double kWeightsOfSix = 356.0 / 256.0;
@@ -219,7 +217,7 @@ class Forecast {
     return table;
   }
 
-  SceneValues scene_;  ///< the given scene; its grid is replaced for each line
+  SceneValues scene_;  ///< the given scene, but with the grid of the line that is examined
   const Axes& grid_;   ///< the grid of the given scene
   const EffectPlan& plan_;
   CpuEvaluator evaluator_;

@@ -13,28 +13,28 @@
 
 namespace dolp {
 
-/// Looks up points in a table, whose scene is `scene`. A missing column takes the only value of its axis, or else the
-/// value in the scene. If the table lacks an axis, a column for this axis must have the value in the scene. Errors:
-/// InputError that names the point, the column, the value and what the table has; Cancelled.
+/// Looks up points in a table that was made from `scene`. If the points lack the column of an axis, they get the only
+/// value of the axis, or else the value in the scene. A column for an axis that the table lacks must have the value in
+/// the scene. Errors: InputError that names the point, the column, the value and what the table has; Cancelled.
 std::vector<PointResult> lookup_points(const TableLookup& lookup, const SceneValues& scene, const Points& points,
                                        const Progress& progress);
 
 struct AxisForecast {
   Axis axis = Axis::kTheta;
   std::size_t values = 0;  ///< number of values of the axis in the grid
-  /// Largest error of DOLP in the examined cells, interpolated along this axis only. Infinite if `values` is below 4.
+  /// Largest error of DOLP in the examined cells from interpolation along this axis. Infinite if `values` is below 4.
   double error = 0.0;
-  double wanted = 0.0;  ///< largest acceptable `error`: the share of the tolerance for this axis
+  double wanted = 0.0;  ///< largest acceptable `error`: the part of the tolerance that this axis may use up
   /// Number of values of the axis for which the error is at most `wanted`; 0 if it is above kMostForecastValues.
   std::size_t needed_values = 0;
 };
 inline constexpr std::size_t kMostForecastValues = 10'000;
 
 /// A forecast for each axis of the grid that has more than one value and no labels. The CPU computes the table around a
-/// few cells of the axis. A lookup in the middle of each cell states an error. The forecast then tries 8, 16, 32, ...
-/// values of the axis until the error is at most `wanted`. Features narrower than the distance between the cells are
-/// missed. Accuracy: with needed_values on each axis, most points meet the tolerance. With half as many values, most
-/// points miss it (test LookupForecast_TablesOfTheAdvisedDensity_*).
+/// few cells of the axis (intervals between neighbouring values). The error is the largest one that a lookup states in
+/// the middle of a cell. The forecast repeats this with 8, 16, 32, ... values until the error is at most `wanted`. It
+/// misses features narrower than the distance of the cells. Accuracy: with needed_values on each axis, most points meet
+/// the tolerance; with half as many, most miss it (test LookupForecast_TablesOfTheAdvisedDensity_*).
 std::vector<AxisForecast> lookup_forecast(const SceneValues& scene, const EffectPlan& plan);
 
 }  // namespace dolp

@@ -16,8 +16,8 @@ struct MuellerPoint {
 };
 
 /// The directions, slope distribution and index of each point. Values that a point lacks come from the scene. Errors:
-/// InputError if check_surface() refuses a point, if the scene has measured reflectances, or if it has both a band and
-/// a coating. Unless points give n and k, also if it has both a band and a material that depends on the wavelength.
+/// InputError if check_surface() refuses a point, or if the scene has measured reflectances. A scene with a band is an
+/// InputError if it has a coating, or if its material depends on the wavelength and the points lack column n or k.
 std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points& points);
 
 /// The precision for a run. kAuto becomes float if float meets the tolerance or double is missing, otherwise double.
@@ -25,7 +25,7 @@ Precision mueller_precision(const Accuracy& accuracy, bool has_double);
 
 /// The Mueller matrix of the pBRDF at each point: the specular part times k_s, plus the diffuse part. Accuracy: the
 /// error of each element is at most kScatteringErrorFloat or kScatteringErrorDouble times the first element. All 16
-/// elements are NaN where the pBRDF has no finite value, and where bounces contribute that are not computed.
+/// elements are NaN where the pBRDF has no finite value, and where more bounces contribute than are computed.
 std::vector<MuellerMatrix> evaluate_mueller(const SceneValues& scene, const std::vector<MuellerPoint>& points,
                                             ModelEvaluator& evaluator, const Progress& progress);
 

@@ -41,8 +41,8 @@ std::vector<std::uint32_t> compact_used_values(const std::vector<double>& values
 
 // A grid uses responses (see run_basis) only if it has this many entries per index. With fewer, they save little.
 constexpr std::size_t kLeastEntries = 24;
-// Responses serve every index at every direction and slope distribution of the points, but points may need few of these
-// combinations. Points use responses only if they need at least one combination in kMostOfPoints.
+// Responses are computed for all combinations of the points' indices, directions and slope distributions. Points use
+// responses only if they need at least 1 / kMostOfPoints of these combinations.
 constexpr std::size_t kMostOfPoints = 2;
 
 std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const SceneEntries& entries) {

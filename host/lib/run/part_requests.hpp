@@ -49,9 +49,10 @@ SpectralIndices spectral_indices(const SceneValues& scene, const SceneEntries& e
 std::vector<FacetOptics> with_index(const std::vector<FacetOptics>& samples,
                                     const std::optional<OpticalConstants>& index);
 
-/// What an evaluator must compute for a selection at one level of refinement. For a grid, the request for moments has
-/// all slope distributions of the part, selected or not. The evaluator shares work between them, so with fewer of them
-/// the result of an entry would change. In a list, points with equal direction, distribution and index share moments.
+/// What an evaluator must compute for a selection of entries at one refinement level. For a grid, the request for
+/// moments has all slope distributions of the part, even unselected ones. The evaluator shares work between slope
+/// distributions, so leaving some out would change the results of the others. For a list of points, points with equal
+/// direction, slope distribution and index share moments.
 class PartRequests {
  public:
   PartRequests(const SceneValues& scene, const SpectralIndices& samples, const EffectPlan& plan,
@@ -87,9 +88,10 @@ class PartRequests {
   const Selection selection_;
   MomentsRequest moments_;
   ScatteringRequest beams_;
-  // For a grid: theta_at_[i], sigma_at_[i] and q_at_[i] are the positions in moments_ of the value i of the part's
-  // axis, and index_set_offset_[i] is that of the first index (n, k) of the index set i. An index set has the indices
-  // of one variant (such as a band). In a grid with axes n and k it has one value of each, with the films of a variant.
+  // For a grid: value i of the part's axis theta is value theta_at_[i] in moments_.theta_deg, and likewise for sigma
+  // and q. index_set_offset_[i] is the position in moments_.optics of the first index (n, k) of the index set i. An
+  // index set has the indices of one variant (such as a band). If the grid has axes n and k, an index set has one value
+  // of each, with the films of one variant.
   std::vector<std::uint32_t> theta_at_, sigma_at_, q_at_, index_set_offset_;
   std::vector<MomentsSpan> spans_of_points_;  ///< for points: where the evaluator returns the moments of each point
   std::vector<std::size_t> first_beam_;

@@ -14,8 +14,8 @@
 namespace dolp {
 namespace {
 
-/// The entries of a few directions, spread evenly over the grid. If `has_responses`, all wavelengths and indices stay,
-/// because the same responses (see run_basis) serve them all. Otherwise one wavelength and one index stay.
+/// The entries of a few directions, spread evenly over the grid, at one temperature. If `has_responses`, they have all
+/// wavelengths and indices of the grid, which share responses (see run_basis). Otherwise they have one of each.
 SceneEntries entries_of_drawn_directions(const SceneEntries& grid, bool has_responses) {
   Axes axes = grid.axes();
   std::vector<double>& theta_deg = axes[Axis::kTheta];

@@ -13,7 +13,7 @@ namespace dolp {
 /// Largest number of entries that the prediction computes. If the run has more, a sample of this size represents them.
 inline constexpr std::size_t kCountedEntries = 256;
 
-/// Largest number of directions that the prediction computes. It computes whole directions if their entries share work.
+/// If the entries of a direction share work, the prediction computes whole directions instead, at most this many.
 inline constexpr std::size_t kCountedDirections = 6;
 
 struct RunPrediction {
@@ -24,13 +24,13 @@ struct RunPrediction {
   std::size_t beams = 0;           ///< beams of the first refinement level
   RefinementLevel first;           ///< precision and tolerance of the first level
   double first_evaluations = 0.0;  ///< integrand evaluations of the first level
-  double again_share = 0.0;        ///< moments and beams of later levels, divided by those of the first level
+  double again_share = 0.0;        ///< number of moments and beams in later levels, divided by the number in the first
   double again_evaluations = 0.0;
   double again_beams = 0.0;
   bool counts_directions = false;
   bool is_exact = true;     ///< the prediction counted all moments and beams, without estimates
   double cpu_s = 0.0;       ///< time of all levels on this CPU, extrapolated from the computed entries
-  double host_bytes = 0.0;  ///< host memory for the largest block of entries and for table columns still being written
+  double host_bytes = 0.0;  ///< host memory for the largest part of the run and for table columns still being written
 };
 
 /// Functions that predict_run() calls with each request of the first level.
@@ -39,10 +39,10 @@ struct RequestVisitor {
   std::function<void(const ScatteringRequest&)> beams;
 };
 
-/// Predicts the work of a run. For this, the CPU computes a sample: up to kCountedEntries entries, or up to
-/// kCountedDirections whole directions. `has_double`: the device of the run supports double. The prediction is exact if
-/// the sample is the whole run and the device rounds like the CPU. Otherwise its error is a few percent, or a fifth if
-/// the sample consists of directions (tests Plan.FewEntries_*, Plan.ManyEntries_*, Plan.Device_*).
+/// Predicts the work of a run from a sample that the CPU computes: at most kCountedEntries entries, or at most
+/// kCountedDirections directions if their entries share work. `has_double`: the device of the run supports double. The
+/// prediction is exact if the sample is the whole run and the device rounds like the CPU. Otherwise it errs by a few
+/// percent, or by a fifth for directions (tests Plan.FewEntries_*, Plan.ManyEntries_*, Plan.Device_*).
 RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
                           bool has_double, const RequestVisitor& visit);
 

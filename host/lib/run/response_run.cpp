@@ -27,11 +27,11 @@ namespace {
 constexpr std::size_t kBetaAngles = kMostResponses;
 constexpr double kResponseC0 = 0.01;                // cosine near which abscissa() changes from linear to logarithmic
 constexpr OpticalConstants kUnusedIndex{1.5, 0.0};  // a request needs an index; its moments are not used
-// Ratio of the first tolerance of the quadrature to the tolerance of the table. Tuned for 64 x 16 x 16 entries at the
+// The first quadrature has the tolerance of the table times this factor. Tuned for 64 x 16 x 16 entries at the
 // tolerance 1e-4. Million evaluations at half this value, at this value and at double: 21.0, 22.5, 24.1 with smith
 // masking; 3.24, 3.00, 2.90 with integral masking.
 constexpr double kFirstShare = 0.1;
-// Ratio of the tolerance of a refinement level to that of the level before. Half or double makes no difference.
+// Each refinement level has the tolerance of the level before times this factor. Half or twice the factor is as good.
 constexpr double kFinerBy = 0.03;
 constexpr int kMostLevels = 6;
 constexpr std::size_t kColumnsAtOnce = std::size_t{1} << 20U;  // moments computed at once; this limits the memory
@@ -68,15 +68,15 @@ const Nodes& nodes() {
   return known;
 }
 
-/// Weights of an entry, times cos(theta). `error` is in the measure of response_distance().
+/// Weights of an entry, times cos(theta). `error` bounds their response_distance() from the exact values.
 struct Weights {
   Eigen::ArrayXd i, q;
   double error = 0.0;
 };
 
-/// Weights of an entry. `columns` are its moments with a Chebyshev polynomial T_m instead of the reflectance.
-/// `whole_error` is the error bound of the moment with 1 instead of T_m. It holds for each T_m too, because |T_m| <= 1.
-/// It is needed because i_apart, the difference of two quadrature rules, may be too small by chance.
+/// Weights of an entry. `columns` are its moments with a Chebyshev polynomial T_m instead of the reflectance. The error
+/// estimate i_apart of a column is the difference of two quadrature rules, which may be too small by chance. So the
+/// bound of a column is at least `whole_error`, the bound for 1 instead of T_m, which holds because |T_m| <= 1.
 Weights weights_of(const std::vector<ColumnMoments>& columns, double whole_error) {
   Weights own{Eigen::ArrayXd::Zero(kBetaAngles), Eigen::ArrayXd::Zero(kBetaAngles)};
   for (std::size_t m = 0; m < columns.size(); ++m) {
@@ -85,7 +85,7 @@ Weights weights_of(const std::vector<ColumnMoments>& columns, double whole_error
         (m == 0 ? 1.0 : 2.0) / kBetaAngles * nodes().polynomials.row(static_cast<Eigen::Index>(m));
     own.i += sum.i * share;
     own.q += sum.q * share / nodes().sin2;
-    // q_apart may be too small by chance, like i_apart. So the error bound of i is added to the error bound of q.
+    // q_apart may be too small by chance too. So the bound for both i and q is the sum of the bound of i and that of q.
     const double of_i = std::abs(sum.i_apart) + sum.relative_error * std::abs(sum.i) + sum.error;
     const double of_q = std::abs(sum.q_apart) + sum.relative_error * std::abs(sum.q) + sum.error;
     own.error += std::ldexp(std::max(of_i, whole_error) + of_q, -static_cast<int>(m));

@@ -27,9 +27,9 @@ EntryResponses responses_of(MomentsRequest request, const Accuracy& accuracy, Mo
 
 MomentsRequest response_request(const Surface& surface);
 
-/// The distance between weights a and b: the sum over m of 2^-m |sum over j of T_m(x_j) f_j (a_j - b_j)|. T_m is a
-/// Chebyshev polynomial, and x_j is its variable at the angle beta_j. For weights of Q (`is_of_q`), f_j is
-/// sin^2(beta_j), otherwise 1. If b is exact, the distance is at most response_error.
+/// Sum over m of 2^-m |D_m|, where D_m is the sum over the angles beta_j of T_m(x_j) f_j (a_j - b_j). T_m is a
+/// Chebyshev polynomial, and x_j is its variable at beta_j. f_j is sin^2(beta_j) for weights of Q (`is_of_q`), and 1
+/// for weights of I. If the weights b are exact, the sum is at most response_error of the weights a.
 double response_distance(std::span<const double> a, std::span<const double> b, bool is_of_q);
 
 struct ResponseOutcome {
@@ -41,8 +41,9 @@ struct ResponseOutcome {
   std::vector<Attribute> attributes = {};  ///< attributes of the table that are known after the run
 };
 
-/// Computes a response table, a few directions at a time. `take` gets each part and its position on each axis.
+/// Receives a part of the table, and the position of its first value on each axis.
 using TakePart = std::function<void(TableValues part, const PerAxis& first)>;
+/// Computes a response table, a few directions at a time, and passes each part to `take`.
 ResponseOutcome run_responses(const SceneValues& scene, const TableLayout& layout, const RunOptions& options,
                               ModelEvaluator& evaluator, const TakePart& take);
 

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kMostChecked = 64;
 // The check computes kMostChecked moments again, and kMostChecked more for each kManyMoments moments of the table.
 constexpr std::size_t kManyMoments = std::size_t{1} << 22U;
-// The check costs at most 1 / kShare of the run, if its moments take kCostOfOne times as long as those of the run.
+// The check may take 1 / kShare of the run. A checked moment is assumed to take as long as kCostOfOne others.
 constexpr std::size_t kShare = 50;
 constexpr std::size_t kCostOfOne = 4;
 

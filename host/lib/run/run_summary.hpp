@@ -35,7 +35,7 @@ std::vector<std::size_t> checked_positions(std::size_t size, std::size_t count, 
 inline constexpr double kAlbedoMin = 0.95;
 inline constexpr double kAlbedoMax = 1.05;
 
-/// The entries with an albedo below kAlbedoMin (or above kAlbedoMax), and their ranges of theta and sigma.
+/// Number and ranges of the entries that lose energy (albedo < kAlbedoMin), or that gain energy (albedo > kAlbedoMax).
 struct EnergyRange {
   std::size_t entries = 0;
   std::pair<double, double> theta_deg;  ///< zenith angle of the view in bistatic mode, otherwise theta

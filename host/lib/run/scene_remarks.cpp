@@ -22,7 +22,7 @@ constexpr double kHotSky = 2.0;  // a sky hotter than this times the surface get
 constexpr double kGapRatio = 2.0;
 constexpr double kNoGapRatio = 1.5;
 constexpr double kUsualSpacings = 10.0;
-// Rows are coarse if CoarseRows::change is at least kCoarseChange. The divisor in `change` is at least kLeastPart.
+// Rows get a remark if CoarseRows::change (see below) is at least kCoarseChange. Its divisor is at least kLeastPart.
 constexpr double kCoarseChange = 0.05;
 constexpr double kLeastPart = 0.01;
 
@@ -63,7 +63,7 @@ std::optional<Interval> bridged_gap(const SpectralTable& table, const std::vecto
   return widest;
 }
 
-/// Where interpolation between rows is worst. `change`: error of the normal reflectance R, divided by min(R, 1 - R).
+/// Where interpolation errs most. `change`: its error of the normal reflectance R, divided by min(R, 1 - R).
 struct CoarseRows {
   double at_um = 0.0;
   double change = 0.0;

@@ -24,8 +24,8 @@ namespace {
 // Largest number of moments in a part of a grid, and in a part of a list of points. Both limits keep the memory small.
 constexpr std::size_t kMomentsAtOnce = 1U << 20U;
 constexpr std::size_t kPointsAtOnce = 1U << 17U;
-// If more than 1 in kWholeDirectionMissRatio entries of a direction misses the tolerance, all are computed again.
-// Tuned. Evaluations per entry with smith masking, at half this value, at this value and at double: 1.71, 1.81, 1.99.
+// If more than 1 in kWholeDirectionMissRatio entries of a direction misses the tolerance, the whole direction is
+// computed again. Tuned. Evaluations per entry with smith masking at half, once and twice this value: 1.71, 1.81, 1.99.
 constexpr std::size_t kWholeDirectionMissRatio = 8;
 constexpr std::size_t kEntriesAtOnce = 4096;  // with fewer entries per thread, starting the thread does not pay
 
@@ -56,7 +56,6 @@ struct EvaluatorResults {
 /// The first column of the Mueller matrix of a pBRDF: Stokes parameters of the reflection of unpolarised light.
 Scattered scattered(const ScatteringMatrix& f) { return {f.m[0], f.m[4], f.m[8], f.m[12], f.error}; }
 
-/// Computes the results of the selected entries. A member is the number of an entry in the selection.
 class MemberResults {
  public:
   MemberResults(const RunContext& context, const Selection& selection, const PartRequests& requests,
@@ -102,7 +101,7 @@ class MemberResults {
   /// The moments of an entry: from the evaluator, from closed forms, or zeros if the plan needs no moments.
   std::span<const Moments> moments_of(std::size_t member, const SceneEntry& entry, const Direction& direction,
                                       std::span<const FacetOptics> indices) {
-    if (!context_.plan.kept.moments) return moments_;  // all zero: without moments, nothing writes to moments_
+    if (!context_.plan.kept.moments) return moments_;  // all zero, because nothing writes to moments_ in this case
     if (direction.treatment != Treatment::kIntegrated) {
       for (std::size_t j = 0; j < moments_.size(); ++j) {
         moments_[j] = closed_form(context_.scene.surface, direction, entry.shape, indices[j], context_.plan.sky.get());
@@ -195,9 +194,10 @@ bool would_improve(const RunContext& context, const RefinementLevel& level, cons
 
 using EntriesByLevel = std::map<RefinementLevel, std::vector<std::size_t>>;
 
-/// The level for a whole direction, made from `next`, the level of one entry. If the run uses responses (integrals that
-/// many refractive indices share), the level has double precision if possible, because float rounding disturbs them.
-/// Its tolerance is then the scene's, lowered by whole decades, so that more indices get the same level.
+/// The refinement level for a whole direction, made from `next`, the level that one of its entries needs. If the run
+/// uses responses (integrals that many refractive indices share), the level uses double precision if it may, because
+/// float rounding disturbs responses. The tolerance is then the scene's tolerance divided by a power of 10. So more
+/// directions with different indices get the same level.
 RefinementLevel level_of_direction(RefinementLevel next, const RunContext& context) {
   next.may_interpolate = true;
   if (!context.basis) return next;
@@ -208,9 +208,9 @@ RefinementLevel level_of_direction(RefinementLevel next, const RunContext& conte
   return next;
 }
 
-/// Queues entries of a direction (`members`) for later refinement levels. If `last` may interpolate and many entries
-/// miss the tolerance, all entries are queued for one level, which may interpolate. Otherwise only the entries that
-/// miss the tolerance are queued, each for its own level without interpolation.
+/// Queues entries of a direction (`members`) for later refinement levels. If `last` may interpolate and more than 1 in
+/// kWholeDirectionMissRatio entries miss the tolerance, all entries are queued for one level that may interpolate too.
+/// Otherwise each entry that misses the tolerance is queued for its own level, without interpolation.
 void queue_refinement(const RunContext& context, const SceneEntries& part, const RefinementLevel& last,
                       std::span<const std::size_t> members, std::span<const PointResult> results,
                       EntriesByLevel& by_level) {
@@ -249,7 +249,7 @@ FirstResults first_results(const RunContext& context, const SceneEntries& part, 
   return first;
 }
 
-/// Computes again the entries that miss the tolerance. `progress` has counted them already, but can still cancel.
+/// Computes again the entries that miss the tolerance. They are counted already, so `progress` can only cancel here.
 void refine(const RunContext& context, const SceneEntries& part, FirstResults& first, const Progress& progress) {
   const Progress is_wanted = [&](std::size_t, std::size_t) { return progress(1, 1); };
   const std::size_t entries_per_direction = part.is_grid() ? part.entries_per_direction() : 1;
@@ -290,7 +290,7 @@ std::vector<PointResult> recompute_for_check(const RunContext& context, const Sc
   return computed_at(context, {part, positions}, check_level(first), none);
 }
 
-/// The positions in `part` of those entries among `checked` (positions in the whole table) that have moments.
+/// `checked`: positions in the whole table. Returns the positions in `part` of the checked entries that have moments.
 std::vector<std::size_t> positions_in(const RunContext& context, const SceneEntries& part,
                                       std::span<const std::size_t> checked) {
   std::vector<std::size_t> positions;

@@ -36,9 +36,9 @@ void check_labels_chosen(const SceneValues& scene, const Points& points = {});
 class Sink {
  public:
   virtual ~Sink() = default;
-  /// Number of leading parts that an earlier run finished, and the summary of these parts. The new run skips them.
+  /// Number of parts that an earlier run finished. The new run skips this many parts at its beginning.
   virtual std::size_t parts_done() const { return 0; }
-  virtual RunSummary summary_of_done() const { return {}; }
+  virtual RunSummary summary_of_done() const { return {}; }  ///< summary of the finished parts
   /// Receives the results of `part`. Parts of a list of points come in the order of the points. `so_far` is the summary
   /// of all parts up to this one.
   virtual void write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary& so_far) = 0;

@@ -21,10 +21,10 @@ Quantities quantities_of(const SceneValues& scene, const EffectPlan* plan = null
 /// The layout of the table over `axes` (a grid or a part of it), with all attributes that are known before the run.
 TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const Axes& axes);
 
-/// Sets Curve::used of the curves of `head` (n, k and E0): the values of the curve at the wavelengths of the table.
+/// For the curves n, k and E0 of `head`, sets Curve::used to the values at the wavelengths of the table.
 void fill_used(TableHead& head, const SceneValues& scene);
 
-/// Attribute with everything on which a table's values depend, except the device. difference() compares two of them.
+/// Attribute with everything on which a table's values depend, except the device. difference() compares two such texts.
 inline constexpr const char* kIdentity = "identity";
 std::string identity_of(const SceneValues& scene, const std::string& evaluator, bool keep_all);
 

@@ -29,7 +29,7 @@ constexpr std::array kCutAxes = {Axis::kTheta,       Axis::kMaterial, Axis::kBan
                                  Axis::kTemperature, Axis::kN,        Axis::kK};
 using Cuts = std::array<std::size_t, kCutAxes.size()>;
 
-/// Finds into how many parts to cut each axis for `count` shards. Cuts the first axes most. False if it is impossible.
+/// Finds the number of parts of each axis for `count` shards: large for the first axes. False if it is impossible.
 bool find_cuts(const PerAxis& counts, std::size_t count, std::size_t number, Cuts& cuts) {
   if (number == kCutAxes.size()) return count == 1;
   for (std::size_t parts = std::min(count, counts[kCutAxes[number]]); parts > 0; --parts) {

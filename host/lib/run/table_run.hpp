@@ -40,7 +40,7 @@ class ShardSet {
   /// Errors: InputError that names a missing shard, a duplicate, or a shard of another table; errors of TableReader.
   explicit ShardSet(const std::vector<std::string>& paths);
 
-  /// Joins the shards. Returns the number of entries. Errors: those of the constructor, because files may have changed.
+  /// Joins the shards. Returns the number of entries. Errors: errors of the constructor if a file has changed since.
   std::size_t merge(const std::filesystem::path& path, const std::string& command_line) const;
 
  private:

@@ -21,7 +21,6 @@ constexpr std::size_t kFirstIntervals = 4;
 constexpr std::size_t kMostIntervals = 32;  // largest number of intervals per point; each has 15 wavelengths
 constexpr double kQuadratureShare = 0.01;   // the quadrature stops if its error is below this times the tolerance
 
-// Quantities that are integrated over the wavelength, and quantities that are averaged over it with a weight.
 constexpr std::array kIntegrated = {kStokesI, kStokesQ, kStokesU, kStokesV};
 constexpr std::array kMeans = {kRhoI, kRhoQ, kEmissivityS, kEmissivityP};
 

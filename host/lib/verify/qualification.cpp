@@ -93,7 +93,7 @@ Expected expected_of(const StoredCase& stored) {
   }
   expected.rho_i = m.r_i / cosine;
   expected.rho_q = m.r_q / cosine;
-  // The surface only emits, so DOLP = |rho_Q| / (1 - rho_I). The deficit is (1 - rho_I) cos(theta).
+  // The surface only emits, so DOLP = |rho_Q| / (1 - rho_I). Moments::deficit is (1 - rho_I) cos(theta).
   expected.dolp = std::abs(m.r_q) / m.deficit;
   expected.dolp_error = quotient_error(m.r_q_error, expected.dolp, m.deficit, m.deficit_error);
   return expected;
@@ -118,7 +118,7 @@ CaseOutcome outcome_of(const StoredCase& stored, const PointResult& result, doub
   const bool meets_rho = (result.status & kRhoToleranceNotMet) == 0;
   outcome.dolp = {std::abs(result[Quantity::kDolp] - expected.dolp), result[Quantity::kErrorEstimate],
                   expected.dolp_error};
-  // If I is 0, the reference has no DOLP. Then DOLP is not compared.
+  // If I may be 0 within its error bound, DOLP has no usable reference and is not compared.
   const bool has_dolp = std::isfinite(expected.dolp) && std::isfinite(expected.dolp_error);
   if (!has_dolp) outcome.dolp = {0.0, kInfinity, 0.0};
   outcome.complaint = complaint_about("dolp", outcome.dolp, meets_dolp && outcome.promises_dolp, tolerance);

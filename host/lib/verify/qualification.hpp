@@ -35,12 +35,11 @@ std::vector<StoredCase> parse_stored_cases(std::string_view text, const std::str
 
 std::vector<StoredCase> read_stored_cases(const std::string& path);
 
-/// The error of a result, and the error bound that the result states.
 struct ErrorCheck {
   double error = 0.0;      ///< distance between the result and its reference
   double estimate = 0.0;   ///< error bound that the result states; infinite if it states none
   double reference = 0.0;  ///< bound of the error of the reference, in the unit of `error`
-  /// (error - reference) / estimate. If error <= reference, the smaller of 1 and error / estimate.
+  /// (error - reference) / estimate. If error <= reference, the result may be exact. Then min(1, error / estimate).
   double ratio() const;
   bool is_within_estimate() const { return ratio() <= 1.0; }
   bool is_above(double tolerance) const { return error > tolerance + reference; }
@@ -50,7 +49,7 @@ struct CaseOutcome {
   StoredCase stored;
   ErrorCheck rho;              ///< largest error of rho_I and rho_Q, relative to rho_I
   ErrorCheck dolp;             ///< absolute error of DOLP
-  bool promises_dolp = false;  ///< no bit of `status` makes the accuracy of DOLP unknown
+  bool promises_dolp = false;  ///< false if a bit of `status` says that the accuracy of DOLP is unknown
   std::uint32_t status = 0;
   /// What is wrong: an error above its bound, or a missed tolerance without its status bit. Empty if nothing.
   std::string complaint;

@@ -47,8 +47,9 @@ constexpr std::array<Compared, 13> kCompared{{
     {Quantity::kEmissivityP, Bound::kEmissivity},
 }};
 
-/// Tables state no errors of emissivities and albedo, nor of I where DOLP is 0. Their relative bound is assumed to be
-/// this factor times the largest of error_estimate, rho_error_estimate and the tolerance.
+/// Tables state no errors of emissivities and albedo, nor of I where DOLP is 0. These errors, relative to 1, max(1,
+/// albedo) and the largest possible I, are assumed to be at most this factor times the largest of error_estimate,
+/// rho_error_estimate and the tolerance.
 constexpr double kUnstatedOverStated = 10.0;
 
 /// Terms of the error bounds that all entries of one variant (material, band, wavelength, temperature) share.
@@ -86,7 +87,7 @@ double bound_of(Bound bound, double dolp_estimate, double rho_estimate, const Po
     case Bound::kPolarisedRadiation:
       return radiation;
     case Bound::kRadiation:
-      // A relative error e of I changes DOLP by e DOLP. So the error of DOLP bounds the error of I, unless DOLP is 0.
+      // A relative error e of I changes DOLP by e * DOLP. So e is at most the error of DOLP divided by DOLP.
       return std::min(dolp > 0.0 ? radiation / dolp : kInfinity, unstated * terms.radiation);
     case Bound::kEmissivity:
       return unstated;
@@ -268,7 +269,7 @@ TableCheck check_responses(const TableSample& sample, const SceneValues& scene, 
     QuantityCheck& of_variable = check.quantities.emplace_back();
     of_variable.name = described.name;
     for (std::size_t i = 0; i < request.size(); ++i) {
-      if (std::isnan(stated[i]) && std::isnan(reference_error[i])) continue;  // no weights, because rho has no value
+      if (std::isnan(stated[i]) && std::isnan(reference_error[i])) continue;  // no weights: rho is undefined there
       const auto of_entry = [&](const std::vector<double>& weights) {
         return std::span(weights).subspan(i * table.beta_deg.size(), table.beta_deg.size());
       };

@@ -28,8 +28,7 @@ struct CheckedValue {
   double reference_error = 0.0;  ///< error bound of `reference`, in the unit of `stored`
   std::string complaint;         ///< what is wrong; empty if nothing is wrong
   double error() const;
-  /// error() divided by the sum of `stated` and `reference_error`; 0 if the table states no bound.
-  double ratio() const;
+  double ratio() const;  ///< error() / (stated + reference_error); 0 if the table states no bound
 };
 
 struct QuantityCheck {
@@ -51,7 +50,7 @@ struct TableCheck {
 
 std::vector<AxisValue> position_of(std::size_t entry, const TableHead& table);
 
-/// Positions of options.samples different entries, in ascending order. They depend only on the seed.
+/// Positions of options.samples random entries, none twice, in ascending order. options.seed fixes the choice.
 std::vector<std::size_t> sample_positions(std::size_t entries, const TableCheckOptions& options);
 
 /// Some entries of a table. `table` has only these entries; `positions` are their positions in the whole table.
@@ -60,7 +59,7 @@ struct TableSample {
   std::vector<std::size_t> positions;
 };
 
-/// Compares a sample of a table with results of ReferenceEvaluator; integrate_band() integrates these over a band.
+/// Compares a sample of a table with results of ReferenceEvaluator. integrate_band() integrates them over a band.
 /// A value is wrong if its error exceeds the bound of the table plus the bound of the reference. It is also wrong if
 /// only the table or only the reference has a number, or if rho or DOLP misses the tolerance without a status bit.
 /// Values from closed forms, such as those of a mirror, are not checked independently, because every evaluator takes
@@ -70,14 +69,15 @@ TableCheck check_table(const TableSample& sample, const SceneValues& scene, cons
                        const Progress& progress);
 
 /// Compares the weights in a sample of a response table with weights from ReferenceEvaluator. The weights of an entry
-/// are wrong if their response_distance() to the reference exceeds the sum of the two error bounds response_error.
+/// are wrong if their response_distance() to the reference exceeds the response_error of the table plus that of the
+/// reference.
 /// Errors: InputError that begins with `name` if the table has no response_error; Cancelled.
 TableCheck check_responses(const TableSample& sample, const SceneValues& scene, const std::string& name,
                            const Progress& progress);
 
-/// Results at points of a scene with a band. An adaptive Gauss-Kronrod quadrature integrates over the wavelength. Its
-/// remaining error is part of the error estimates. Two bounds of DOLP, dolp_low and dolp_high, are no such integrals.
-/// evaluate_scene() computes them, and all results at points where the integrals give no DOLP.
+/// Results at points of a scene with a band, by adaptive Gauss-Kronrod quadrature over the wavelength. The error
+/// estimates include the error of this quadrature. evaluate_scene() gives the bounds dolp_low and dolp_high. It also
+/// gives all results at points where the quadrature gives no DOLP.
 std::vector<PointResult> integrate_band(const SceneValues& scene, const SceneEntries& points, ModelEvaluator& evaluator,
                                         const Progress& progress);
 

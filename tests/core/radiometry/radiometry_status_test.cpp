@@ -54,8 +54,9 @@ TEST(Radiometry, ErrorOfTheDeficit_CancelsInIsothermalIntensityWhereItCannotMatt
   const PointResult cold = evaluate(scene, direction, moments);
   scene.surroundings->temperature_K = 289.0;
   const PointResult warm = evaluate(scene, direction, moments);
-  // I = pi B + (X - pi B) rho. A black body as warm as the surface emits pi B; the surroundings emit X. They are 50 K
-  // or 1 K colder than the surface. With 1 K, X - pi B is much smaller, and so is the effect of an error of rho.
+  // I = pi B + (X - pi B) rho_I and Q = (X - pi B) rho_Q. A black body as warm as the surface emits pi B. The
+  // surroundings, which are 50 K or 1 K colder, emit X. So an error of rho_I changes Q / I about in proportion to
+  // (X - pi B)^2, which is far smaller with 1 K.
   EXPECT_LT(warm[Quantity::kErrorEstimate], 1e-3 * cold[Quantity::kErrorEstimate]);
 }
 
@@ -159,7 +160,8 @@ TEST(Radiometry, GrazingWithDivergingReflectance_GivesTheLimitOfDolp) {
   EXPECT_TRUE(std::isnan(limit[Quantity::kRhoI]) && std::isnan(limit[Quantity::kStokesI]) &&
               std::isnan(limit[Quantity::kStokesU]));
   const PointResult near_limit = evaluate(scene, {89.9999, 1e-14}, grazing_moments());
-  // The difference is due to the diffuse part, which grows as cos^-0.3, while the specular part grows as 1/cos.
+  // Toward 90 degrees the specular part grows as 1 / cos(theta), and the diffuse part only as cos(theta)^-0.3. So here
+  // the diffuse part hardly changes DOLP.
   EXPECT_NEAR(std::abs(near_limit[Quantity::kDolp]), limit[Quantity::kDolp], 1e-8);
 }
 

@@ -56,7 +56,7 @@ TEST(Material_BuiltIn, IsLinearBetweenTheRowsOfTheFile) {
       {"iron", 20.0, {13.13127, 53.12441}},            // last row
       {"sapphire o", 10.0, {0.89, 0.094}},             // a row inside the table
       {"Kapton", 13.36, {1.749865, 0.03707}},          // half way between the rows at 13.34 and 13.38 um
-      {"carbon", 1.24, {2.204, 1.04}},                 // most tables begin at 2 um, this one below
+      {"carbon", 1.24, {2.204, 1.04}},                 // below 2 um, where most tables begin
   };
   for (const Case& row : cases) {
     const double um = row.wavelength_um;

@@ -220,7 +220,7 @@ TEST(Scene_EveryKey, CanBeWrittenInTheFile) {
   const TemporaryFile reflectance("reflectance.csv", "beta_deg,r_s,r_p\n0,0.1,0.1\n90,1,1\n");
   for (const KeyCase& row : key_cases()) {
     const std::string key = row.key;
-    // Each line of this scene can be left out, because its keys have full names and no line is a [table] heading.
+    // Each line has the full name of its key and needs no [table] heading above it. So the test can leave out any line.
     std::string text = "accuracy.tolerance = 1e-5\n";
     if (key == "accuracy.tolerance") text.clear();
     const bool gives_optics =

@@ -111,8 +111,8 @@ TEST(SkyProfile, BuiltInSkies_FollowTheirFormulas) {
   for (const BuiltInSky& sky : built_in_skies()) EXPECT_TRUE(built_in_sky(sky.name)) << sky.name;
 }
 
-// mu is cos(zenith). Means over the sky have the weight mu^(c + 1): the projected area times a reflectance mu^c. So the
-// mean of mu^p is (c + 2) / (c + 2 + p).
+// mu is cos(zenith), from 0 to 1. Means over the sky have the weight mu^(c + 1). It is the product of the projected
+// area, mu, and a reflectance, mu^c. With this weight the mean of mu^p is (c + 2) / (c + 2 + p).
 TEST(SkyNodes, Means_OfPowersOfTheCosine_AreTheirClosedForms) {
   const SkyNodes nodes({0.0, 25.0, 60.0, 85.0, 90.0});
   for (const double c : {-0.9, -0.5, 0.0}) {
@@ -128,7 +128,8 @@ TEST(SkyNodes, Means_OfPowersOfTheCosine_AreTheirClosedForms) {
   }
 }
 
-// Precipitable water of w cm at T kelvin means a vapour pressure of (w T / 46.5) hPa. Here w = 1 and T = 290.
+// w cm of precipitable water at T kelvin mean a vapour pressure of (w T / 46.5) hPa. Here w = 1 and T = 290. Idso's
+// emittances are linear in `vapour`, the squared pressure times exp(3000 / T).
 TEST(BuiltInSky, VapourAndTemperature_GiveTheEmittancesOfIdso) {
   const SkyProfile sky = *built_in_sky("clear-sky", {1.0, 290.0});
   const double vapour = std::pow(290.0 / 46.5, 2.0) * std::exp(3000.0 / 290.0);

@@ -65,7 +65,8 @@ TEST(SpectralRule, SingleWavelength_IsOneSampleOfPlanckFactors) {
 }
 
 TEST(SpectralRule, ConstantIndexBands_IntegratePlanckToRounding) {
-  // 1 K over the widest band is hardest: the exponent of Planck's law varies most, and only the longest waves count.
+  // The case of 1 K over the widest band is the hardest. There the exponent in Planck's law varies most, and only the
+  // longest wavelengths contribute to the integral.
   for (const double temperature_K : {1.0, 20.0, 77.0, 300.0, 6000.0}) {
     for (const auto& [from_um, to_um] : {std::pair{0.3, 1000.0}, {8.0, 14.0}, {3.0, 5.0}}) {
       SceneValues scene = night_scene();

@@ -236,9 +236,10 @@ TEST(MaskingKinks, BistaticBeams_LieWhereTheLowerDirectionChanges_AndWhereNothin
       {Mode::kBistatic, Masking::kSmith, 33.0, 120.0, {}},
       {Mode::kBistatic, Masking::kNone, 33.0, 120.0, {}},
       {Mode::kHemispherical, Masking::kIntegral, 33.0, 120.0, {}},
-      // The v-cavity masking is min(1, G) with G = 2 cos(alpha) cos(theta') / cos(beta). alpha is the tilt of the
-      // facet, beta the angle of incidence on it, and theta' the larger of theta and the view zenith. The masking has a
-      // kink at G = 1. With azimuth 180 this is at theta = 60 + view / 3 and at theta = 3 view - 180 degrees.
+      // V-cavity masking is min(1, G). For a facet with the tilt alpha and the angle of incidence beta,
+      // G = 2 cos(alpha) cos(theta') / cos(beta), where theta' is the larger of theta and the view zenith. There is a
+      // kink where G = 1. With azimuth 180 this is at theta = 60 + view / 3 and at theta = 3 view - 180 degrees. There
+      // is also a kink at theta = view if G < 1 there, as in the last row.
       {Mode::kBistatic, Masking::kVCavity, 70.0, 180.0, {30.0, 60.0 + 70.0 / 3.0}},
       {Mode::kBistatic, Masking::kVCavity, 30.0, 180.0, {70.0}},
       {Mode::kBistatic, Masking::kVCavity, 65.0, 0.0, {65.0}},
@@ -247,7 +248,7 @@ TEST(MaskingKinks, BistaticBeams_LieWhereTheLowerDirectionChanges_AndWhereNothin
     SceneModel scene;
     scene.surface.masking = row.masking;
     scene.geometry = {row.mode, row.view_deg, row.azimuth_deg};
-    EXPECT_TRUE(masking_kinks(scene).empty());  // kinks are zeniths of a source, and there is none yet
+    EXPECT_TRUE(masking_kinks(scene).empty());  // kinks are zeniths of the source, and the scene has no source yet
     scene.source.emplace();
     const std::vector<double> kinks_deg = masking_kinks(scene);
     ASSERT_EQ(kinks_deg.size(), row.kinks_deg.size()) << row.view_deg;

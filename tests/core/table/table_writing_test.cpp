@@ -206,7 +206,8 @@ TEST_F(TableFiles, UnderWay_AnotherProcessHasIt_IsRefused) {
   EXPECT_EQ(names(), std::vector<std::string>{"t.csv"});
 }
 
-/// A job that writes a table in two parts, or continues it. The first part has the entries of `one_part`.
+/// A job that writes a table in two parts. If a partial file of the table exists, the job continues it. The first part
+/// has the entries of `one_part`.
 TableOutput::Job resumable_job(const fs::path& path, const TableValues& one_part) {
   const TableHead& head = one_part;
   TableHead whole = head;

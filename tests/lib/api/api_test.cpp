@@ -305,7 +305,8 @@ TEST_F(Library, AProgressThatReturnsFalse_Cancels_AndLeavesNoFile) {
   EXPECT_TRUE(std::filesystem::is_empty(at("")));
 }
 
-// The shard exists already. A run reads it in parts, and is cancelled before the first or before the second part.
+// The shard exists already, so the second run only reads it, part by part. The test cancels this run before the first
+// part, and then another such run before the second part.
 TEST_F(Library, Cancelled_WhileAKeptShardIsRead_IsHonoured) {
   const dolp::Scene scene =
       scene_.with({{"surface.masking", "none"}, {"surface.distribution", "gaussian"}, {"accuracy.tolerance", 1e-2}})
@@ -462,7 +463,7 @@ TEST_F(Library, TableOfContentsThatDoNotFit_IsAnInputError) {
   refuses([](dolp::TableValues& table) { table.attributes.push_back(table.attributes.front()); });
 }
 
-// The table for k = 0.2 has lost its axis of k. A lookup must not take it for a table at the k of the scene.
+// The test removes the axis k = 0.2 from a table. Without this axis the table would seem to be for the scene's own k.
 TEST_F(Library, LookupInATableThatLostAnAxis_IsAnInputError) {
   dolp::TableValues values = evaluator_.table(scene_.with_grid({{"k", {0.2}}})).values();
   const std::vector<double> theta = {30}, sigma = {0.1}, q = {2};

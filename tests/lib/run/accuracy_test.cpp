@@ -21,16 +21,17 @@
 namespace dolp {
 namespace {
 
-// Largest share of points that may miss the tolerance: kTightMissedShare for tolerances below kTight, otherwise
-// kMissedShare. Points miss it because of rounding and, at 1e-9, because the order of quadrature rules is limited.
+// Largest share of points that may miss the tolerance because of rounding. For tolerances below kTight the share is
+// kTightMissedShare, because then the limited order of the quadrature rules makes more points miss it.
 constexpr double kMissedShare = 0.01;
 constexpr double kTightMissedShare = 0.04;
 constexpr double kTight = 1e-8;
-// Largest median of the ratio of stated to true error. The stated error is at least 4 times the difference between two
-// quadrature rules. The result comes from the finer rule. Its true error is far smaller than this difference.
+// Largest allowed median of the stated error divided by the true error. The stated error is at least 4 times the
+// difference between a coarse and a fine quadrature rule. The result comes from the fine rule, whose true error is far
+// smaller than this difference. So the median is much larger than 1.
 constexpr double kMedianPessimism = 100.0;
-// Errors below these limits do not count in the median, because they are rounding. In float the limit is 16 units in
-// the last place of 24 bits. In double it is ten times 1e-12, the error of the reference.
+// The median leaves out points whose true error is below a limit, because rounding causes such errors. The limit for
+// float is about 16 times 2^-24. The limit for double is ten times the error of the reference, 1e-12.
 constexpr double kFloatRounding = 1e-6;
 constexpr double kDoubleRounding = 1e-11;
 

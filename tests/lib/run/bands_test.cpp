@@ -19,8 +19,8 @@ namespace dolp {
 namespace {
 
 // DOLP of the emission of a smooth surface at 300 K in the band from 8 to 14 um, where n rises linearly from 0.90 to
-// 0.98. At each zenith except the last, total reflection ends at a wavelength in the band. The values come from
-// adaptive quadrature with 20 digits (mpmath), split at this wavelength.
+// 0.98. At each zenith, total reflection ends at a wavelength in the band. The values come from adaptive quadrature
+// with 20 digits (mpmath), split at this wavelength.
 struct Case {
   double theta_deg;
   double dolp;

@@ -106,7 +106,8 @@ TEST_P(BistaticByEvaluator, RandomScenes_AgreeWithTheModelWrittenOut) {
     const SlopeShape shape{scene.surface.sigma, scene.surface.q};
     const PointResult r = evaluate_scene(scene, {{theta_i_deg, shape, {}}}, *evaluator, {}).front();
     const Radiance l = model_radiance(scene, theta_i_deg);
-    // The stated error of DOLP bounds the errors of Q/I and U/I. The factor 2 allows for I, because l.i is the exact I.
+    // The stated error of DOLP also bounds the errors of Q/I and U/I. Here Q and U are divided by the exact I instead
+    // of the computed I. The factor 2 allows for the difference.
     const double bound = 2.0 * r[Quantity::kErrorEstimate] + 1e-9;
     EXPECT_NEAR(r[Quantity::kStokesQ] / l.i, l.q / l.i, bound) << n;
     EXPECT_NEAR(r[Quantity::kStokesU] / l.i, l.u / l.i, bound) << n;
@@ -121,7 +122,8 @@ TEST_P(BistaticByEvaluator, RandomScenes_AgreeWithTheModelWrittenOut) {
   std::printf("worst DOLP difference %.1e\n", worst);
 }
 
-/// An evaluator of beams. In float it states the error 1 % of the first matrix element, in double the usual error.
+/// An evaluator of beams. In float it states that the error is 1 % of the first matrix element. In double it states the
+/// usual error.
 class BiasedBeams final : public ModelEvaluator {
  public:
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
@@ -214,7 +216,8 @@ TEST(Bistatic, SourceAngles_ShareTheMomentsOfTheView) {
   const double three = evaluator.report().evaluations;
   evaluate_scene(scene, {{10.0, shape, {}}}, evaluator, {});
   EXPECT_GT(three, 0.0);
-  // All entries share the moments of the view direction. So one entry takes as many evaluations as three.
+  // All entries share the moments of the view direction. So the second run, with one entry, takes as many evaluations
+  // as the first run, with three. The report adds up both runs.
   EXPECT_EQ(2.0 * three, evaluator.report().evaluations);
   EXPECT_EQ(results[0][Quantity::kRhoI], results[2][Quantity::kRhoI]);
   EXPECT_EQ(results[2].status, 0U);  // no status bit, because a source at 90 degrees adds nothing

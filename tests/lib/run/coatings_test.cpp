@@ -94,7 +94,7 @@ TEST(Films, Amplitudes_AgreeWithCharacteristicMatrices) {
 
 // ---- Moments and beams ---------------------------------------------------------------------------------------------
 
-/// Compares moments of random coatings with the reference. The coatings take the models of kModels in turn.
+/// Compares moments of random coatings with the reference. Coating i has model i of kModels, modulo their number.
 void expect_within_bounds_of_reference(Precision precision, double tolerance, std::uint64_t seed, std::size_t draws) {
   Random random(seed);
   FixedPrecision evaluator(precision);

@@ -1,4 +1,4 @@
-// Polarised diffuse reflection in scenes: of beams, of skies, in Mueller matrices, and if all temperatures are equal.
+// Polarised diffuse reflection in scenes: with a beam, under a sky, in Mueller matrices, and at equal temperatures.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -77,7 +77,8 @@ TEST(DiffuseScenes, SkyBrighterAtTheHorizon_AddsWhatTheDiffusePartSees) {
   const TemporaryFile sky("sky.csv", "zenith_deg,temperature_K\n0,200\n60,240\n90,300\n");
   const std::vector<std::string> scene = {"surface.specular=0", "surroundings.profile=" + sky.path()};
   const PointResult all = result_of(scene);
-  // Radiance of the sky at 10 um by Planck's law. The diffuse part reflects its weighted `mean` over all zeniths.
+  // Radiance of the sky at 10 um by Planck's law. The diffuse part reflects the weighted mean of this radiance over all
+  // zeniths, which is `mean` divided by `weights`.
   const auto radiance = [](double zenith_deg) {
     const double kelvin = zenith_deg < 60.0 ? 200.0 + zenith_deg / 60.0 * 40.0 : 240.0 + (zenith_deg - 60.0) * 2.0;
     return 1.191042972e8 / 1e5 / std::expm1(14387.76877 / (10.0 * kelvin));

@@ -15,7 +15,7 @@ namespace {
 using namespace effects_support;
 
 constexpr std::uint64_t kSeed = 20250901;
-/// Parts of a scene whose effect on DOLP the plan can bound by a number that is finite and above 0.
+/// Parts of a scene for which the plan gives a bound of their effect on DOLP. The bound is finite and above 0.
 constexpr std::array kBounded = {Part::kSource, Part::kSurroundings, Part::kEmission, Part::kPathRadiance};
 // Rounding error of a quotient of two sums of Stokes parameters.
 constexpr double kRounding = 1e-11;

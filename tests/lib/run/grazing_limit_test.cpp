@@ -27,8 +27,9 @@ constexpr std::array kAllIndices = {
 // Accuracy of grazing_limit_moments(), as run/closed_forms.hpp states it.
 constexpr double kRelativeAccuracy = 1e-12;
 constexpr double kAlbedoAccuracy = 2e-15;
-// Just below 90 degrees, r_q / r_i minus its limit is a power series in cos(theta)^(3 - 2q). Extrapolation removes the
-// first term, which is at most 2 % of r_q / r_i at q = 1.3. The second term remains. It is about (2 %)^2.
+// Just below 90 degrees, the difference between r_q / r_i and its limit is a power series in cos(theta)^(3 - 2q). Its
+// first term is at most 2 % of r_q / r_i at q = 1.3. Extrapolation removes this term, but not the second, which is
+// about (2 %)^2.
 constexpr double kExtrapolationAccuracy = 4e-4;
 
 /// Ends of integration panels, whose widths halve toward both ends of [from, to].
@@ -43,8 +44,9 @@ std::vector<Real> graded_panels(Real from, Real to) {
   return ends;
 }
 
-/// Integral of `part` times cos(phi)^(4 - 2q) over phi from 0 to 90 degrees, in psi = 90 degrees - phi. The panels get
-/// narrower toward 0, 90 degrees and the critical angle of total reflection, where the integrand is not smooth.
+/// Integral over phi from 0 to 90 degrees of cos(phi)^(4 - 2q) times `part`, a function of the reflectance at the angle
+/// of incidence phi. The code integrates over psi = 90 degrees - phi. The panels get narrower where the integrand is
+/// not smooth: toward psi = 0, psi = 90 degrees and the critical angle of total reflection.
 Real integral(double q, const OpticalConstants& index, const std::function<Real(const SmoothReflectance&)>& part) {
   const Real quarter = 0.5L * std::numbers::pi_v<Real>;
   const Real squared = 1.0L - (Real(index.n) * index.n - Real(index.k) * index.k);
@@ -83,7 +85,8 @@ TEST(GrazingLimit_EveryIndex, AgreesWithAnotherQuadrature) {
       const Moments limit = grazing_limit_moments(index, q);
       const Real albedo = integral(q, index, [](const auto&) { return 1.0L; });
       const Real r_i = integral(q, index, [](const SmoothReflectance& r) { return 0.5L * (r.s + r.p); });
-      // In this limit facets are vertical. So the plane of incidence is normal to the meridian, and Q changes its sign.
+      // In this limit the visible facets are vertical and the view direction is horizontal. So the plane of incidence
+      // on a facet is horizontal. Q refers to the vertical plane through the view direction. So Q changes its sign.
       const Real r_q = integral(q, index, [](const SmoothReflectance& r) { return -0.5L * (r.s - r.p); });
       const double bound = kRelativeAccuracy * limit.r_i + kAlbedoAccuracy * limit.albedo;
       EXPECT_NEAR(limit.albedo, static_cast<double>(albedo), kRelativeAccuracy * limit.albedo);

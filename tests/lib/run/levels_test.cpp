@@ -45,7 +45,8 @@ TEST(EvaluateScene_Levels, ThatWorsen_LeaveTheFirst) {
   EXPECT_EQ(result[Quantity::kRhoQ], 0.1);
 }
 
-/// Returns a larger r_q when the run checks itself, by `bounds` times the sum of the stated errors of both values.
+/// When the run checks itself, this evaluator returns a larger r_q than before. The two values of r_q differ by
+/// `bounds` times the sum of their stated errors.
 class Contradicts final : public MomentsOnly {
  public:
   explicit Contradicts(double bounds) : bounds_(bounds) {}

@@ -1,5 +1,6 @@
-// Errors that lookups in random tables state, compared with true errors at random points between the entries. Some
-// tables are coarse. DOLP_PROPERTY_DRAWS sets the number of tables, DOLP_PROPERTY_SEED their seed.
+// Each result of a lookup states its error. The tests make random tables, some of them coarse, and compare the stated
+// errors with the true errors at random points between the entries. The environment variable DOLP_PROPERTY_DRAWS sets
+// the number of tables, and DOLP_PROPERTY_SEED sets their seed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -116,8 +117,8 @@ std::vector<PointResult> exact_at(const SceneValues& scene, const std::vector<Ta
 /// Totals over the points of all tables.
 struct Tally {
   std::size_t points = 0;
-  std::size_t flagged = 0;  ///< points with status 2: the lookup reports that DOLP misses the tolerance
-  std::size_t missed = 0;   ///< points whose true error of DOLP exceeds the tolerance
+  std::size_t flagged = 0;  ///< points for which the lookup reports that DOLP or rho misses the tolerance
+  std::size_t missed = 0;   ///< points whose true error of DOLP or rho exceeds the tolerance
   double worst = 0.0;       ///< largest ratio of true error to stated error
   std::vector<double> stated = {};
 };
@@ -169,7 +170,8 @@ void expect_honest(NextScene next_scene) {
             << " %; median of the stated errors " << tally.stated[tally.stated.size() / 2] << "\n";
 }
 
-/// A scene in bistatic mode. Its table crosses the specular direction or passes beside it, and has few values of sigma.
+/// A scene in bistatic mode, with few values of sigma. With the azimuth 180 degrees, the axis of theta usually contains
+/// the specular direction. With other azimuths it does not.
 SceneValues bistatic_scene(Draws& draw) {
   SceneValues scene = random_scene(draw);
   scene.surroundings = Surroundings{.temperature_K = 280.0};
@@ -183,7 +185,7 @@ SceneValues bistatic_scene(Draws& draw) {
   return scene;
 }
 
-/// A table whose axis of n begins below 1, with total reflection, and ends above 1.
+/// A scene whose axis of n begins below 1, where there is total reflection, and ends above 1.
 SceneValues scene_across_total_reflection(Draws& draw) {
   SceneValues scene = make_scene(Distribution::kCauchy, kMaskings[draw.count(0, 3)], {0.7, 0.0});
   if (draw.chance(0.5)) scene.surroundings.reset();
@@ -202,8 +204,9 @@ TEST(LookupEstimates, RandomPointsAcrossTotalReflection_ErrorsAreWithinThem) {
   expect_honest(scene_across_total_reflection);
 }
 
-// A lookup estimates its error from changes of the result when it uses more entries. In these tables the true error
-// would be 1.8 to 5.7 times the estimate if lookups ignored kinks, or trusted changes that are small only by chance.
+// A lookup estimates its error from the change of its result when it uses more values of an axis. This change can be
+// small by chance, and it can miss a kink of the masking. Lookups allow for both. If they did not, the true error in
+// these tables would be 1.8 to 5.7 times the estimate.
 TEST(LookupEstimates, TablesWithKinksOrShortAxes_ErrorsAreWithinThem) {
   const struct {
     NextScene next_scene;

@@ -94,8 +94,9 @@ TEST(MuellerRun, Mirror_HasTheDiffusePartButInItsSpecularDirection) {
   EXPECT_EQ(elements(scene, {90.0, 40.0, 180.0}, 0.0), expected);
 }
 
-// With equal zeniths, light may bounce any number of times in a groove. An almost perfect conductor absorbs too little
-// to end the sum in time. Fewer bounces contribute with zeniths of 40 and 43 degrees, or with a paint, which absorbs.
+// With equal zeniths, light may bounce any number of times in a groove. An almost perfect conductor absorbs so little
+// that more than kMostBouncesOfBeam bounces contribute. With zeniths of 40 and 43 degrees, the number of bounces is
+// limited. With a paint, absorption makes the later bounces negligible.
 TEST(MuellerRun, MoreBouncesThanAreFollowed_AreNan) {
   SceneValues scene = scene_with(Masking::kVCavity);
   scene.surface.scattering = Scattering::kMultiple;

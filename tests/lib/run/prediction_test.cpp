@@ -1,4 +1,4 @@
-// The prediction of a run, compared with the requests that the run makes at its first refinement level.
+// predict_run() predicts how many requests, moments and beams a run needs. The test compares these numbers with runs.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -14,7 +14,8 @@ namespace {
 using namespace dolp;
 using namespace scene_run_support;
 
-/// Counts the requests of the first refinement level. The count ends when the run checks itself, with extra panels.
+/// Counts the requests of the first refinement level. After this level the run checks itself with requests that have
+/// extra splits. The count ends at the first of these.
 class FirstRequests final : public ModelEvaluator {
  public:
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {

@@ -58,7 +58,8 @@ TEST(Limits_RightAngle, DivergingReflectanceLeavesOnlyTheDolp) {
 }
 
 TEST(Limits_RightAngle, DivergingSpecularDolpIsTheQuotientJustBefore) {
-  // Between 90 - 1e-6 and 90 degrees, r_q / r_i changes by about cos(theta) / r_i. Here cos(theta) is below 2e-8.
+  // Between 90 - 1e-6 and 90 degrees, r_q / r_i changes by about cos(theta) / r_i. This is far less than kChange,
+  // because cos(theta) is below 2e-8.
   constexpr double kChange = 1e-4;
   for (const Masking masking : {Masking::kNone, Masking::kIntegral}) {
     for (const Distribution distribution : kDistributions) {
@@ -98,8 +99,8 @@ TEST(Limits_RightAngle, MirrorReflectsAllWithoutPolarisation) {
 }
 
 TEST(Limits_RightAngle, MirrorsOwnEmissionHasThePolarisationOfItsLimit) {
-  // At small c = cos(theta), a smooth surface of index N emits 1 - R_s = 4 c Re(w) / |w|^2 in s, and in p
-  // 1 - R_p = 4 c Re(conj(N^2) w) / |w|^2, where w = sqrt(N^2 - 1).
+  // A smooth surface of index N has the emissivities 1 - R_s and 1 - R_p. For small c = cos(theta) and with
+  // w = sqrt(N^2 - 1), they are 4 c Re(w) / |w|^2 and 4 c Re(conj(N^2) w) / |w|^2.
   constexpr double kRelativeRounding = 1e-13;
   for (const OpticalConstants& index : {kDielectric, kAbsorbing, kMetal, OpticalConstants{1e6, 1e6}}) {
     const std::complex<double> square = std::complex(index.n, index.k) * std::complex(index.n, index.k);
@@ -225,7 +226,8 @@ TEST(Limits_Metals, DolpIsThatOfTheReferenceOrSaysThatItIsNot) {
   });
 }
 
-/// The zenith from which on rho_s or rho_p is outside [0, 1] up to 90 degrees.
+/// The smallest zenith, in steps of 0.25 degrees, for which rho_s or rho_p is outside [0, 1] there and at all larger
+/// zeniths. If there is no such zenith, the result is 90.
 double unphysical_from_deg(Masking masking, const OpticalConstants& index, double sigma, Evaluator evaluator) {
   SceneValues scene = make_scene(Distribution::kCauchy, masking, index);
   scene.grid = axes_of({}, {sigma}, {2.0});

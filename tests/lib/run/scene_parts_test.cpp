@@ -74,7 +74,8 @@ class PartsOfModel : public testing::TestWithParam<std::tuple<Distribution, Mask
   double least_q() const { return scene().surface.needs_mean_slope() ? 1.51 : 1.2; }
 };
 
-// Hard cases: directions near 90 degrees need other quadrature nodes, and many entries with small q are computed again.
+// Directions near 90 degrees need other quadrature nodes, and many entries with small q are computed again. The
+// way in which the grid is cut into parts must not affect either.
 TEST_P(PartsOfModel, InterpolatedGrid_KeepsItsBitsInParts) {
   SceneValues dense = scene();
   dense.grid =
@@ -99,8 +100,8 @@ TEST_P(PartsOfModel, AxesOfIndexAndWavelength_KeepTheirBitsInParts) {
 INSTANTIATE_TEST_SUITE_P(SceneParts, PartsOfModel,
                          testing::Combine(testing::ValuesIn(kDistributions), testing::ValuesIn(kMaskings)));
 
-// The run combines the moments of many indices from a few responses, which are moments that do not depend on the index.
-// It must use the same responses for a part of the grid as for the whole grid.
+// For a grid with many indices, the run computes integrals that do not depend on the index, called responses. From them
+// it computes the moments of each index. It must use the same responses for a part of the grid as for the whole grid.
 TEST(SceneParts, CombinedIndices_KeepTheirBitsInParts) {
   for (const Masking masking : {Masking::kVCavity, Masking::kIntegral}) {
     SceneValues scene = make_scene(Distribution::kCauchy, masking, kAbsorbing);

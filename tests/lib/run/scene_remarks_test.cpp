@@ -71,7 +71,7 @@ TEST(SceneRemarks, FileThatLacksDataOrRows_IsSaid) {
     std::vector<std::string> remarks;
   };
   for (const Case& row : {
-           Case{"wl,n,k\n8,1.5,0.1\n14,1.5,0.1\n", "wavelength_um=10", {}},  // no gap: the file has only two rows
+           Case{"wl,n,k\n8,1.5,0.1\n14,1.5,0.1\n", "wavelength_um=10", {}},  // no gap, because 14 / 8 is below 2
            {"wl,n\n8,1.5\n14,1.5\n", "wavelength_um=10", {no_k}},
            {"wl,n,k\n8,1.5,-2e-7\n14,1.5,0.1\n", "wavelength_um=10", {noise}},
            {dense, "wavelength_um=8", {gap("3.4 and 10.6")}},

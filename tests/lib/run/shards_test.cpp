@@ -1,4 +1,5 @@
-// A file replaces a shard between the first reading and the merge. The merge takes it only if it is the same shard.
+// A file replaces a shard between the first reading and the merge. The merge accepts this file only if it contains the
+// same shard.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -21,7 +21,8 @@ using namespace scene_run_support;
 
 std::string scene_path(const std::string& name) { return DOLP_HOST_DIR "/scenes/" + name + ".toml"; }
 
-/// What a comment states: DOLP in percent, its sign, and its changes in percentage points if effects are dropped.
+/// What the comment of a scene states: DOLP in percent, the polarisation (`side`: s or p), and for each effect the
+/// change of DOLP in percentage points without this effect.
 struct Statement {
   std::vector<std::string> overrides;  ///< settings that the comment assumes
   double theta_deg = 0.0;
@@ -116,8 +117,8 @@ std::optional<Part> part_of(const std::string& effect) {
   return found == kParts.end() ? std::nullopt : std::optional(found->second);
 }
 
-// Comments state changes of DOLP. The plan states changes of the vector (Q/I, U/I). DOLP is the length of this vector,
-// so its change is not larger.
+// The comment of a scene says by how much an effect changes DOLP. The plan says by how much it changes the vector
+// (Q/I, U/I). DOLP is the length of this vector, so DOLP changes by no more than the vector.
 TEST_P(ShippedScene, Plan_EstimatesTheChangesThatTheCommentStates) {
   constexpr double kAccuracy = 0.2;  // percentage points: the plan subtracts two values, each with the tolerance 1e-3
   const auto [name, statement_count] = GetParam();

@@ -70,7 +70,7 @@ Reflected reflected_of(const SceneValues& scene, const PointResult& result) {
   return {result[kStokesI] / pi - emitted * (1.0 - result[kRhoI]), result[kStokesQ] / pi + emitted * result[kRhoQ]};
 }
 
-// Tolerance: the manual states five digits, and the sky of the test has linear pieces between 361 zeniths.
+// The manual states five digits. The sky of the test adds a small error, because it is linear between 361 zeniths.
 constexpr double kDigits = 6e-6;
 
 TEST(Sky, QuadraticProfile_GivesTheValuesOfTheModel) {
@@ -96,7 +96,8 @@ TEST(Sky, QuadraticProfile_GivesTheValuesOfTheModel) {
   }
 }
 
-/// A built-in sky, or a profile of temperatures: two that differ much, independent ones, or a rise toward the horizon.
+/// A built-in sky, or a profile of temperatures. The profile has very different temperatures at zenith and horizon, or
+/// independent temperatures at several zeniths, or a rise from the zenith to the horizon.
 SkyProfile random_sky(Draws& random) {
   if (random.chance(0.1)) return *built_in_sky(random.chance(0.5) ? "clear-sky" : "overcast");
   if (random.chance(0.1))
@@ -292,8 +293,8 @@ TEST(Sky, DiffuseSurface_ReflectsTheMeanThatItsExponentWeights) {
     CpuEvaluator cpu;
     const PointResult result = result_of(scene, 40.0, cpu);
     // The diffuse pBRDF is (k_d / pi) (mu cos(theta))^c, with mu = cos(zenith). So a sky of radiance L gives the
-    // exitance 2 pi k_d cos^c(theta) int L mu^(c + 1) dmu. With mu = v^(1 / (c + 2)) the integral over v has a constant
-    // weight.
+    // exitance 2 pi k_d cos^c(theta) int L mu^(c + 1) dmu. The sum below substitutes mu = v^(1 / (c + 2)), because
+    // mu^(c + 1) dmu = dv / (c + 2).
     constexpr int kSteps = 20000;
     double sum = 0.0;
     for (int i = 0; i < kSteps; ++i) {

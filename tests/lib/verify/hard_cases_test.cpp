@@ -33,7 +33,8 @@ std::string label(const StoredCase& c) {
 
 TEST(HardCases, References_AreAsGoodAsStated) {
   constexpr double kRelative = 1.5e-13;
-  // In the case almost-vacuum, r_i is 3e-9, the square of amplitudes of 5e-5, which have rounding errors of 1e-16.
+  // In the case almost-vacuum, r_i is 3e-9. It is the square of amplitudes of 5e-5. The rounding errors of these
+  // amplitudes are 1e-16, so the relative error of r_i is larger than usual.
   constexpr double kAlmostVacuum = 3e-11;
   for (const StoredCase& c : hard_cases()) {
     const Moments& m = c.moments;
@@ -49,7 +50,7 @@ Moments recomputed(const StoredCase& c, const ReferenceOptions& options) {
   return ReferenceEvaluator(options).evaluate(request, {}).at(0);
 }
 
-// All cases, but only every tenth case with integral masking, which is slow.
+// The test leaves out nine of ten cases with integral masking, because integral masking is slow.
 TEST(HardCases, AnotherRefinement_StaysWithinTheErrors) {
   std::size_t slow = 0;
   for (const StoredCase& c : hard_cases()) {
@@ -163,7 +164,7 @@ TEST(Qualify, OrdinaryCases_MeetTheToleranceInDouble) {
 }
 
 // At 90 degrees, with v-cavity and smith masking, the program gives the limit of rho. The stored values are for
-// 90 - 1e-9 degrees. They differ from the limit by about cos(theta) = 2e-11, times a logarithm.
+// 90 - 1e-9 degrees, where cos(theta) is 2e-11. So they differ from the limit by less than kApproach.
 TEST(HardCases, RightAngle_IsTheLimitOfTheStoredValue) {
   constexpr double kApproach = 1e-8;
   for (const StoredCase& c : hard_cases()) {

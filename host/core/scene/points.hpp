@@ -15,7 +15,7 @@
 namespace dolp {
 
 enum class PointsKind {
-  /// For the commands `eval` and `lookup`. Columns: at least one axis (theta_deg, sigma, n, ...) or value of a film.
+  /// For the commands `eval` and `lookup`. At least one column: an axis (theta_deg, sigma, n, ...) or a film's value.
   kDirections,
   /// For the command `mueller`. Required columns: theta_i_deg, theta_r_deg, delta_phi_deg. Optional columns: sigma or
   /// wind_m_s, q, n, k, and values of films.

@@ -31,7 +31,7 @@ struct MomentsPoint {
 struct Response {
   enum class Of : std::uint8_t {
     kReflected,  ///< responses for r_i and r_q
-    kSky,        ///< responses for r_i and r_q, weighted with the only function of MomentsRequest::sky
+    kSky,        ///< responses for r_i and r_q with a function of the sky, the only one in MomentsRequest::sky
     kDirect      ///< responses for direct_i and direct_q
   };
   std::size_t count = 0;
@@ -61,7 +61,7 @@ struct MomentsRequest {
   std::vector<FacetOptics> optics;
   std::vector<double> sigma;
   std::vector<double> q;
-  std::vector<char> wanted;  ///< a flag per entry of a grid; empty: all. Moments of unwanted entries are undefined
+  std::vector<char> wanted;  ///< a flag per entry of a grid. If empty, all are wanted. Unwanted moments are undefined
 
   std::size_t size() const;
   bool is_wanted(std::size_t entry) const { return wanted.empty() || wanted[entry] != 0; }
@@ -75,17 +75,17 @@ struct MomentsRequest {
   void append(const MomentsPoint& point);  ///< adds an entry; the request becomes a list
 };
 
-/// Moments of one entry with a function g in the integrands, |g| <= 1. A column is for a sky, or it is a response:
+/// Moments of one entry with a function g in the integrands, |g| <= 1. There are two kinds of columns:
 /// - Sky: g depends on the zenith of the reflected ray. It multiplies the integrands of r_i and r_q.
 /// - Response: g depends on the local angle of incidence beta. It replaces (R_s + R_p) / 2 in r_i and
 ///   (R_s - R_p) / (2 sin^2(beta)) in r_q.
 struct ColumnMoments {
   double i = 0.0;
   double q = 0.0;
-  double error = 0.0;  ///< bound of the absolute errors of i and q; for a response, only one of three terms, see below
-  // The next members are for responses. i_apart and q_apart are differences between the results of two quadrature
-  // rules, times a safety factor. Let S be the sum of w i over responses, with a weight w for each. The error bound of
-  // S is the sum of three terms: |sum of w i_apart|, relative_error |S|, and the sum of |w| error.
+  double error = 0.0;  ///< for a sky: bound of the absolute errors of i and q. For a response: see below
+  // The next members are for responses. i_apart and q_apart are differences between two quadrature rules, times a
+  // safety factor. Let response j have the weight w_j. The error of the weighted sum S = sum_j w_j i_j has the bound
+  // |sum_j w_j i_apart_j| + relative_error |S| + sum_j |w_j| error_j. The same holds for q.
   double i_apart = 0.0;
   double q_apart = 0.0;
   double relative_error = 0.0;
@@ -101,7 +101,7 @@ struct Moments {
   /// eps_I cos(theta) of the light that facets emit straight to the viewer. NaN if the request does not ask for it.
   double direct_i = std::numeric_limits<double>::quiet_NaN();
   double direct_q = std::numeric_limits<double>::quiet_NaN();  ///< eps_Q cos(theta); eps_s = eps_I + eps_Q
-  // Bounds of the absolute errors of these six moments, with the errors of quadrature, masking tables and rounding.
+  // Bounds of the absolute errors of these six moments, including errors of quadrature, masking tables and rounding.
   double r_i_error = 0.0;
   double r_q_error = 0.0;
   double albedo_error = 0.0;

@@ -12,7 +12,7 @@
 namespace dolp {
 namespace {
 
-// Choices of the scale c0. Metals need a small c0, which resolves their steep R_p near grazing incidence.
+// Choices of the scale c0 of the cosine. Metals need a small c0 to resolve their steep R_p near grazing incidence.
 constexpr std::array<double, 5> kScales = {1.0, 0.3, 0.1, 0.03, 0.01};
 constexpr Eigen::Index kCoefficients = 65;  // Chebyshev coefficients that are computed for a reflectance curve
 constexpr Eigen::Index kLastOfCurve = 4;
@@ -21,8 +21,8 @@ constexpr double kTimeOfResponse = 0.08;  // extra time per response, relative t
 constexpr double kLeastGain = 1.25;       // responses are used if they make a run at least this many times faster
 // Allowed numbers of responses. They are few because a driver compiles separate kernels for each of them.
 constexpr std::array<std::size_t, 3> kCounts = {8, 16, kMostResponses};
-constexpr std::size_t kMostCandidates = 256;  // most indices of a run among which the reference index is chosen
-constexpr std::size_t kMostTried = 32;  // most indices of a run from which c0 and the number of responses are chosen
+constexpr std::size_t kMostCandidates = 256;  // the reference index is chosen among at most so many indices
+constexpr std::size_t kMostTried = 32;        // at most so many indices determine c0 and the number of responses
 
 using CurveCoefficients = Eigen::Matrix<double, kCoefficients, 2>;  ///< columns: ResponseWeights::absorbed and split
 

@@ -22,18 +22,18 @@ struct ResponseWeights {
 
 class ResponseBasis {
  public:
-  /// Chooses c0 and the number of responses that need the least time for `indices`. `passes`: see response_passes(). An
-  /// approximated reflectance has an error of at most `tolerance` times reflectance_level(). Null if responses would
-  /// save too little time, or if no index can be the reference.
+  /// Chooses c0 and the number of responses so that moments of all `indices` take the least time. `passes`: see
+  /// response_passes(). The error of an approximated reflectance is at most `tolerance` times reflectance_level(). Null
+  /// if responses would save too little time, or if no index is suitable as reference().
   static std::shared_ptr<const ResponseBasis> of(const std::vector<FacetOptics>& indices, double tolerance,
                                                  std::size_t passes);
 
-  /// The index that reflects or absorbs least. Kernels integrate its moments together with the responses. Moments of a
-  /// similar index are the moments of this reference plus a sum of responses. The sum is small, and so is its error.
+  /// The index with the lowest reflectance_level(). Kernels integrate its moments together with the responses. Moments
+  /// of a similar index are these moments plus a small sum of responses, which has a small error.
   const FacetOptics& reference() const { return reference_; }
   std::size_t count() const { return count_; }
   double c0() const { return c0_; }
-  /// Distance from the cosines [0, 1] to the nearest complex cosine at which a polynomial or a reflectance is singular.
+  /// Distance from the cosines [0, 1] to the nearest complex cosine c where asinh(c / c0) or a reflectance is singular.
   double bend() const { return bend_; }
   const ResponseWeights& of_reference() const { return of_reference_; }
   /// Weights for moments of `index`; nullopt if it needs more than count() responses, as with total reflection.

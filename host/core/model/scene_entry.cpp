@@ -189,7 +189,7 @@ std::vector<SceneEntries> SceneEntries::parts(std::size_t most) const {
 
 void for_each_run(const PerAxis& first, const PerAxis& count, const PerAxis& whole,
                   const std::function<void(const GridRun&)>& use) {
-  // `slowest` is the last axis of which the part lacks values, or axis 0. A run covers this axis and all later axes.
+  // Entries that differ only on `slowest` or later axes are consecutive: the part has all values of the later axes.
   std::size_t slowest = count.size() - 1;
   while (slowest > 0 && count[slowest] == whole[slowest]) --slowest;
   const auto from = static_cast<std::ptrdiff_t>(slowest);

@@ -22,7 +22,7 @@ namespace dolp {
 Axes axes_of(std::vector<double> theta_deg, std::vector<double> sigma, std::vector<double> q,
              std::vector<double> wavelength_um = {}, std::vector<double> n = {}, std::vector<double> k = {});
 
-/// The axes of a part that has count[axis] values of each axis, from number first[axis]. Empty axes stay empty.
+/// Cuts each axis to count[axis] values, from position first[axis] on. Empty axes stay empty.
 Axes part_of(const Axes& axes, const PerAxis& first, const PerAxis& count);
 
 /// The position on each axis of entry number `position` in a table. `counts`: number of values on each axis.
@@ -78,7 +78,7 @@ class SceneEntries {
   SceneEntries(std::vector<SceneEntry> points, std::vector<SceneVariant> variants = {{}})  // NOLINT: a list is entries
       : variants_(std::move(variants)), points_(std::move(points)) {}
   SceneEntries(std::initializer_list<SceneEntry> points) : points_(points) {}
-  /// `index`: index of the surface. If a grid has only one of the axes n and k, `index` gives the other value.
+  /// `index`: index of the surface. It gives k if the grid has an axis of n only, and n if it has an axis of k only.
   static SceneEntries of_grid(Axes axes, const OpticalConstants& index);
   static SceneEntries grid(std::vector<double> theta_deg, std::vector<double> sigma, std::vector<double> q);
 
@@ -103,7 +103,7 @@ class SceneEntries {
   PerAxis axis_positions(std::size_t entry) const { return positions_on_axes(entry, counts_); }
   std::size_t entries_per_direction() const { return sigma().size() * q().size(); }
   const OpticalConstants& index() const { return index_; }
-  /// The variant of the entry at the positions `on_axes` on the axes, as a subscript of variants().
+  /// The subscript in variants() for the entry with the axis positions `on_axes`.
   std::size_t variant_at(const PerAxis& on_axes) const;
   bool has_own_index() const { return !axes_[Axis::kN].empty() || !axes_[Axis::kK].empty(); }
   /// The refractive index at the positions `on_axes`. Domain: the grid has an axis of n or k.
@@ -115,7 +115,7 @@ class SceneEntries {
   std::vector<SceneEntries> parts(std::size_t most) const;
   SceneEntries part(const PerAxis& first, const PerAxis& count) const;
   const PerAxis& first() const { return first_; }     ///< position of the part's first value on each axis of the grid
-  PerAxis first_in(const SceneEntries& whole) const;  ///< position of the first value in a larger part, `whole`
+  PerAxis first_in(const SceneEntries& whole) const;  ///< like first(), but relative to `whole`, a larger part
   const PerAxis& whole() const { return whole_; }     ///< number of values on each axis of the whole grid
   const Axes& whole_axes() const { return *whole_axes_; }
   /// Converts an entry's position in the whole grid to its position in this part; nullopt if the part lacks the entry.

@@ -15,15 +15,15 @@ namespace {
 
 constexpr Eigen::Index kPoints = 17;  // Chebyshev points in each interval of zeniths
 
-// A sum of basis functions approximates a sky. Its error is at most kBetweenNodes times the largest error at a node.
+// Assumed bound of the error of a sum of basis functions between nodes, as a multiple of the largest error at a node.
 constexpr double kBetweenNodes = 1.5;
 constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
-// A Chebyshev series of kPoints terms omits less than kBeyondLast times the sum of its last kLastCoefficients terms.
+// SkyNodes::error() is kBeyondLast times the sum of |a| over the last kLastCoefficients Chebyshev coefficients a.
 constexpr Eigen::Index kLastCoefficients = 4;
 constexpr double kBeyondLast = 2.0;
 
-// Near the horizon mean_weights integrates over y with cos(zenith) proportional to y^4, which makes cos^power smooth.
+// Near the horizon mean_weights integrates over y, with cos(zenith) ~ y^4. Powers of the cosine are smooth in y.
 constexpr double kHorizonPower = 4.0;
 
 }  // namespace

@@ -18,11 +18,11 @@ class LeastSquares {
 
  private:
   Eigen::MatrixXd orthonormal_;
-  Eigen::MatrixXd triangle_;  ///< the columns are orthonormal_ * triangle_
+  Eigen::MatrixXd triangle_;  ///< orthonormal_ * triangle_ is the matrix that the constructor received
 };
 
 /// Zeniths at which functions of the zenith are tabulated. `ends_deg` divides [0, 90] into intervals. In each interval
-/// a function is the polynomial through its values at Chebyshev-Lobatto points. At the ends it may have kinks.
+/// a function is the polynomial through its values at Chebyshev-Lobatto points. Between intervals it may have kinks.
 class SkyNodes {
  public:
   explicit SkyNodes(std::vector<double> ends_deg);  ///< at least three values, ascending from 0 to 90
@@ -53,12 +53,12 @@ struct SkyWeights {
   double error = 0.0;  ///< bound of the distance between the function and the sum, at any zenith
 };
 
-/// Functions of the zenith, up to 1 in absolute value, whose weighted sums approximate the sky at each wavelength.
+/// Functions f of the zenith, |f| <= 1. Weighted sums of them approximate a sky's radiance minus its mean.
 class SkyBasis {
  public:
-  /// Each of `functions` is given by its values at the nodes. The constructor adds to the basis the function that the
-  /// basis approximates worst, again and again, until all relative errors are at most `tolerance` or the basis has
-  /// kMostSkyFunctions functions. A relative error refers to the largest absolute value of the function.
+  /// `functions`: the values of each function at the nodes. The constructor repeatedly adds to the basis the function
+  /// that the basis approximates worst. It stops if each error is at most `tolerance` times the largest absolute value
+  /// of the function, or if the basis has kMostSkyFunctions functions.
   SkyBasis(SkyNodes nodes, const std::vector<Eigen::VectorXd>& functions, double tolerance);
 
   const SkyNodes& nodes() const { return nodes_; }

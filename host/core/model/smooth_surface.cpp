@@ -37,12 +37,12 @@ ReflectedAmplitudes interface_amplitudes(const Wave& above, const Wave& below) {
 using Complex = std::complex<double>;
 
 SmoothAbsorptance bare_absorptance(const OpticalConstants& index, double cosine) {
-  // If n and k are both below kLeast, N^4 underflows, so kLeast replaces n. The absorptance stays below 4e-75.
+  // Powers of a tiny N underflow. If n and k are both below kLeast, kLeast replaces n. Results change by up to 4e-75.
   constexpr double kLeast = 1e-75;
   const double n = index.k < kLeast ? std::max(index.n, kLeast) : index.n;
   const double k = index.k;
   const Complex square((n - k) * (n + k), 2.0 * n * k);
-  // Real part of N^2 - sin^2(beta). The first form keeps the digits of a small N^2; the second keeps those of N^2 - 1.
+  // Real part of N^2 - sin^2(beta). The first form keeps the digits of a small N^2, the second the digits of N^2 - 1.
   const bool is_small = n < 0.5 && k < 0.5;
   const double real =
       is_small ? square.real() - (1.0 - cosine) * (1.0 + cosine) : (n - 1.0) * (n + 1.0) - k * k + cosine * cosine;
@@ -139,7 +139,7 @@ double reflectance_level(const FacetOptics& optics) {
 double critical_cosine(const FacetOptics& optics) {
   if (optics.measured) return 0.0;
   const OpticalConstants& index = optics.index;
-  // Chosen limit of Im N^2. Above it total reflection begins so gradually that integrals need not be split there.
+  // Above this Im N^2, total reflection begins so gradually that integrals need no split at its angle.
   constexpr double kSoft = 0.3;
   const double squared = (1.0 - index.n) * (1.0 + index.n) + index.k * index.k;
   const bool is_sharp = 2.0 * index.n * index.k < kSoft;

@@ -30,7 +30,7 @@ class DiffuseReflection {
   DiffuseLight rho(double cosine) const;
   /// The diffuse pBRDF times pi cos(theta_i).
   DiffuseLight beam(double cos_theta_i, double cos_theta_r) const;
-  /// t_+ and t_- at the incidence `cosine`, divided by t_+ at normal incidence. (1, 0) if is_polarised_ is false.
+  /// t_+ and t_- of the class comment, at the incidence `cosine`, over t_+(0). 1 and 0 if is_polarised_ is false.
   DiffuseLight transmitted(double cosine) const;
   /// One weight per node. The weighted sum of a sky's radiances is the mean radiance that the diffuse part reflects.
   Eigen::VectorXd mean_weights(const SkyNodes& nodes) const;

@@ -53,7 +53,7 @@ void add_emissivity(PointResult& result, const SpectralRule& rule, std::span<con
 }
 
 std::uint32_t tolerance_status(const PointResult& result, double tolerance) {
-  const bool is_outside = (result.status & kOutsideModelDomain) != 0;  // rho diverges, and DOLP is a limit or NaN
+  const bool is_outside = (result.status & kOutsideModelDomain) != 0;  // rho diverges, or DOLP is NaN
   const bool dolp_missed = (is_outside || promises_dolp(result.status)) && result[kErrorEstimate] > tolerance;
   const bool rho_missed = !is_outside && result[kRhoErrorEstimate] > tolerance;
   return (dolp_missed ? std::uint32_t{kToleranceNotMet} : 0U) | (rho_missed ? std::uint32_t{kRhoToleranceNotMet} : 0U);
@@ -61,7 +61,7 @@ std::uint32_t tolerance_status(const PointResult& result, double tolerance) {
 
 /// Estimates how much light single scattering leaves out of I because it ignores later bounces. With direct emission
 /// this is pi B (1 - rho_I - eps_I). Otherwise it is the change of I if the specular part of rho_I is divided by the
-/// albedo A, which is rho_I of facets that reflect all light; with all bounces it would be 1.
+/// albedo A. A is rho_I of facets that reflect all light. With all bounces A would be 1.
 double change_by_model(const SceneModel& scene, const SpectralRule& rule, std::span<const Moments> moments,
                        std::span<const Reflectance> reflectances, std::span<const Emissivity> emissivities,
                        double cos_theta) {
@@ -136,7 +136,7 @@ PointResult grazing_limit(const SceneModel& scene, const SpectralRule& rule, std
   result[kRhoErrorEstimate] = 0.0;
   if (keeps_projected_area(surface.masking)) {
     if (direction.cos_theta > 0.0) result[kAlbedo] = moments.front().albedo / direction.cos_theta;
-    // The diverging diffuse light is unpolarised, so DOLP is 0. If emission and surroundings cancel, DOLP has no limit.
+    // The diverging diffuse light is unpolarised, so DOLP is 0. In isothermal scenes with fresnel emission it is NaN.
     const bool cancels = emission_model(scene) == EmissionModel::kFresnel && is_isothermal(rule);
     if (diffuse_diverges(surface) && !cancels) result[kDolp] = result[kQOverI] = result[kErrorEstimate] = 0.0;
     return result;

@@ -16,19 +16,19 @@ namespace dolp {
 
 /// Converts moments to the quantities that a sensor measures.
 /// Equation: the light that leaves the surface has I = pi B (1 - rho_I) + X rho_I and Q = (X - pi B) rho_Q. B is the
-/// Planck radiance at the temperature of the surface. X = E0 cos(theta) + pi B(T_surr) is the incident light of source
-/// and surroundings. The emissivities are 1 - rho_s and 1 - rho_p; with emission.model = "fresnel" they are 1 - R_s
-/// and 1 - R_p of the smooth surface. In bistatic mode I and Q are divided by pi, and the source is not part of X: it
-/// adds E0 cos(theta_i) f, where f is the pBRDF from the source to the view.
+/// Planck radiance at the temperature of the surface. X = E0 cos(theta) + pi B(T_surr) is the incident light: a
+/// source of the irradiance E0, and surroundings. In these formulas the emissivities are 1 - rho_s and 1 - rho_p. With
+/// emission.model = "fresnel" they are 1 - R_s and 1 - R_p of the smooth surface instead. In bistatic mode I and Q are
+/// divided by pi. Then the source is not part of X: it adds E0 cos(theta_i) f, with the pBRDF f from source to view.
 class Radiometry {
  public:
   /// `kept`: effects that contribute. If kept.moments is false, the specular part of rho counts as 0, and quantities
   /// that need it are NaN. `dropped`: how much the effects that are not kept can change DOLP. The error estimate of
-  /// DOLP includes it. `sky`: the sky functions of Moments::columns. If null, they are computed from the scene.
+  /// DOLP includes it. `sky`: has the functions of Moments::columns. If null, they are computed from the scene.
   explicit Radiometry(const SceneModel& scene, const KeptEffects& kept = {}, double dropped = 0.0,
                       const std::shared_ptr<const SkyBasis>& sky = nullptr);
 
-  /// The spectral samples of the scene. `point` needs Moments for the index of each sample, in this order.
+  /// The spectral samples of the scene. `point` needs Moments for each sample's refractive index, in this order.
   const SpectralRule& rule() const { return rule_; }
 
   /// If moments are NaN, the status is 4 (outside the model's domain), and every quantity is NaN. If rho diverges at 90
@@ -44,12 +44,12 @@ class Radiometry {
   };
   Optics optics_with(std::vector<FacetOptics> facets) const;
 
-  /// For an entry with its own n or k. Its `optics` affect only fresnel emission and a polarised diffuse part.
+  /// Result for an entry with its own n or k. `optics` affects only fresnel emission and a polarised diffuse part.
   PointResult point(const Direction& direction, std::span<const Moments> moments, const Optics& optics) const;
 
   /// Result in bistatic mode. `moments` and rho belong to the direction of the view; the source is at theta_i.
   /// Shape: one Moments and one Scattered per sample of rule(), in the order of the samples.
-  /// If moments are NaN, the result is as in `point`. If rho diverges, every quantity is NaN, with status 1 | 4.
+  /// If moments are NaN, the status is 4. If rho diverges, it is 1 | 4. In both cases every quantity is NaN.
   PointResult bistatic_point(const Direction& view, double cos_theta_i, std::span<const Moments> moments,
                              const Optics& optics, std::span<const Scattered> scattered) const;
   const Optics& optics() const { return optics_; }
@@ -67,7 +67,7 @@ class Radiometry {
   bool knows_rho_;
   SpectralRule rule_;
   SpectralRule kept_rule_;                 ///< rule_, with 0 for the radiation of dropped effects
-  std::shared_ptr<const SkyBasis> basis_;  ///< functions of the sky; null without a sky profile, or if it is dropped
+  std::shared_ptr<const SkyBasis> basis_;  ///< functions of the sky; null if the scene has no sky profile or drops it
   std::vector<SkyWeights> sky_;            ///< for each spectral sample, the weights of the functions in basis_
   Optics optics_;
 };

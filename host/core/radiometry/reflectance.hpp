@@ -39,14 +39,14 @@ Reflectance reflectance(const Surface& surface, const Moments& moments, double c
 /// True if rho_s or rho_p is outside [0, 1] by more than its error.
 bool is_unphysical(const Reflectance& r);
 
-/// Mean of rho over the spectral samples. Weights: emitted light; if it is 0, incident light; if both are 0, widths.
+/// Mean of rho over the samples. Weights: emitted light; if it is 0, incident light; if both are 0, sample widths.
 MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Reflectance> reflectances, double cos_theta);
 
 Emissivity fresnel_emissivity(const FacetOptics& index, double cos_theta);
 
-/// Emissivity for the light that facets emit straight to the viewer (direct emission).
-/// Equation: eps_I = k_s eps_I,direct + 1 - k_s - rho_I,d and eps_Q = k_s eps_Q,direct - rho_Q,d. k_s is
-/// Surface::specular, and rho_I,d and rho_Q,d are the diffuse reflectances in `diffuse`.
+/// Emissivity of the diffuse part, and of the light that facets emit straight to the viewer.
+/// Equation: eps_I = k_s direct_i / cos(theta) + 1 - k_s - diffuse.i and eps_Q = k_s direct_q / cos(theta) - diffuse.q,
+/// where direct_i and direct_q are members of Moments, and k_s is Surface::specular.
 Emissivity direct_emissivity(const Surface& surface, const Moments& moments, double cos_theta,
                              const DiffuseLight& diffuse);
 

@@ -11,7 +11,7 @@ namespace {
 
 using std::numbers::pi;
 
-// Relative rounding error of a radiance. The exponent in Planck's law, up to 745, multiplies its own relative error.
+// Relative rounding error of a radiance. In Planck's law, exp(x) has x times the relative error of x, and x < 710.
 constexpr double kRadianceRounding = 1e-12;
 
 /// Contribution of one spectral sample to I, with the emissivity 1 - rho.
@@ -21,7 +21,7 @@ struct Intensity {
   double error = 0.0;  ///< error of `value` due to the errors of the moments
 };
 
-/// Computes I as pi B (1 - rho_I) + X rho_I or as pi B + (X - pi B) rho_I. Takes the form with the smaller terms.
+/// I = emitted (1 - rho_I) + incident rho_I = emitted + net rho_I. The form with the smaller terms rounds less.
 Intensity moments_intensity(double emitted, double incident, double net, double net_terms, const Reflectance& r) {
   const double split_terms = std::abs(emitted * r.absorbed) + std::abs(incident * r.rho_i);
   const double whole_terms = std::abs(emitted) + net_terms * std::abs(r.rho_i);
@@ -189,10 +189,10 @@ Bracket bracket(const SceneModel& scene, const SpectralRule& rule, std::span<con
   single.i += sky.i;
   single.i_error += sky.i_error;
   double q = sky.q;
-  // `single` counts the light D of later bounces (see Bracket) as emission. D may also be reflected light of the sky.
-  double unknown = 0.0;    // if D is emission: how much D can change q
-  double unreached = 0.0;  // if D is reflected: how much the unknown part of the sky can change q and I
-  double reflected = 0.0;  // if D is reflected: change of I, with the mean of the sky's least and largest exitance
+  // Later bounces give the share D of the light (see Bracket). It is emission, as in `single`, or reflected light.
+  double unknown = 0.0;    // if emission: largest change of q
+  double unreached = 0.0;  // if reflected light, from an unknown part of the sky: largest change of q and of I
+  double reflected = 0.0;  // if reflected light: change of I, for the mean of the sky's least and largest exitance
   double error = sky.q_error;
   for (std::size_t j = 0; j < reflectances.size(); ++j) {
     const SpectralSample& sample = rule.samples[j];

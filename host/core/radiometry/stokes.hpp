@@ -25,10 +25,11 @@ struct Stokes {
 };
 
 /// Lower and upper bound of the DOLP that the surface has with all bounces.
-/// Equation: direct emission eps_I,direct and first reflection rho_I leave D = 1 - rho_I - eps_I,direct to later
-/// bounces. An unknown part d of D is emission and changes eps_Q,direct by at most d. The rest of D is reflected light.
-/// With the incident exitance X and N = pi B - X, the surface has I = X + N eps_I and Q = N eps_Q. So DOLP is extreme
-/// at d = D: (|sum of N eps_Q,direct| -+ sum of |N| D) / I, summed over the spectral samples. Under a sky profile it
+/// Equation: with the incident exitance X, the exitance pi B of a black body and N = pi B - X, the surface has
+/// I = X + N eps_I and Q = N eps_Q. Direct emission eps_I,direct and first reflection rho_I leave the share
+/// D = 1 - rho_I - eps_I,direct to later bounces. Of D, an unknown part d is emission, and the rest is reflection. So
+/// eps_I is eps_I,direct + d, and eps_Q differs from eps_Q,direct by at most d. DOLP is extreme at d = D, where it is
+/// (|sum of N eps_Q,direct| -+ sum of |N| D) / sum of I, with sums over the spectral samples. Under a sky profile it
 /// may also be extreme at d = 0, because the reflected light may come from any part of the sky.
 struct Bracket {
   double low = 0.0;
@@ -40,25 +41,25 @@ struct Bracket {
 Stokes stokes_sum(const SpectralRule& rule, std::span<const Reflectance> reflectances,
                   std::span<const Emissivity> emissivities, EmissionModel model, double cos_theta, bool with_source);
 
-/// Adds net * r_i to I and net * r_q to Q, with an exitance `net`. The moments give `sum` the factor cos(theta).
+/// Adds net * r_i to I and net * r_q to Q. The moments r_i and r_q are rho_I cos(theta) and rho_Q cos(theta).
 void add_specular(Stokes& sum, double net, const Moments& moments);
 
-/// The diffuse part in a spectral sample. `beyond_mean`: the mean exitance of the sky that the diffuse part reflects
-/// (see DiffuseReflection::mean_weights), minus SpectralFactors::surroundings.
+/// Diffuse reflection in a spectral sample. `beyond_mean` is the difference of two means of the sky's exitance. The
+/// first has the weights DiffuseReflection::mean_weights. The second is SpectralFactors::surroundings.
 struct DiffuseSample {
   DiffuseLight rho;
   double beyond_mean = 0.0;
 };
 
-/// Adds the reflected light of a sky profile, minus the reflected light of a uniform sky with the same irradiance. Its
-/// specular part is k_s / cos(theta) times the weighted sum of Moments::columns, where k_s is Surface::specular. Its
-/// diffuse part is DiffuseSample::rho times beyond_mean. `weights`: see sky_weights(); empty without a sky profile.
+/// Adds the reflected light of a sky profile, minus the reflected light of a uniform sky with the same irradiance. The
+/// specular part of this difference is Surface::specular / cos(theta) times the sum of Moments::columns with `weights`.
+/// The diffuse part is DiffuseSample::rho times beyond_mean. `weights` is the result of sky_weights().
 void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std::span<const SkyWeights> weights,
              std::span<const DiffuseSample> diffuse, std::span<const Moments> moments, double cos_theta);
 
 void add_specular_sky(Stokes& sum, double specular, double rounding, const SkyWeights& weights, const Moments& moments);
 
-/// Adds the light of the source as an exitance, pi E0 cos(theta_i) f. `diffuse`: pi cos(theta_i) f of the diffuse part.
+/// Adds pi E0 cos(theta_i) f: the source's reflected light, with the pBRDF f. `diffuse`: pi cos(theta_i) f_diffuse.
 void add_beam(Stokes& sum, double k_s, const SpectralRule& rule, std::span<const Scattered> scattered,
               std::span<const DiffuseLight> diffuse, double cos_theta_r);
 

@@ -16,8 +16,8 @@ struct CsvForm {
   std::size_t first_line = 1;
 };
 
-/// Goes through a text line by line: `for (CsvReader row(text, name); row.next();)`. A cell in double quotes may
-/// contain separators. Skips lines that begin with #, and lines without a value at the end. Views point into `text`.
+/// Goes through a text line by line: `for (CsvReader row(text, name); row.next();)`. A cell in double quotes may have
+/// separators. Skips lines that begin with #, and lines without values at the end. `text` must outlive the reader.
 class CsvReader {
  public:
   CsvReader(std::string_view text, std::string name, CsvForm form = {});
@@ -63,7 +63,7 @@ class CsvColumns {
   /// other than the comma, and for numbers instead of names. The message about an unknown name lists the known names.
   CsvColumns(const CsvReader& header, std::vector<CsvColumn> known, const std::vector<std::string>& ignored = {});
 
-  /// For a file without a header, whose rows have all known columns in this order.
+  /// For a file without a header. Its rows have all columns in the order of `known`.
   explicit CsvColumns(std::vector<CsvColumn> known);
   /// Reads the first line of a text as a header. Errors: those of CsvColumns, and InputError for a text without lines.
   static CsvColumns first_of(CsvReader& reader, std::vector<CsvColumn> known,
@@ -89,7 +89,6 @@ class CsvColumns {
   std::vector<std::string> names_;  // column names in the file's header
 };
 
-/// Message about an unknown column. It lists the allowed columns, and suggests one with a similar name.
 std::string unknown_column(std::string_view name, const std::vector<CsvColumn>& known);
 
 }  // namespace dolp

@@ -69,7 +69,8 @@ std::vector<const Material*> materials_with(std::string_view words) {
   return found;
 }
 
-/// The material whose name is `name`, else begins with it, else contains it, in whole words. Null unless just one fits.
+/// The material with this name. If there is none: the one whose name begins with the words `name`. If there is none:
+/// the one whose name contains them. Null if no material or several materials fit.
 const Material* match_name(std::string_view name) {
   const std::string wanted = lower_case(trim(name));
   std::vector<const Material*> beginning;

@@ -18,9 +18,9 @@ const Material& named_material(std::string_view name, const std::string& prefix)
 
 Material find_material(std::string_view name, const Spectrum& spectrum, const std::string& prefix);
 
-/// Reads a user's file with n and k over wavelength in um, linear between rows. Returns fit_to_spectrum() of it.
+/// Reads a user's file of n and k, linear between the rows. Returns fit_to_spectrum() of the material in the file.
 /// - A .yml or .yaml file is a "full database record" of refractiveindex.info: tables of n and k, or a formula for n.
-/// - Any other file is a CSV with the columns `wavelength_um` (or `wl`) and n, k or both, or several such tables.
+/// - Any other file is a CSV of one or more tables. Columns of a table: `wavelength_um` (or `wl`), and n, k or both.
 /// If the file has no k, k is 0. A k from -1e-5 to 0 is noise and counts as 0.
 /// Errors: InputError with file and line. If the file cannot be opened, the message begins with `prefix`.
 Material read_material_file(const std::string& path, const Spectrum& spectrum, const std::string& prefix);
@@ -38,8 +38,8 @@ void check_covers(const Material& material, const Spectrum& spectrum, const std:
 /// Refuses a material whose formula gives an n out of range, for example near a pole. Checks 1001 points of a band.
 void check_formula(const Material& material, const Spectrum& spectrum, const std::string& prefix);
 
-/// For a band, returns `material`. For a single wavelength, returns a material with the constant index at this
-/// wavelength, and `material` as its `tabulated`. Errors: InputError of check_covers and check_formula.
+/// For a band, returns `material`. For a single wavelength, returns a material whose constant index is the index at
+/// this wavelength. Its member `tabulated` points to a copy of `material`. Errors: see check_covers, check_formula.
 Material fit_to_spectrum(const Material& material, const Spectrum& spectrum, const std::string& prefix);
 
 /// Reads a user's CSV with the columns beta_deg (angle of incidence, from 0 to 90), r_s and r_p. If the reflectances

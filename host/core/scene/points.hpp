@@ -15,7 +15,7 @@
 namespace dolp {
 
 enum class PointsKind {
-  /// For the commands `eval` and `lookup`. Columns: at least one axis (theta_deg, sigma, n, ...) or value of a film.
+  /// For the commands `eval` and `lookup`. At least one column: an axis (theta_deg, sigma, n, ...) or a film's value.
   kDirections,
   /// For the command `mueller`. Required columns: theta_i_deg, theta_r_deg, delta_phi_deg. Optional columns: sigma or
   /// wind_m_s, q, n, k, and values of films.
@@ -31,7 +31,7 @@ struct Points {
   std::vector<std::string> left_out;  ///< columns of the file that are not read because they are results
   using Column = std::optional<std::vector<double>>;
   AxisArray<Column> coordinates;
-  /// For the axes of materials and bands: the different names in the file. Their columns have positions in this list.
+  /// The different names of materials and bands in the file. The columns of these axes hold positions in these lists.
   AxisLabels labels;
   /// Columns such as "surface.coating.1.thickness_um". The key is the layer (0 for coating.1) and n, k or thickness.
   std::map<std::pair<std::size_t, FilmValue::Part>, Column> films;

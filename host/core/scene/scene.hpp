@@ -118,10 +118,10 @@ struct Geometry {
 struct Accuracy {
   double tolerance = 1e-4;
   Precision precision = Precision::kAuto;
-  bool may_interpolate = true;  ///< if false, the program integrates every entry by itself
+  bool may_interpolate = true;  ///< if false, the program integrates every entry and interpolates none
 };
 
-/// Names and paths as a scene gives them; empty if absent. Only `material` is always the full name of the material.
+/// Names and paths as a scene gives them; empty if absent. Loading a built-in material makes `material` the full name.
 struct SceneNames {
   struct OfLayer {
     std::string material, material_file;

@@ -21,7 +21,7 @@ std::string resolve_path(const std::string& file, const std::string& scene_path)
   return is_as_given ? file : scene_path.substr(0, slash + 1) + file;
 }
 
-/// Reads a file that a scene names. With `known`, messages begin with `prefix` and do not quote the file.
+/// Reads a file that a scene names. With `known`, messages begin with `prefix` and quote no text of the file.
 template <class Read>
 auto read_file_of(SceneValues& scene, const std::string& file, const std::string& prefix, const KnownData* known,
                   const Read& read) {

@@ -16,7 +16,7 @@ struct KnownData {
   std::optional<ReflectanceTable> reflectance = {};
   std::optional<SpectralTable> irradiance = {};
   std::optional<SkyProfile> profile = {};
-  bool may_open_files = false;  ///< allows opening files for missing data; then messages do not quote these files
+  bool may_open_files = false;  ///< allows opening files for missing data; error messages quote no text of the files
 };
 
 /// Loads the data that a scene names: materials, measured reflectances, irradiance of the source, and sky. Paths are

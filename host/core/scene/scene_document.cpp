@@ -35,7 +35,7 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
 
 /// The line where nesting exceeds kMostDepth, else 0. There the TOML parser would recurse too deeply.
 std::size_t line_of_deep_nesting(std::string_view text) {
-  std::vector<std::size_t> around = {0};  // depth in the whole text, then inside each open bracket
+  std::vector<std::size_t> around = {0};  // depth outside of brackets, then the depth inside each open bracket
   std::size_t depth = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];

@@ -12,10 +12,10 @@
 
 namespace dolp {
 
-/// True if the setting removes its key. Then its value is empty, `{}`, or `none` if is_removed_by_none(key).
+/// True if the setting removes its key: its value is absent or `{}`, or `none` for keys with is_removed_by_none(key).
 bool is_removal(const Setting& setting);
 
-/// A value as one line of TOML. In messages `is_escaped` is false, and texts have no escapes.
+/// A value as one line of TOML. If `is_escaped` is false, texts are written without escapes, as in messages.
 std::string toml_text(const toml::node& node, bool is_escaped = true);
 
 class SceneDocument {
@@ -30,7 +30,7 @@ class SceneDocument {
   const toml::node* find(std::string_view key) const;
   bool is_set(std::string_view key) const { return origin_of(key) != nullptr; }
 
-  /// The key to blame in a message if `keys` contradict each other: the first one from a setting, else the first one.
+  /// The first of `keys` that a setting gave, else the first of all. Messages blame it if `keys` contradict each other.
   std::string first_set(std::initializer_list<std::string> keys) const;
 
   /// Throws an InputError with the key's line or setting, its value, and `what`.
@@ -50,7 +50,7 @@ class SceneDocument {
 
   std::string name_;
   toml::table root_;
-  std::map<std::string, std::string, std::less<>> origins_;  // key -> the setting that gave it
+  std::map<std::string, std::string, std::less<>> origins_;  // key -> origin of the setting that gave it
 };
 
 }  // namespace dolp

@@ -54,7 +54,7 @@ std::optional<KeyValue> value_at(const Content* at) {
 
 bool always(const SceneValues&) { return true; }
 
-/// Makes a key. `address(scene)`: the stored value, or null. `is_there(scene)`: true if the scene has the value.
+/// Makes a key. `address(scene)`: pointer to the value, or null. `is_there(scene)`: true if the scene has the value.
 template <class Address, class IsThere>
 SceneKey key_at(Key description, Address address, IsThere is_there) {
   return {std::move(description), [address](SceneValues& s, const KeyValue& v) { assign(*address(s), v); },
@@ -134,7 +134,7 @@ SceneKey source_number(const char* key, const char* unit, const char* meaning, S
       set);
 }
 
-/// Makes a key for a number of SkyAir. If the scene was read from a text, its setter also computes the sky again.
+/// Makes a key for a number of SkyAir. In a scene that has already been read, the key's setter computes the sky again.
 SceneKey air_number(const char* key, const char* unit, const NumberRange& range, const char* meaning,
                     std::optional<double> SkyAir::*number_of) {
   const auto set = [=](SceneValues& s, const KeyValue& v) {

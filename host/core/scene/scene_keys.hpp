@@ -14,9 +14,9 @@ namespace dolp {
 /// A value of a key. Which members are set depends on Key::type.
 struct KeyValue {
   double number = 0.0;
-  std::size_t word = 0;              ///< position in Key::words
-  std::string text = {};             ///< a text or a word; "true" or "false" for a flag, but empty from read_value()
-  std::vector<double> numbers = {};  ///< numbers of an axis, of a band (from, to), or of several bands in a row
+  std::size_t word = 0;   ///< position in Key::words
+  std::string text = {};  ///< a text or a word; for a flag "true" or "false", but read_value() leaves it empty
+  std::vector<double> numbers = {};  ///< numbers of an axis, or ends of bands: from, to, from, to, ...
   std::vector<std::string> names = {};
 };
 
@@ -27,7 +27,7 @@ struct SceneKey {
   std::function<std::optional<KeyValue>(const SceneValues& scene)> value;
 };
 
-/// Keys that belong together. A scene chooses this alternative with one of `heads`. It may then have `companions` too.
+/// Keys of one alternative of a KeyChoice. A scene chooses it by a key of `heads`, and may also have `companions`.
 struct KeyAlternative {
   std::vector<std::string> heads;
   std::vector<std::string> companions = {};
@@ -39,7 +39,7 @@ struct KeyAlternative {
 struct KeyChoice {
   std::string table;
   std::vector<KeyAlternative> alternatives;
-  bool is_required = true;   ///< a scene must choose one; if `table` is an effect or a layer, it may be absent instead
+  bool is_required = true;   ///< a scene must choose one, unless `table` is an effect or a layer that the scene lacks
   bool is_of_layer = false;  ///< `table` is a layer of a coating, so it may be absent
 };
 
@@ -49,7 +49,7 @@ const std::vector<SceneKey>& scene_key_table();
 const std::vector<KeyChoice>& key_choices();
 const SceneKey* find_scene_key(std::string_view key);
 
-/// The keys that a scene cannot have beside `key`, because they are of other alternatives.
+/// The keys that a scene cannot have beside `key`, because they belong to other alternatives of a KeyChoice.
 std::vector<std::string> keys_replaced_by(std::string_view key);
 
 std::vector<std::string> scene_tables();

@@ -68,7 +68,7 @@ std::vector<std::string> document_keys(const SceneDocument& document) {
   return keys;
 }
 
-/// The key in KeyAlternative::heads that the document has, or null. Refuses two heads, and a companion without a head.
+/// The first of KeyAlternative::heads in the document, or null. Refuses two alternatives, and companions without head.
 const std::string* chosen_key(const SceneDocument& document, const KeyChoice& choice) {
   const auto first_of = [&](const std::vector<std::string>& keys) -> const std::string* {
     const auto found = std::ranges::find_if(keys, [&](const std::string& key) { return document.find(key); });
@@ -174,7 +174,7 @@ SceneValues read_keys(const SceneDocument& document) {
   return scene;
 }
 
-/// If the scene gives a quantity only as an axis, its value in the scene becomes the first value of the axis.
+/// If the scene gives a quantity only as an axis, stores the first value of the axis as the scene's value.
 void fill_from_grid(SceneValues& scene, const SceneDocument& document) {
   Axes& grid = scene.grid;
   OpticalConstants& index = scene.surface.material.constant;

@@ -12,14 +12,14 @@ namespace dolp {
 /// Reads the scene at `path` ("-" is stdin), applies the settings in order and validates the result. Paths in the scene
 /// are relative to the folder of the scene. If the scene comes from stdin, they are relative to the working folder.
 /// Errors: InputError, one line: `file:line: key = value: what is wrong and what is allowed`. If a setting is wrong,
-/// the line begins with the origin of the setting. A file that cannot be opened is an InputError too.
+/// the line begins with Setting::origin instead. A file that cannot be opened is an InputError too.
 SceneValues read_scene(const std::string& path, const std::vector<Setting>& settings = {});
 
 /// Applies further settings to a scene that was read. Errors: errors of read_scene.
 SceneValues with_settings(const SceneValues& scene, const std::vector<Setting>& settings);
 
-/// Makes a scene from a text. Paths in the scene are relative to the folder of `path_name`, which also appears in
-/// messages. If `known` is given but lacks the data of a file, this is an InputError, unless `known->may_open_files`.
+/// Makes a scene from a text. `path_name` appears in messages, and paths in the scene are relative to its folder. Data
+/// in `known` replace files. If `known` lacks the data of a file: InputError, unless `known->may_open_files`.
 SceneValues parse_scene(const std::string& text, const std::string& path_name,
                         const std::vector<Setting>& settings = {}, const KnownData* known = nullptr);
 

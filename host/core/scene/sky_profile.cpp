@@ -22,14 +22,14 @@ namespace {
 
 constexpr std::size_t kMostZeniths = 1000;
 
-// Ends of intervals of zenith: kDivisions_deg in addition to the zeniths of a table, kLayerDivisions_deg for kLayers.
-// Intervals are short near the horizon, where the radiance may change like exp(-1 / cos(zenith)).
+// Zeniths at which intervals of zenith end. A table has kDivisions_deg in addition to its own zeniths. kLayers has
+// kLayerDivisions_deg. Intervals are short near the horizon, where the radiance may change like exp(-1 / cos(zenith)).
 constexpr std::array<double, 2> kDivisions_deg = {60.0, 85.0};
 constexpr std::array<double, 11> kLayerDivisions_deg = {0.0,  30.0, 60.0,  75.0,  82.0, 86.0,
                                                         88.0, 89.0, 89.75, 89.94, 90.0};
 
-// An interval of zeniths is divided until its temperatures have at most the ratio kDivisionRatio. Then Planck's
-// function is smooth in it. Temperatures below kColdestShare of the warmest one radiate too little to matter.
+// An interval of zeniths is cut until the temperatures in each part differ at most by the factor kDivisionRatio. Then
+// Planck's function is smooth. Temperatures below kColdestShare of the warmest one radiate too little to need cuts.
 constexpr double kDivisionRatio = 2.0;
 constexpr double kColdestShare = 1.0 / 256.0;
 
@@ -44,7 +44,7 @@ constexpr double kWindowTo_um = 12.5;
 constexpr double kBandFrom_um = 8.0;
 constexpr double kBandTo_um = 14.0;
 
-// Emittance of a cloudless sky at 8-14 um, and at 10.5-12.5 um. Source: Idso, Water Resources Research 17, 295 (1981).
+// Vertical emissivity of clear air at 8-14 and 10.5-12.5 um. Source: Idso, Water Resources Research 17, 295 (1981).
 double clear_emissivity(double vapour_hPa, double air_K) {
   return std::min(0.24 + 2.98e-8 * vapour_hPa * vapour_hPa * std::exp(3000.0 / air_K), 1.0);
 }

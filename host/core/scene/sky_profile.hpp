@@ -9,12 +9,12 @@
 
 namespace dolp {
 
-/// A sky: a table of temperatures or radiances, interpolated linearly; or kLayers, which is air in front of a black
-/// background: dark space or a cloud. Equation for air: radiance = (1 - p) B(air_K) + p B(beyond_K). The air lets the
-/// share p = (1 - emissivity)^(1 / cos(zenith)) of the background's light pass.
-/// Source: Granqvist and Hjortsberg, J. Appl. Phys. 52, 4205 (1981), for plane-parallel air of one temperature. Idso,
-/// Water Resources Research 17, 295 (1981), for the vertical emissivity of clear air: its mean over 8-14 um, also used
-/// outside 8-14 um, and its value at 10.5-12.5 um. `beside_window` follows from both numbers.
+/// A sky of the kind kTemperature or kRadiance is a table, interpolated linearly. A sky of the kind kLayers is air in
+/// front of dark space or a black cloud. The air transmits the share p = (1 - emissivity)^(1 / cos(zenith)) of the
+/// radiance behind it. Equation: radiance = (1 - p) B(air_K) + p B(beyond_K), where B is Planck's function.
+/// Source for plane-parallel air of one temperature: Granqvist and Hjortsberg, J. Appl. Phys. 52, 4205 (1981). Source
+/// for the vertical emissivity of clear air: Idso, Water Resources Research 17, 295 (1981). Idso gives a mean for
+/// 8-14 um, also used outside 8-14 um, and a value for 10.5-12.5 um. `beside_window` follows from both numbers.
 struct SkyProfile {
   enum class Kind { kTemperature, kRadiance, kLayers };
   Kind kind = Kind::kTemperature;
@@ -24,8 +24,8 @@ struct SkyProfile {
   double air_K = 0.0;
   double beyond_K = 0.0;
   double emissivity = 0.0;            ///< vertical emissivity of the air, except in the opaque band of carbon dioxide
-  std::optional<double> window = {};  ///< vertical emissivity at 10.5-12.5 um; nullopt: `emissivity`
-  std::optional<double> beside_window = {};  ///< vertical emissivity in the rest of 8-14 um; nullopt: `emissivity`
+  std::optional<double> window = {};  ///< vertical emissivity at 10.5-12.5 um; default: `emissivity`
+  std::optional<double> beside_window = {};  ///< vertical emissivity in the rest of 8-14 um; default: `emissivity`
 
   /// The radiance of the sky is share * B(first_K) + (1 - share) * B(second_K) + radiance. B is Planck's function.
   struct Emission {
@@ -36,7 +36,7 @@ struct SkyProfile {
   };
   Emission at(double wavelength_um, double zenith_deg) const;
 
-  /// Zeniths that divide the interval after zenith_deg[interval] into parts with similar temperatures, for ends_deg().
+  /// Zeniths that cut the interval between zenith_deg[interval] and the next zenith into parts of similar temperature.
   std::vector<double> temperature_divisions_deg(std::size_t interval) const;
   /// Zeniths from 0 to 90 between which the profile is a smooth function of zenith.
   std::vector<double> ends_deg() const;
@@ -55,7 +55,7 @@ struct BuiltInSky {
 };
 const std::vector<BuiltInSky>& built_in_skies();
 
-/// Air of a built-in sky. Both values absent: US Standard Atmosphere 1976, with one emissivity for all wavelengths.
+/// Air of a built-in sky. If both values are absent: US Standard Atmosphere 1976, one emissivity for all wavelengths.
 struct SkyAir {
   std::optional<double> vapour_cm = {};  ///< precipitable water in cm
   std::optional<double> temperature_K = {};
@@ -65,8 +65,8 @@ struct SkyAir {
 /// The built-in sky `name`, or nullopt. Errors: InputError that begins with `prefix` if the air cannot hold the vapour.
 std::optional<SkyProfile> built_in_sky(std::string_view name, const SkyAir& air = {}, const std::string& prefix = {});
 
-/// Reads a CSV with zenith_deg (from 0 to 90) and temperature_K or radiance. If these depend on the wavelength, there
-/// is also wavelength_um, with the same zeniths at each wavelength. Errors: InputError with file, line and column.
+/// Reads a CSV with zenith_deg (from 0 to 90) and temperature_K or radiance. A CSV that also has wavelength_um needs
+/// the same zeniths at each wavelength. Errors: InputError with file, line and column.
 SkyProfile parse_sky_profile(std::string_view text, const std::string& name);
 SkyProfile read_sky_profile(const std::string& path, const std::string& prefix);
 

@@ -15,8 +15,8 @@ namespace dolp {
 SpectralTable sun_irradiance();
 
 /// Reads a user's CSV with the columns wavelength_um and irradiance (W m-2 um-1), interpolated linearly. A file without
-/// column names has these columns in this order. Errors: InputError for a negative irradiance or no rows; if the file
-/// cannot be opened, the message begins with `prefix`.
+/// column names has these columns in this order. Errors: InputError if an irradiance is negative, or if the file has no
+/// rows. InputError that begins with `prefix` if the file cannot be opened.
 SpectralTable read_irradiance_file(const std::string& path, const std::string& prefix);
 
 struct NamedValue {
@@ -35,7 +35,7 @@ struct SpectralRow {
 };
 
 /// Appends `rows`, sorted by wavelength. Skips repeated rows and wavelengths outside kWavelengthUmRange. `named`: name
-/// and range of the values. Errors: InputError with file and line if a wavelength has two values or one out of range.
+/// and range of the values. Errors: InputError with file and line if a value is out of range or a wavelength has two.
 void append_rows(SpectralTable& table, std::vector<SpectralRow> rows, const NamedValue& named, const std::string& file);
 
 /// A row of a CSV that has values over an angle from 0 to 90 degrees and, in some files, over wavelength.

@@ -7,7 +7,7 @@
 namespace dolp {
 namespace {
 
-// Allowed error, relative to the tolerance, of the functions that replace a sky. Each one slows a kernel by 1/6.
+// Allowed error of the sky basis, as a share of the tolerance. Each function of the basis slows a kernel by 1/6.
 constexpr double kBasisShare = 0.02;
 
 Eigen::VectorXd vector_of(const std::vector<double>& values) {

@@ -10,7 +10,7 @@
 
 namespace dolp {
 
-/// The radiance of a scene's profile at a wavelength. Units: W m-2 sr-1 um-1.
+/// Radiance of a sky profile at a wavelength and a zenith. Units: W m-2 sr-1 um-1.
 double sky_radiance(const SkyProfile& profile, double wavelength_um, double zenith_deg);
 
 /// at() gives pi L at the zeniths nodes(), where L is the radiance of the sky. mean() gives pi L of the uniform sky
@@ -28,12 +28,12 @@ class SkySampler {
   Eigen::VectorXd mean_weights_;
 };
 
-/// Functions of the zenith. Their weighted sums approximate the sky of each variant, minus the mean of this sky. Null
-/// if all skies are uniform.
+/// Functions of the zenith. For each sample of each variant, a weighted sum of the functions approximates
+/// SpectralSample::sky. Null if the sky is uniform.
 std::shared_ptr<const SkyBasis> sky_basis(const SceneModel& scene, const std::vector<SceneVariant>& variants);
 
-/// For each sample of `rule`, the weights of the basis functions. Their weighted sum approximates the sky, minus the
-/// mean of the sky. Empty without a basis.
+/// For each sample of `rule`, the weights with which the functions of `basis` approximate SpectralSample::sky. Empty if
+/// there is no basis or no sky.
 std::vector<SkyWeights> sky_weights(const SpectralRule& rule, const SkyBasis* basis);
 
 }  // namespace dolp

@@ -18,8 +18,8 @@ namespace {
 
 using FineRule = boost::math::quadrature::gauss<double, 16>;
 
-// The constants below are chosen. Each was tried at half and double its value, except kPieceWavelengthRatio, which must
-// be above 1. The evaluations and error bounds of the tables of night_paint, bare_aluminium and water stayed the same.
+// The constants below are choices. In a trial each was halved and doubled, except kPieceWavelengthRatio, which must be
+// above 1. The tables of night_paint, bare_aluminium and water kept their numbers of evaluations and error bounds.
 
 // A band is cut into pieces so short that 16 Gauss nodes integrate Planck's function to rounding. Limits of a piece:
 // change of the exponent h c / (lambda k_B T), and ratio of its longest to its shortest wavelength.
@@ -30,8 +30,8 @@ constexpr double kExponentScale_umK = 14388.0;
 constexpr double kLargestPlanckExponent = 750.0;
 constexpr double kPieceRelativeError = 1e-12;  // relative error of a sum over pieces
 
-// The band is cut into segments at the rows of the optical tables and, with films, at fringe_ends(). A segment gets the
-// fewest Gauss nodes for which nodes_error(..., kSmallestPart) is at most kNodesRelativeError, or kMostNodes nodes.
+// The band is cut into segments at the rows of the optical tables and, with films, at fringe_ends(). A segment gets at
+// most kMostNodes Gauss nodes, and fewer if their nodes_error(..., kSmallestPart) is at most kNodesRelativeError.
 constexpr double kNodesRelativeError = 1e-10;
 constexpr double kSmallestPart = 1e-4;
 constexpr int kMostNodes = 24;
@@ -41,17 +41,17 @@ constexpr int kMostNodes = 24;
 constexpr double kProbeSafety = 10.0;
 constexpr std::array<double, 7> kProbeCosines = {1.0, 0.5, 0.25, 0.15, 0.1, 0.07, 0.04};
 constexpr std::array<double, 7> kCriticalShares = {0.03, 0.19, 0.34, 0.52, 0.67, 0.81, 0.96};
-// If kMostNodes nodes leave an error above kShareOfTolerance times the tolerance, the segment is cut into panels with
-// kPanelNodes nodes each. Their number doubles until the error is at most kPanelShareOfTolerance times the tolerance,
-// or until the band has about kMostPanels. A mirror may have kMostMirrorPanels, because its moments are cheap.
+// If the error with kMostNodes nodes exceeds kShareOfTolerance times the tolerance, the segment is cut into panels with
+// kPanelNodes nodes each. The number of panels doubles until the error is at most kPanelShareOfTolerance times the
+// tolerance. The limit for a band is about kMostPanels, or kMostMirrorPanels for a mirror, whose samples cost little.
 constexpr double kShareOfTolerance = 0.005;
 constexpr double kPanelShareOfTolerance = 0.03;
 constexpr int kLeastPanels = 4;
 constexpr double kMostPanels = 32.0;
 constexpr double kMostMirrorPanels = 512.0;
-constexpr double kMostFringes = 256.0;  // most parts into which the fringes of films divide a band
+constexpr double kMostFringes = 256.0;  // largest number of parts into which fringe_ends() divides a band
 
-/// A node of the 16-point Gauss rule, with the spectral factors at its wavelength times the weight of the node.
+/// A node of the 16-point Gauss rule. Its spectral factors are multiplied by the weight of the node.
 struct FineNode : SpectralFactors {
   double wavelength_um = 0.0;
   double path = 0.0;
@@ -241,7 +241,7 @@ std::vector<double> probe_cosines(const Surface& surface, double from_um, double
   return cosines;
 }
 
-/// Integrals over wavelength of one spectral factor (`whole`), and of this factor times 1 - R_s and times 1 - R_p.
+/// Integrals over wavelength of a spectral factor: alone (`whole`), times 1 - R_s (`s`) and times 1 - R_p (`p`).
 struct ProbeSum {
   double whole = 0.0;
   double s = 0.0;
@@ -270,8 +270,8 @@ std::vector<ProbeSums> exact_sums(const Surface& surface, const std::vector<Fine
   return sums;
 }
 
-/// Largest relative error of ProbeSum::s and ProbeSum::p, if they are computed from `samples`. The errors are divided
-/// by the reflected or the absorbed radiation, whichever is less, but at least by `least` times ProbeSum::whole.
+/// Computes ProbeSum::s and ProbeSum::p from `samples`. Returns their largest error, divided by the absorbed or the
+/// reflected radiation. The smaller of both is the divisor, but it counts as at least `least` times ProbeSum::whole.
 double nodes_error(const std::vector<SpectralSample>& samples, const std::vector<ProbeSums>& exact,
                    const std::vector<double>& cosines, double least) {
   double worst = 0.0;
@@ -311,7 +311,7 @@ SegmentRule smooth_segment(const SceneModel& scene, double from_um, double to_um
                            const std::vector<double>& cosines) {
   if (scene.surface.has_constant_optics()) return {samples_at(scene, gauss_wavelengths(from_um, to_um, 1), fine), 0.0};
   SegmentRule rule;
-  // Interference fringes of films would need many nodes. So with films the error need only suit the scene's tolerance.
+  // Interference fringes of films need many nodes. So with films a larger error is enough if the tolerance allows it.
   const double enough = scene.surface.coating.empty() ? kNodesRelativeError : enough_for_tolerance(scene);
   const std::vector<ProbeSums> exact = exact_sums(scene.surface, finer_nodes(scene, from_um, to_um), cosines);
   for (int count = 1; count <= kMostNodes; ++count) {
@@ -338,7 +338,7 @@ SegmentRule segment_of_panels(const SceneModel& scene, double from_um, double to
   return rule;
 }
 
-/// Adds the samples of a segment to `panels` if it needs panels, else to `rule`.
+/// Adds the samples of a segment to `rule`, or to `panels` if the segment must be cut into panels.
 void append_segment(const SceneModel& scene, double from_um, double to_um, SpectralRule& rule,
                     std::vector<SpectralSample>& panels) {
   const std::vector<FineNode> fine = fine_nodes(scene, from_um, to_um);

@@ -13,29 +13,29 @@ struct KeptEffects {
   bool emission = true;
   bool source = true;
   bool surroundings = true;
-  bool profile = true;        ///< a sky profile, minus its mean
+  bool profile = true;        ///< the deviation of a sky profile from its mean
   bool path_radiance = true;  ///< radiance of the path; the transmittance is always kept, and cancels in DOLP
   bool diffuse = true;
   bool further_bounces = true;  ///< bounces in V-grooves after the first one
-  bool moments = true;  ///< moments for the specular part of rho: at theta, or in bistatic mode at the view zenith
+  bool moments = true;  ///< integrals over facets for the specular part of rho, at theta or the bistatic view zenith
   friend bool operator==(const KeptEffects&, const KeptEffects&) = default;
 };
 
-/// Radiation times a weight: over a band its integral in W m-2, at one wavelength its value in W m-2 um-1.
+/// Integrals of radiation times a weight function over a band, in W m-2. At one wavelength: values in W m-2 um-1.
 struct SpectralFactors {
   double emitted = 0.0;          ///< pi B(T); 0 without [emission]
   double surroundings = 0.0;     ///< pi B(T_surr), or pi times the mean of a sky profile; 0 without [surroundings]
   double excess = 0.0;           ///< surroundings - emitted; exactly 0 if both have the same temperature
   double irradiance = 0.0;       ///< E0 at normal incidence; 0 without [source]
   double width = 0.0;            ///< integral of the weight function in um; 1 at a single wavelength
-  std::vector<double> sky = {};  ///< pi times sky radiance, minus `surroundings`, at each node of SkySampler
+  std::vector<double> sky = {};  ///< pi L - `surroundings` at the zeniths of SkySampler; L: radiance of the sky
 
   void add(const SpectralFactors& more, double factor);
 };
 
-/// A refractive index, and the factors of its reflectance rho. Between two rows of the material's table, rho is the
-/// polynomial through its values at Gauss nodes. So the integral of rho times a radiation F is a sum over the nodes:
-/// rho at the node times a factor, which may be negative: the integral of F times the node's Lagrange polynomial.
+/// A refractive index at a Gauss node, and a factor for each radiation F. The integral of F times the reflectance rho
+/// is the sum over the nodes of rho times the factor. Between two rows of the material's table, rho counts as a
+/// polynomial. So the factor is the integral of F times the Lagrange polynomial of the node. It may be negative.
 struct SpectralSample : SpectralFactors {
   FacetOptics index;
   double wavelength_um = 0.0;  ///< first wavelength at which the index occurs
@@ -47,19 +47,19 @@ inline constexpr std::size_t kPanelNodes = 8;
 struct SpectralRule {
   std::vector<SpectralSample> samples;
   double path_exitance = 0.0;   ///< pi times the path radiance; 0 without [path]
-  double relative_error = 0.0;  ///< bound of the relative error of band integrals outside panels; 0 at one wavelength
+  double relative_error = 0.0;  ///< bound of the relative error of a sum over the samples outside panels
   std::size_t panels = 0;       ///< number of panels; each has kPanelNodes samples, at the end of `samples`
   std::vector<FacetOptics> indices() const;
 };
 
 /// Samples for the spectrum of a scene. A single wavelength or a constant index needs one sample. Otherwise the band is
-/// cut at the rows of the material's table. Each part gets as many Gauss nodes as the smooth surface needs.
+/// cut into segments at the rows of the material's table. A segment gets enough Gauss nodes for a smooth surface.
 /// Accuracy: SpectralRule::relative_error. It is about 1e-9 without films and panels (tests SpectralRule_*Band*).
 SpectralRule spectral_rule(const SceneModel& scene);
 
 /// Estimates the error of a sum over the samples of all panels (tests Bands_*). `term(j, m)`: the term of sample j,
-/// computed with the moments of sample m. In each panel, moments are interpolated from samples 0, 2, 4 and 6 to samples
-/// 1, 3, 5 and 7. This changes the terms of samples 1, 3, 5 and 7. The estimate is the sum of the changes.
+/// computed with the moments of sample m. In each panel, the moments of samples 0, 2, 4 and 6 are interpolated to
+/// samples 1, 3, 5 and 7. The estimate is the sum of the absolute changes of the terms of samples 1, 3, 5 and 7.
 template <typename Term>
 double panel_error(const SpectralRule& rule, const Term& term) {
   double error = 0.0;
@@ -81,7 +81,7 @@ double panel_error(const SpectralRule& rule, const Term& term) {
   return error;
 }
 
-/// Returns `rule` with 0 for the radiation that belongs to dropped effects.
+/// Returns `rule` without the radiation of the effects whose flags in `kept` are false.
 SpectralRule kept_rule(SpectralRule rule, const KeptEffects& kept);
 
 }  // namespace dolp

@@ -195,8 +195,7 @@ class Combination {
     const Sums q(all, Responses::kQ, Responses::kQApart, split_);
     for_all(pass.size(), moments, [&](Moments& sum, const ResponseWeights& own, auto index, auto shape) {
       const Moments& from = pass[static_cast<std::size_t>(shape)];
-      // Light cancels, because the function of the sky changes its sign. So relative errors refer to r_i, not to the
-      // sum.
+      // Light cancels, because the sky's function changes its sign. So relative errors refer to r_i, not to the sum.
       const double relative = all.relative_error[static_cast<std::size_t>(shape)] * std::abs(sum.r_i);
       sum.columns.resize(function + 1);
       sum.columns[function] = {i.value(index, shape), q.value(index, shape),

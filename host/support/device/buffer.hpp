@@ -20,7 +20,7 @@ class Buffer {
 
   /// Writes bytes to the start of a mapped buffer. Work that is submitted to the queue later sees these bytes.
   void write(std::span<const std::byte> bytes);
-  /// Reads bytes from the start of a mapped buffer. The work of the device must have ended with Barrier::kKernelToHost.
+  /// Reads the start of a mapped buffer. The device must have ended its work with a barrier that lets the host read it.
   void read(std::span<std::byte> bytes) const;
 
  private:

@@ -19,8 +19,8 @@ bool is_finite(const Moments& m) {
          std::isfinite(m.r_i_error + m.r_q_error + m.albedo_error + m.deficit_error);
 }
 
-/// For each pair of a direction and an index, `nodes` has moments at some slope distributions. If they are all finite,
-/// interpolates the pair's moments from them. Returns a flag per entry: 1 if it is wanted and was not interpolated.
+/// Interpolates over the slope distributions, for each wanted pair of a direction and an index. `nodes` has the known
+/// moments. A pair with infinite or NaN known moments is left out. Returns a flag per entry: 1 if its pair is left out.
 std::vector<char> interpolate_all(const ShapePlan& plan, std::span<const Moments> nodes, const MomentsRequest& request,
                                   std::span<Moments> moments) {
   const std::size_t of_nodes = plan.nodes_of_a_direction();

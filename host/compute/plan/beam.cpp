@@ -67,15 +67,15 @@ struct FacetReflection {
   std::complex<double> cross;
 };
 
-// Computes R_s and R_p as shaders/physics/fresnel.glsl does. With c, w and a of the code below,
-// conj(r_s) r_p = a (sin^2(beta) - c w) / (conj(c + w) (N^2 c + w)).
+// Computes R_s and R_p as shaders/physics/fresnel.glsl does. With c = cos(beta), the complex index N,
+// w^2 = N^2 - sin^2(beta) and a of the code, conj(r_s) r_p = a (sin^2(beta) - c w) / (conj(c + w) (N^2 c + w)).
 FacetReflection bare_reflection(const BeamAngles& angles, const BeamGeometry& geometry, const OpticalConstants& index) {
   using Complex = std::complex<double>;
   const double n2_re = (index.n - index.k) * (index.n + index.k);
   const Complex n2m1((index.n - 1.0) * (index.n + 1.0) - index.k * index.k, 2.0 * index.n * index.k);
   const double c = geometry.node.cos_beta;
   const double sin2 = geometry.sin2_beta;
-  // The form of Re(w^2) with the smaller terms loses fewer digits.
+  // Re(w^2) can be computed in two forms. The form with the smaller terms loses fewer digits.
   double w2 = sin2 < 0.5 ? n2_re - sin2 : n2m1.real() + c * c;
   if (std::hypot(w2, n2m1.imag()) <= kCritical * std::max(std::abs(n2_re), sin2)) w2 = exact_w_squared(angles, index);
   const Complex w = std::sqrt(Complex(w2, n2m1.imag()));
@@ -152,7 +152,7 @@ BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_
   const double sin_azimuth = std::copysign(2.0, azimuth_deg) * half.sin * half.cos;
   const bool along_normal = i.sin == 0.0 && r.sin == 0.0;
   const double cos_azimuth = (half.cos - half.sin) * (half.cos + half.sin);
-  // If both beams are along the normal, eta_i is the limit: the angle between the planes of azimuth 0 and delta_phi.
+  // For beams along the normal, eta_r is 0, and eta_i is the angle between the planes of azimuth 0 and delta_phi.
   const CosSin eta_i =
       along_normal ? double_angle(-cos_azimuth, sin_azimuth) : double_angle(toward_i, r.sin * sin_azimuth);
   const CosSin eta_r = double_angle(toward_r, i.sin * sin_azimuth);

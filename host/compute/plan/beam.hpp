@@ -12,14 +12,15 @@ struct BeamGeometry {
   double sin2_beta = 0.0;
 };
 
-/// The facet that reflects one beam into the other, and the angles eta of shaders/physics/mueller.glsl, in double.
-/// Conventions: the mirror direction has delta_phi = 180 degrees. A positive eta rotates s toward p; eta has the sign
-/// of sin(delta_phi). At theta_i = 0 the plane of incidence has azimuth 0; at theta_r = 0 it has azimuth delta_phi.
-/// Domain: zeniths from 0 to 90 degrees, but not both 90. In the retro direction, eta_i = eta_r = 0.
+/// The facet that reflects one beam into the other. The mirror direction has delta_phi = 180 degrees. eta_i and eta_r
+/// are the angles from the s vector of each beam to the s vector of the facet (shaders/physics/mueller.glsl). A
+/// positive angle turns s toward p. The angles have the sign of sin(delta_phi), and are 0 in the retro direction. If
+/// theta_i is 0, the plane of incidence has azimuth 0. If theta_r is 0, the plane of reflection has azimuth delta_phi.
+/// Domain: zeniths from 0 to 90 degrees, but not both 90.
 BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_phi_deg);
 
-/// Inputs of the kernel for one entry. The kernel's result times 2^power is the pBRDF times cos(theta_i) cos(theta_r).
-/// The factor 2^power is apart, because a float cannot hold very small slope densities.
+/// Inputs of the kernel for one entry. The kernel's result is the pBRDF times cos(theta_i) cos(theta_r) / 2^power. The
+/// division by 2^power is needed because a float cannot hold very small slope densities.
 struct Beam {
   kernel::BeamNode node{};
   int power = 0;

@@ -44,7 +44,7 @@ void add_critical_breakpoints(std::vector<Breakpoint>& points, double theta_deg,
   add(a.cos / (2.0 * critical), 0.0);
   add(a.cos / critical, 0.0);
   if (masking != Masking::kVCavity || a.cos <= 0.0) return;
-  const double at_slope_1 = std::sqrt(0.5);  // cos(alpha) at slope 1. V-cavity masking adds two lines at smaller slopes
+  const double at_slope_1 = std::sqrt(0.5);  // cos(alpha) at slope 1. If slope < 1, v-cavity masking adds two lines
   add(0.5 * critical / a.cos, at_slope_1);
   add(critical / (std::hypot(a.cos, 2.0 * critical) - a.cos), at_slope_1);
 }
@@ -95,7 +95,8 @@ void add_critical_bounces(std::vector<Breakpoint>& points, double theta_deg, dou
   }
 }
 
-// Slopes at which the split lines of grooves (groove_lines() in arcs.glsl) meet each other or the plane of incidence.
+// The azimuths of grooves are split at the lines of groove_lines() (arcs.glsl). Most of these breakpoints are slopes at
+// which two such lines meet, or one of them meets the plane of incidence.
 void add_groove_breakpoints(std::vector<Breakpoint>& points, double theta_deg, int splits) {
   const auto add = [&](double gamma_deg, unsigned roots) {
     if (gamma_deg > 0.0 && gamma_deg <= 90.0) points.push_back({tan_deg(90.0 - gamma_deg), roots});
@@ -152,7 +153,6 @@ void add_extra_splits(std::vector<Breakpoint>& points) {
 
 }  // namespace
 
-// At most breakpoints, a line that splits the azimuths (arcs.glsl) meets the plane of incidence or another such line.
 std::vector<Breakpoint> breakpoints(double theta_deg, const MomentsRequest& request, const DirectionVariant& variant,
                                     const SkyTable& sky, int splits) {
   const CosSin a = cos_sin_deg(theta_deg);

@@ -1,7 +1,7 @@
 // Constants that steer cost or accuracy. They are tuned by hand unless a comment says otherwise.
 // Three numbers behind a constant are evaluations per entry: with half its value, with its value and with double its
-// value. They are means at the tolerance 1e-4: over 150 ordinary entries for each masking that uses the constant
-// (`dolp-calibrate check`), or as a section says. A constant without numbers changes the work by less than 1 %.
+// value. They are means over 150 ordinary entries (`dolp-calibrate check`) of each masking that uses the constant, with
+// tolerance 1e-4. Two sections state other entries. A constant without numbers changes the work by less than 1 %.
 #pragma once
 
 #include <cstddef>
@@ -18,8 +18,8 @@ inline constexpr double kNodesPerDigit = 1.2;  // 502, 461, 425
 inline constexpr double kLineShare = 0.1;  // 471, 461, 452
 /// `integral` masking: nodes cluster at the azimuth of its kink if q is below this value times the required digits.
 inline constexpr double kClusterBelowQ = 0.3;  // 563, 608, 609
-/// Gaussian slopes with `integral` masking: the kink of the masking (needs_line() in rule.hpp) is split if sigma
-/// exceeds kLineSigma. If more than kTightDigits digits are required, it is split if sigma exceeds kTightLineSigma.
+/// Gaussian slopes with `integral` masking: pieces are split at the kink of the masking (needs_line() in rule.hpp) if
+/// sigma exceeds kLineSigma, or kTightLineSigma where more than kTightDigits digits are required.
 inline constexpr double kLineSigma = 0.6;  // 632, 608, 542
 inline constexpr double kTightLineSigma = 0.3;
 inline constexpr double kTightDigits = 8.0;  // 632, 608, 608
@@ -29,7 +29,7 @@ inline constexpr double kGaussianCuspPower = 4.0;
 inline constexpr int kPlainOrder = 64;
 inline constexpr double kOrderPerDigit = 8.0;
 /// In grooves the azimuths are split where the number of bounces changes, up to (required digits) / kDigitsPerSplit
-/// bounces. 11 % of the entries miss the tolerance. With half this constant 5 % miss it, with twice this constant 23 %.
+/// bounces. 11 % of the tested entries miss the tolerance; 5 % with half this constant, 23 % with twice this constant.
 inline constexpr double kDigitsPerSplit = 2.0;  // 2350, 1765, 1394
 /// Nodes that each interference fringe of a film adds: per piece of the slope axis, and per radian of azimuth.
 inline constexpr double kNodesOfFringe = 2.0;
@@ -40,15 +40,15 @@ inline constexpr double kDimmest = 1e-10;
 // ---- Slopes (breakpoints.cpp, kernel_data.cpp)
 
 inline constexpr double kCutShare = 0.01;  // slopes are left out if the error is below this share of the tolerance
-/// Pieces end at a slope of kPlainBreakpoints (breakpoints.cpp) if the largest slope is more than this factor larger.
+/// A slope s of kPlainBreakpoints (breakpoints.cpp) is a breakpoint if the largest slope exceeds kLongWay * s.
 inline constexpr double kLongWay = 300.0;
 /// Limits of ShapeNode::table_scale, the scale of the slopes in a masking table. It is about the width m of the slope
 /// distribution, but at most kLargestTableScale and, if q < kLightTailQ, at least kSmallestHeavyTableScale.
 inline constexpr double kSmallestHeavyTableScale = 1e-4;
 inline constexpr double kLightTailQ = 1.5;
 inline constexpr double kLargestTableScale = 0.5;
-inline constexpr double kSteepStep = 16.0;  // steep grooves: ratio of the bounce numbers at neighbouring breakpoints
-inline constexpr int kCriticalBounces = 3;  // slopes are split where bounces up to this one become total reflections
+inline constexpr double kSteepStep = 16.0;  // in steep grooves, the bounces at breakpoints grow by this factor
+inline constexpr int kCriticalBounces = 3;  // last bounce at which the beginning of total reflection is a breakpoint
 /// Responses (glossary of host/README.md) get this share of the tolerance, because a sum of responses adds errors.
 inline constexpr double kResponseTolerance = 0.25;
 inline constexpr double kResponseRoundings = 4.0;  // rounding of x in chebyshev_at() (columns.glsl), in unit roundoffs
@@ -64,11 +64,11 @@ inline constexpr double kTightSky = 1e-5;
 inline constexpr double kSkyTableShare = 0.05;  // a table may differ from its function by this share of the tolerance
 /// The error bound of a sky's table is this factor times the largest error found in the middle of cells and at corners.
 inline constexpr double kSkyTableSafety = 1.25;  // 690, 690, 690; 465, 465, 479
-/// A function of a sky has a corner where its derivative over u = sqrt(1 - cos(theta_r)) jumps by more than this.
+/// A function f of a sky has a corner where df/du jumps by more than this, with u = sqrt(1 - cos(theta_r)).
 inline constexpr double kLeastBend = 1e-2;
-/// The azimuths are split at the sharpest corners. Let b be the root of the sum of the squared jumps of the derivative
-/// at all other corners. There are enough splits if b <= kMostBends * tolerance. The error of r_i that the other
-/// corners cause is at most kUnsplitBends * b * r_i.
+/// The azimuths are split at the sharpest corners. Let b^2 be the sum of the squared jumps at the other corners. Enough
+/// corners are split if b <= kMostBends * tolerance. The other corners cause an error of r_i of at most
+/// kUnsplitBends * b * r_i.
 inline constexpr double kMostBends = 2e4;      // 837, 690, 693; 742, 465, 485
 inline constexpr double kUnsplitBends = 1e-4;  // 658, 690, 747; 450, 465, 587
 /// Rounding errors of cos(theta_r) and of a value from the table, in unit roundoffs.
@@ -115,12 +115,12 @@ inline constexpr double kNotGrazing = 0.6;
 /// Most bounces whose light the pBRDF of grooves contains. The work grows as the square of this number.
 inline constexpr int kMostBouncesOfBeam = 1000;
 inline constexpr double kNegligibleBounces = 0.01;  // share of the wanted accuracy that the omitted bounces may take
-inline constexpr double kSlowestFall = 0.1;  // beyond_last() in further_bounces.cpp divides by 2q - 3, at least by this
+inline constexpr double kSlowestFall = 0.1;         // smallest divisor 2q - 3 in beyond_last() of further_bounces.cpp
 
 // ---- Grids (shape_plan.cpp, rows.cpp, refinement.cpp). The numbers are million evaluations of `dolp table` for 32^3
 // entries at 1e-4 (theta to 85 degrees, sigma 0.05 to 1, q 1.75 to 6): with `integral`, then with smith masking.
 
-/// An interpolated axis (sigma or q) has kFirstShapeNodes more nodes than its digits need, at least kLeastShapeNodes.
+/// Nodes of an interpolated axis (sigma or q): kFirstShapeNodes more than its digits need, at least kLeastShapeNodes.
 inline constexpr double kLeastShapeNodes = 6.0;
 inline constexpr double kFirstShapeNodes = 3.0;  // 1.87, 1.87, 2.44; 1.70, 1.81, 2.37
 /// To be interpolated, an axis needs kLeastAxisGain values per node, and a grid kLeastShapeGain entries per node.
@@ -136,10 +136,10 @@ inline constexpr int kLastShapeCoefficients = 3;
 inline constexpr double kSlowestShapeFall = 0.9;
 /// Largest ratio of two values of q - 1 in a kernel row. Shapes that differ more need nodes at other slopes.
 inline constexpr double kMostRowSpread = 6.0;
-/// A kernel row has kRowWidth places for entries if a grid fills more than this share of all places; otherwise one.
+/// Kernel rows have kRowWidth places if the entries of a grid fill more than this share of them, otherwise one place.
 inline constexpr double kLeastRowUse = 0.5;  // 1.87, 1.87, 5.63; 1.81, 1.81, 5.60
-/// If the error of an entry is f times the tolerance, it is computed again. The new tolerance is smaller by the factor
-/// f * kRefinementSafety. In powers of ten, this factor lies between kLeastDecades and kMostDecades.
+/// If the error of an entry is f times the tolerance, the entry is computed again. Its new tolerance is smaller by the
+/// factor f * kRefinementSafety, but at least by 10^kLeastDecades and at most by 10^kMostDecades.
 inline constexpr double kRefinementSafety = 1.5;  // 1.87, 1.87, 1.87; 1.81, 1.81, 1.79
 inline constexpr double kLeastDecades = 0.5;      // 1.87, 1.87, 1.87; 1.81, 1.81, 1.79
 inline constexpr double kMostDecades = 5.0;

@@ -56,8 +56,8 @@ Range reflectance(const std::vector<FacetOptics>& indices, double cosine) {
   return range;
 }
 
-/// Range of the slope density P at `slope`, over all sigma and q of an extent. If the slope width m grows, P rises to a
-/// maximum (at m^2 = `peak`) and then falls. Each factor of P is monotonic in q, so values at both ends of q bound it.
+/// Range of the slope density P at `slope`, over all sigma and q of the entries. P rises with the slope width m until
+/// m^2 = `peak` and then falls. Its two factors are monotonic in q, so the smallest and the largest q bound P.
 Range slope_density(Distribution distribution, const EntriesExtent& extent, double slope) {
   const bool is_gaussian = distribution == Distribution::kGaussian;
   const double m2_low = std::pow(slope_width(extent.smoothest), 2);
@@ -109,8 +109,8 @@ EntriesExtent extent_of_grid(const SceneEntries& entries) {
   return extent;
 }
 
-/// The optics of all facets. At each wavelength they are the scene's index and each index of the entries, all with the
-/// films of this wavelength.
+/// All optics that facets can have: at each wavelength the scene's index and films, and also each index of the entries
+/// with these films.
 std::vector<FacetOptics> indices_of(const SpectralRule& rule, const EntriesExtent& extent) {
   std::vector<FacetOptics> indices = rule.indices();
   const std::vector<FacetOptics> samples = indices;
@@ -256,7 +256,7 @@ std::array<double, 2> EffectBounds::added_by(Part part, const KeptEffects& kept)
 bool EffectBounds::adds_nothing(Part part, const KeptEffects& kept) const {
   const Surface& surface = scene_.surface;
   const bool needs_direct = emits(kept, EmissionModel::kDirect) && surface.specular > 0.0;
-  // A bistatic beam also needs further bounces, even if the moments have zero weight.
+  // Further bounces add light to the moments, and also to the beam of a bistatic scene.
   const bool has_beam = is_bistatic_ && kept.source && total_.irradiance > 0.0 && surface.specular > 0.0;
   switch (part) {
     case Part::kFurtherBounces:

@@ -29,8 +29,8 @@ bool add_nothing(const std::vector<EffectBounds>& bounds, Part part, const KeptE
       bounds, [&](const EffectBounds& variant_bounds) { return variant_bounds.adds_nothing(part, kept); });
 }
 
-/// The largest bound of `part` over all variants, with the effects `kept`. For all parts except moments and profile, it
-/// also bounds the change in the scene with all effects.
+/// The largest bound of `part` over all variants of the scene. It covers the scene with the effects `kept` and, except
+/// for moments and profile, also the scene with all its effects.
 double worst_bound(const std::vector<EffectBounds>& bounds, Part part, const KeptEffects& kept) {
   double worst = 0.0;
   for (const EffectBounds& variant_bounds : bounds) {
@@ -66,7 +66,7 @@ void drop_effects(EffectPlan& plan, const SceneValues& scene, const std::vector<
   const double allowed = kDroppedShare * scene.accuracy.tolerance;
   for (const Part part : kDroppingOrder) {
     if (!is_kept(plan.kept, part)) continue;
-    if (part == Part::kMoments && scene.emission && scene.emission->has_bracket) continue;  // a bracket needs them
+    if (part == Part::kMoments && scene.emission && scene.emission->has_bracket) continue;  // for dolp_low, dolp_high
     const double bound = worst_bound(bounds, part, plan.kept);
     if (bound > allowed - plan.bound) continue;
     plan.kept = without(plan.kept, part);
@@ -95,7 +95,6 @@ std::string why_no_moments(const SceneValues& scene, const KeptEffects& kept) {
 
 Effect absent(const char* name, std::string why) { return {name, EffectState::kAbsent, std::move(why)}; }
 
-/// `row` describes the part as if it were kept. If the plan drops the part, state, bound and reason of `row` change.
 Effect part_row(const SceneValues& scene, const EffectPlan& plan, Part part, Effect row) {
   row.part = part;
   const auto dropped = plan.dropped.find(part);
@@ -134,7 +133,7 @@ Effect specular_row(const SceneValues& scene, const EffectPlan& plan) {
   return row;
 }
 
-/// The row about a choice of the model, for example the masking. If the row is kept, its text is `choice` + `reason`.
+/// Row about a choice of the model, such as the masking. If the effect is kept, the text is `choice` + `reason`.
 Effect model_row(const SceneValues& scene, const EffectPlan& plan, const char* name, const std::string& choice,
                  const SceneEntries& entries, const char* reason = ", a choice of the model: never swapped") {
   const auto is_flat = [](const SceneEntry& entry) { return entry.shape.sigma == 0.0; };

@@ -25,13 +25,13 @@ struct EntriesExtent {
   std::vector<FacetOptics> optics;
 };
 
-/// A grid has one extent, because every SceneVariant has the same directions. Points have one for each SceneVariant.
+/// For a grid one extent, because all its SceneVariants have equal directions. For points, one for each SceneVariant.
 std::vector<EntriesExtent> extents_of(const SceneEntries& entries);
 
 /// Bounds of the change of p = (Q, U) / I that each part of a scene causes at any of the entries.
 /// Derivation: let a part add (dI, dQ, dU) to the Stokes parameters, and let a prime mark values without the part. Then
-/// p - p' = ((dQ, dU) - p dI) / I'. Kirchhoff's law bounds I and Q: I = E + (S - E + X) rho_I and
-/// Q = (S - E + X) rho_Q, with the exitances E of the emission, S of the surroundings and X of the source.
+/// p - p' = ((dQ, dU) - p dI) / I'. By Kirchhoff's law, I = E + (S - E + X) rho_I and Q = (S - E + X) rho_Q, with the
+/// exitances E of the emission, S of the surroundings, X of the source. Bounds of the reflectance rho bound I and Q.
 class EffectBounds {
  public:
   EffectBounds(const SceneModel& scene, const EntriesExtent& extent);
@@ -59,8 +59,8 @@ class EffectBounds {
   double path_;
   double most_specular_ = 0.0;  ///< upper bound of the specular rho_I
   double most_diffuse_ = 0.0;   ///< upper bound of the diffuse rho
-  double most_beam_ = 0.0;      ///< upper bound of pi times the radiance toward the viewer, for irradiance 1
-  double most_beam_qu_ = 0.0;   ///< upper bound of sqrt(Q^2 + U^2) of this light
+  double most_beam_ = 0.0;      ///< upper bound of pi * I, the source light toward the viewer at irradiance 1
+  double most_beam_qu_ = 0.0;   ///< upper bound of pi * sqrt(Q^2 + U^2) of the same light
   double least_beam_ = 0.0;
 };
 
@@ -76,8 +76,8 @@ struct EffectPlan {
 };
 
 /// Drops parts as long as their bounds (EffectBounds) sum to at most kDroppedShare of the tolerance. The order is:
-/// source, surroundings, their profile, emission, path, moments, further bounces. Each bound covers the scene without
-/// the parts dropped before. The diffuse part and choices of the model (such as the masking) are never dropped.
+/// source, surroundings, their profile, emission, path, moments, further bounces. The bound of a part holds in a
+/// scene without the parts already dropped. The diffuse part and choices of the model, like the masking, always stay.
 EffectPlan plan_effects(const SceneValues& scene, const SceneEntries& entries, bool keep_all);
 
 EffectPlan plan_to_keep(const SceneValues& scene, const KeptEffects& kept);
@@ -87,12 +87,11 @@ EffectPlan keep_everything(const SceneValues& scene);
 /// Sets EffectPlan::sky for the wavelengths of these entries, if the moments need it and the plan has none.
 EffectPlan with_sky(EffectPlan plan, const SceneValues& scene, const SceneEntries& entries);
 
-/// True if the emissivity is known: the scene has an emission, and the plan keeps the moments that it needs.
+/// True if the run gives an emissivity: the scene emits, and the plan keeps all moments that the emissivity needs.
 bool gives_emissivity(const SceneValues& scene, const EffectPlan& plan);
 
 std::vector<Effect> effects_of(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan);
 
-/// One line for reports and table attributes: the effects that are kept, those that are dropped, and the reasons.
 std::string effects_text(const std::vector<Effect>& rows, const EffectPlan& plan);
 
 }  // namespace dolp

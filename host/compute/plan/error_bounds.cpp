@@ -66,7 +66,7 @@ double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const k
   return masking_bound(data.distribution, data.masking, theta, shape) * (theta.c * tail + theta.s * slopes);
 }
 
-// Error of the masking G, as a share of the albedo. It is infinite for smith masking and Cauchy slopes at q = 3/2.
+// Error of the masking G, as a share of the albedo. With smith it is infinite where the mean slope is: at q = 3/2.
 double masking_error(const KernelData& data, const MomentsEntry& entry, double unit_roundoff) {
   if (!data.needs_masking_table()) return 0.0;
   const kernel::ThetaNode& theta = data.thetas[entry.theta];
@@ -86,9 +86,9 @@ double reflectance_s(const kernel::IndexNode& index, double cos_beta) {
 }
 
 // Upper bound of the share of light that is left after `bounces` bounces with cos(beta) >= a/2. Here a is the length of
-// the ray's unit vector, projected on the plane across the groove. Every `level` gives a bound, and the least one is
-// returned. At azimuths with a < level (the share `missed`), at most the share `most` of the light is left. At all
-// other azimuths, each bounce leaves at most R_s at cos(beta) = level/2.
+// the ray's unit vector, projected on the plane across the groove. Azimuths with a < level have at most the share
+// `missed` of the light, and at most the share `most` of it is left. At the other azimuths, each bounce leaves at most
+// R_s at cos(beta) = level/2. So each level gives a bound, and the least bound is returned.
 double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index, double bounces, double most) {
   double least = most;
   for (double level = 1.0; level > 1e-6; level *= 0.5) {
@@ -101,9 +101,9 @@ double left_after(const kernel::ThetaNode& theta, const kernel::IndexNode& index
   return least;
 }
 
-// Upper bound of the share of light that facets steeper than ShapeNode::cut reflect, from R_s at the least cos(beta). A
-// ray that leaves a facet of slope t after one bounce has cos(beta) > cos(theta) sqrt(1 + t^2) / 2. In grooves, at
-// least t min(pi/3, pi/2 - theta) - 1 bounces have cos(beta) >= a/2, as left_after() requires.
+// Upper bound of the share of light that facets steeper than ShapeNode::cut reflect. With single scattering it is R_s
+// at the least cos(beta): a ray leaves a facet of slope t only if cos(beta) > cos(theta) sqrt(1 + t^2) / 2. In grooves,
+// at least t min(pi/3, pi/2 - theta) - 1 bounces have the cos(beta) for which left_after() gives a bound.
 double steep_reflectance(const KernelData& data, const kernel::IndexNode& index, const kernel::ThetaNode& theta,
                          const kernel::ShapeNode& shape) {
   if (data.scattering == Scattering::kSingle) {
@@ -115,7 +115,8 @@ double steep_reflectance(const KernelData& data, const kernel::IndexNode& index,
 }
 
 // Bound of the error in grooves with more than DOLP_MOST_BOUNCES bounces, where the kernel treats several bounces as
-// one. `reflected`, the light that the kernel computes for these grooves, is itself the bound if it is below `least`.
+// one. `reflected` is the light that the kernel computes for these grooves. If it is at most
+// `least`, it is itself the bound of its error.
 double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::IndexNode& index,
                           const kernel::ShapeNode& shape, double reflected, double least) {
   const auto beyond = [&](double bounces, double most) {
@@ -151,7 +152,7 @@ double response_rounding(std::size_t degree, double unit_roundoff) {
 struct Shares {
   double cut = 0.0;            ///< bound of the albedo of facets steeper than ShapeNode::cut
   double reflected_cut = 0.0;  ///< bound of the light that these facets reflect
-  double grooves = 0.0;        ///< error of r_i and deficit in grooves: many bounces, rounding, light not followed
+  double grooves = 0.0;        ///< error of r_i and deficit in grooves, from many bounces, rounding and omitted light
   double masking = 0.0;        ///< relative error of G
   double rounding = 0.0;       ///< relative rounding error
   double least = 0.0;          ///< least error bound of a sum, relative to the sum
@@ -209,7 +210,7 @@ void add_curve_errors(Moments& moments, const kernel::MomentsNode& node, const k
   for (double* const bound : {&moments.direct_i_error, &moments.direct_q_error}) *bound += of_facet * theta.c;
 }
 
-/// `sums` has four numbers for column k: i and q of the finer rule, and their differences from the coarser rule.
+/// `sums` has the four numbers of column k that add_columns() gives.
 ColumnMoments column_moments(std::span<const double> sums, std::size_t k, const kernel::MomentsNode& node,
                              const KernelData& data, const kernel::ThetaNode& theta, const Shares& shares,
                              double unit_roundoff) {
@@ -270,7 +271,7 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
     const auto sums = columns.subspan(DOLP_COLUMN_PARTS * k, DOLP_COLUMN_PARTS);
     moments.columns.push_back(column_moments(sums, k, node, data, theta, shares, unit_roundoff));
   }
-  // In grooves an inaccurate r_i may exceed cos(theta). The difference cos(theta) - r_i would be a negative deficit.
+  // In grooves an inaccurate r_i may exceed cos(theta). Then it must not replace the deficit, which would be negative.
   if (!is_multiple || moments.r_i < theta.c || moments.deficit_error <= moments.r_i_error)
     take_complement(moments, theta.c);
   return moments;

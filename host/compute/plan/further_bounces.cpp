@@ -17,9 +17,9 @@ using std::numbers::pi;
 using Complex = std::complex<double>;
 
 struct Across {
-  double a = 0.0;                                  ///< length of omega_i (incidence) in the plane across the groove
-  double psi_i = 0.0;                              ///< zenith of omega_i in this plane, positive on one side
-  double psi_r = 0.0;                              ///< zenith of omega_r (reflection) in this plane
+  double a = 0.0;                                  ///< length of the incidence omega_i, projected across the groove
+  double psi_i = 0.0;                              ///< zenith of omega_i in the plane across the groove, signed
+  double psi_r = 0.0;                              ///< zenith of the reflection omega_r in this plane
   double along = 0.0;                              ///< component of omega_i along the groove
   Eigen::Vector2d from = Eigen::Vector2d::Zero();  ///< azimuth of omega_i as a unit vector (across, along)
   Eigen::Vector2d to = Eigen::Vector2d::Zero();    ///< azimuth of omega_r as a unit vector (across, along)
@@ -115,7 +115,8 @@ struct FurtherBeams {
   int bounces = 0;          ///< bounces computed so far, over all beams
 };
 
-/// Bound of the light after more than k = `bounces` bounces, divided by the light after k, which falls like k^(2 - 2q).
+/// Bound of all light after more than `bounces` bounces, divided by the light after `bounces` bounces. For Cauchy
+/// slopes, the light after k bounces falls like k^(2 - 2q).
 double beyond_last(const ScatteringRequest& request, const SlopeShape& shape, int bounces) {
   const bool is_cauchy = request.distribution == Distribution::kCauchy;
   return is_cauchy ? bounces / std::clamp(2.0 * shape.q - 3.0, kSlowestFall, 1.0) : bounces;
@@ -128,7 +129,7 @@ FurtherBeams further_beams(const Across& at, const ScatteringRequest& request, c
   const Facet facet(request.optics[entry.index].index);
   const double least_gamma = 0.49 * std::abs(std::abs(at.psi_i) - std::abs(at.psi_r));
   FurtherBeams beams;
-  // Two bounds of the light of all further beams: from the last even number of bounces, and from the last odd number.
+  // Bounds of the light after more than k bounces: [0] from the last even k, [1] from the last odd k.
   std::array<double, 2> beyond = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   for (int k = 2; k <= kMostBouncesOfBeam; ++k) {
     const double gamma = (pi - at.psi_i + (k % 2 == 1 ? -at.psi_r : at.psi_r)) / (2.0 * k);

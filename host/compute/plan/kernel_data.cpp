@@ -23,12 +23,12 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kSmallestPole = 1e-6;  // replaces N^2 + 1 or N^2 - 1 if its modulus is smaller, so poles stay finite
+constexpr double kSmallestPole = 1e-6;  // least modulus of N^2 + 1 and N^2 - 1; keeps the pole -1/sqrt(N^2 + 1) finite
 
-/// Largest numbers of loop iterations for a piece of the slope axis. The numbers of nodes are not included.
+/// Largest numbers of loop iterations for a piece of the slope axis. iterations() adds the loops over the nodes.
 struct Loops {
   double arcs = 1.0;     ///< arcs into which the azimuths are divided at one slope
-  double turns = 0.0;    ///< with all bounces: iterations for the bounces of one ray
+  double turns = 0.0;    ///< in runs with scattering = multiple: iterations for the bounces of one ray
   double corners = 0.0;  ///< corners (kinks) of a sky, at which arcs are divided further
 };
 
@@ -75,7 +75,7 @@ Loops loops_of(const KernelData& data, double critical, double start, double end
 
 constexpr double kMostIterations = 64'000.0;  // the driver lavapipe stops an invocation after 65,535, without an error
 constexpr double kMostArcs = 2.0 * DOLP_MAX_ARCS;
-constexpr double kTurnsOfSlope = DOLP_MOST_SPLITS + 1.0;  // iterations at a slope, to find the split lines of a groove
+constexpr double kTurnsOfSlope = DOLP_MOST_SPLITS + 1.0;  // iterations that split the azimuths at one slope in a groove
 
 // Upper bound of the loop iterations of one invocation, with at most `most_nodes` nodes on an arc.
 double iterations(const KernelData& data, const Loops& loops, double most_nodes) {
@@ -89,7 +89,6 @@ double iterations(const KernelData& data, const Loops& loops, double most_nodes)
   return of_rule(1.0) + of_rule(kCoarseShare + 1.0 / data.rule_order);
 }
 
-// The largest number of nodes of an arc for which no invocation exceeds kMostIterations.
 std::uint8_t most_nodes(const KernelData& data, const Loops& loops) {
   int most = data.rule_order;
   while (iterations(data, loops, most) > kMostIterations) --most;
@@ -121,7 +120,8 @@ void add_direction(KernelData& data, const MomentsRequest& request, double theta
   data.pieces.push_back(pieces);
 }
 
-// A slope t. Less than `share` of the facets are steeper than t, and they make up less than `share` of the mean slope.
+// The slope at which the integral ends. Steeper facets are less than `share` of all facets and contribute less than
+// `share` of the mean slope, unless the integral ends at kLargestCut, the limit for Cauchy slopes.
 double slope_cut(const MomentsRequest& request, const SlopeShape& shape, double share) {
   const double m = slope_width(shape);
   if (request.distribution == Distribution::kGaussian) return m * std::sqrt(1.0 - std::log(share));
@@ -213,8 +213,9 @@ void add_shape(KernelData& data, const MomentsRequest& request, const SlopeShape
 
 static_assert(kMostResponses == DOLP_COLUMNS);
 
-/// The poles of the indices, over complex cos(beta), set the numbers of nodes. The polynomials of responses need as
-/// many nodes as a pole at i * bend. So each pole that is farther from 0 moves to i * bend.
+/// The reflectance of an index has a pole at some complex cos(beta). The kernel chooses its numbers of nodes from this
+/// pole. The polynomials of the responses need as many nodes as a reflectance with a pole at i * bend. So i * bend
+/// replaces each pole that is farther from 0.
 void take_responses(KernelData& data, const Response& response) {
   data.response = response;
   data.rule.response_scale = 1.0 / response.c0;

@@ -80,7 +80,8 @@ struct KernelData {
   std::vector<kernel::ShapeNode> shapes;
   std::vector<char> needs_line;  ///< for each shape: 1 if pieces must be split at the kink of its masking
   std::vector<kernel::IndexNode> indices;
-  std::vector<std::uint32_t> index_variant;  ///< per index of a grid: number of its DirectionVariant; has_line adds 1
+  /// For each index of a grid, the position of its DirectionVariant. Shapes with needs_line have the next position.
+  std::vector<std::uint32_t> index_variant;
   std::vector<std::uint32_t> shape_of;
   /// Nodes and weights of the rules. The list continues with the tables of the sky (SkyTable) and of the reflectances.
   std::vector<std::array<double, 2>> rule_nodes;
@@ -132,7 +133,7 @@ inline std::uint32_t column_kind(const KernelData& data) {
 
 std::uint32_t task_word(const Pieces& pieces, std::uint32_t piece, std::uint32_t members);
 
-/// Number of pieces of the slope axis that begin below the slope cut of `shape`; at least one.
+/// Number of pieces of the slope axis that begin below ShapeNode::cut, the end of the integral; at least one.
 std::uint32_t piece_count(const KernelData& data, std::uint32_t theta, const kernel::ShapeNode& shape);
 
 /// The slope of V-grooves in which a vertical ray bounces `bounces` times.
@@ -140,14 +141,14 @@ double slope_with_bounces(double bounces);
 
 void add_piece(kernel::MomentsNode& sum, const kernel::MomentsNode& piece);
 
-/// Uses r_i + deficit = cos(theta) to compute the less accurate of r_i and deficit from the other.
+/// Computes the less accurate of r_i and deficit as cos(theta) minus the other moment: their sum is cos(theta).
 void take_complement(Moments& moments, double cosine);
 
 /// Moments with error bounds, from the kernel's result `node` and DOLP_COLUMN_PARTS sums per column in `columns`.
 Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
                             double unit_roundoff, std::span<const double> columns = {});
 
-/// False if the masking table is too coarse for the width m of the slope distribution in this direction.
+/// False if, in this direction, the masking table is too coarse for a slope distribution as narrow as `shape`.
 bool table_resolves(const kernel::ShapeNode& shape, double cos_theta, double sin_theta);
 
 /// Most loop iterations of one invocation. Drivers may stop it after 65,535, without an error and with wrong sums.

@@ -7,7 +7,7 @@
 namespace dolp {
 namespace {
 
-constexpr std::size_t kColumnsAtOnce = 1U << 20U;  // most columns of a step; limits the memory of a step
+constexpr std::size_t kColumnsAtOnce = 1U << 20U;  // largest number of columns in a step; limits its memory
 
 template <class List, class CountOf>
 std::size_t sum_over(const List& list, const CountOf& count_of) {

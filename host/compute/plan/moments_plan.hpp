@@ -32,7 +32,7 @@ class MomentsPlan {
   std::span<const MomentsStep> steps() const { return steps_; }
   /// Wanted entries that are interpolated, or combined from responses, instead of computed by a kernel.
   std::size_t saved_entries() const;
-  /// Number of moments that the kernels compute instead, as input for the saved entries.
+  /// Number of moments that the kernels compute as input for the saved entries.
   std::size_t nodes_of_saved() const;
   std::size_t kernel_moments() const;
   /// For each direction of a grid: 1 if the entries are interpolated or combined from responses. Empty for points.

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kFewestCells = 64;
 constexpr std::size_t kMostCells = 4096;
 constexpr double kShareOfTolerance = 0.02;
-constexpr double kLeastLevel = 1e-3;  // replaces a smaller reflectance_level(), the unit of the tolerance
+constexpr double kLeastLevel = 1e-3;  // replaces a smaller reflectance_level(), to which the tolerance is relative
 constexpr double kSafety = 2.0;       // error bound divided by the largest error at the tested positions
 
 /// R_s, 1 - R_s and the split (R_s - R_p) / sin^2(beta) at v = sqrt(cos(beta)).
@@ -22,7 +22,7 @@ using Values = std::array<double, 3>;
 constexpr std::size_t kSplit = 2;
 
 Values values_at(const FacetOptics& optics, double v) {
-  constexpr double kLeastCosine = 1e-12;  // smooth_absorptance() does not allow 0; here films reflect everything
+  constexpr double kLeastCosine = 1e-12;  // smooth_absorptance() does not allow 0, where films reflect everything
   const SmoothAbsorptance absorbed = smooth_absorptance(optics, std::clamp(v * v, kLeastCosine, 1.0));
   return {1.0 - absorbed.s, absorbed.s, absorbed.split};
 }
@@ -56,7 +56,7 @@ void add_cell(ReflectanceCurve& curve, const FacetOptics& optics, double start, 
   }
 }
 
-/// A pole in cos(beta). At Re(pole), a function with this pole is as steep as the steepest part of R_s and R_p.
+/// Complex cos(beta) of a pole. At Re(pole), a function with this pole has the steepest slope of R_s and R_p.
 std::complex<double> steepest_pole(const FacetOptics& optics, std::size_t cells) {
   std::complex<double> pole(0.0, 1.0);
   for (const double SmoothAbsorptance::*part : {&SmoothAbsorptance::s, &SmoothAbsorptance::p}) {

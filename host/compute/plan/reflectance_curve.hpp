@@ -14,8 +14,8 @@ struct ReflectanceCurve {
   std::vector<std::array<double, 2>> nodes;
   std::size_t cells = 0;
   double error = 0.0;         ///< bound of the errors of R_s, 1 - R_s and R_s - R_p that the cubics give
-  double steepness = 0.0;     ///< largest derivative of the three functions over ln(v); the third times sin^2(beta)
-  std::complex<double> pole;  ///< a function with this pole in cos(beta) is as steep as R_s and R_p
+  double steepness = 0.0;     ///< largest |df/dln(v)| of the three functions f; for the third, times sin^2(beta)
+  std::complex<double> pole;  ///< complex cos(beta) of a pole; sets the numbers of nodes, see steepest_pole()
 };
 
 /// Doubles the number of cells until the error is at most a share of the tolerance, or the number reaches its limit.

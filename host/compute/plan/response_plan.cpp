@@ -19,7 +19,8 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// The mask `wanted` for new indices. Index i needs an entry if `request` wants it for any index in needed_by[i].
+/// The mask `wanted` of a second request, with other indices. Its index j must have each entry (direction and shape)
+/// that `request` wants at any of its own indices in needed_by[j].
 std::vector<char> wanted_of(const MomentsRequest& request, const std::vector<std::vector<std::size_t>>& needed_by) {
   const std::size_t of_index = request.theta_deg.size() * request.shapes();
   std::vector<char> wanted;
@@ -75,8 +76,8 @@ struct Sums {
     for (Eigen::Index shape = 0; shape < error.cols(); ++shape)
       error.col(shape) += responses.relative_error[static_cast<std::size_t>(shape)] * value.col(shape).cwiseAbs();
   }
-  /// Sums for the difference of two reflectance curves, which may change its sign. So relative errors refer to an upper
-  /// bound of the sum: response 0, whose polynomial is 1, times the sum of all |weights|.
+  /// Sums for the difference of two reflectance curves. If its sign changes, terms of a sum cancel. So relative errors
+  /// refer to an upper bound of the sum: response 0, whose polynomial is 1, times the sum of all |weights|.
   static Sums of_difference(const Responses& responses, Responses::Part of, Responses::Part apart,
                             const RowMajor& weights) {
     Sums sums(responses, of, apart, weights);
@@ -194,7 +195,7 @@ class Combination {
     const Sums q(all, Responses::kQ, Responses::kQApart, split_);
     for_all(pass.size(), moments, [&](Moments& sum, const ResponseWeights& own, auto index, auto shape) {
       const Moments& from = pass[static_cast<std::size_t>(shape)];
-      // The function of the sky changes its sign, so relative errors refer to r_i, which does not contain the function.
+      // Light cancels, because the sky's function changes its sign. So relative errors refer to r_i, not to the sum.
       const double relative = all.relative_error[static_cast<std::size_t>(shape)] * std::abs(sum.r_i);
       sum.columns.resize(function + 1);
       sum.columns[function] = {i.value(index, shape), q.value(index, shape),

@@ -28,8 +28,8 @@ struct ResponsePlan {
   /// Requests for responses at the reference index, at all directions and slope distributions: for the reflected light,
   /// for the direct emission (if wanted), and for the reflected light times each function of the sky.
   std::vector<MomentsRequest> passes;
-  std::optional<MomentsRequest> others;                ///< the indices, or points, that have no weights
-  std::shared_ptr<const std::vector<Source>> sources;  ///< one per index of a grid, or per distinct index of points
+  std::optional<MomentsRequest> others;                ///< request for indices, or for points, that have no weights
+  std::shared_ptr<const std::vector<Source>> sources;  ///< one for each index; points with the same index share one
   std::vector<PointSource> points;
 
   ResponsePlan of_directions(std::span<const std::size_t> directions) const;

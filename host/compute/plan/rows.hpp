@@ -19,7 +19,6 @@ struct Chunk {
   std::uint32_t count = 1;  ///< at most the width of a row
 };
 
-/// A kernel row: the entries of one direction, one index and one chunk.
 struct Row {
   std::uint32_t direction = 0;
   std::uint32_t index = 0;

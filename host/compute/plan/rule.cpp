@@ -43,14 +43,14 @@ constexpr std::array<RuleModel, 5> kModels = {{
 
 constexpr double kNone = -1000.0;
 
-// log10 of the number of nodes on a piece with a kink of the masking. The number falls like 1/m at slope widths m > 1.
+// log10 of the number of nodes on a piece with a kink of the masking. A slope width above 1 divides this number.
 double decades_per_node(const SlopeShape& shape, double digits) {
   const double width = std::max(1.0, slope_width(shape));
   return std::log10(std::max(kNodesPerDigit * digits / width, 1.5));
 }
 
-// log10 of the error of rules that are not split at the cusp of smith masking. The cusp is where theta_r = 0. There
-// Smith's Lambda is proportional to tan(theta_r)^(2q-2), and a rule with n nodes has an error like n^(-2q).
+// log10 of the error of a rule on a piece that contains the cusp of smith masking, at theta_r = 0. For Cauchy slopes,
+// Smith's Lambda is proportional to tan(theta_r)^(2q-2) at the cusp. So n nodes give an error proportional to n^(-2q).
 double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double digits) {
   const double per_node = decades_per_node(shape, digits);
   if (distribution == Distribution::kGaussian) {
@@ -65,7 +65,7 @@ double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double d
   return size - 2.0 * shape.q * per_node;
 }
 
-// log10 of the error without a split at the kink of `integral` masking. G contains |distance from the kink|^(2q-1).
+// log10 of the error of a rule across the kink of `integral` masking. G has a term |distance from the kink|^(2q-1).
 double unsplit_line(Distribution distribution, const SlopeShape& shape, double digits) {
   if (distribution == Distribution::kGaussian) {
     return shape.sigma > (digits > kTightDigits ? kTightLineSigma : kLineSigma) ? 0.0 : kNone;

@@ -59,7 +59,6 @@ struct Corner {
   Eigen::RowVectorXd bend;  // for each function, the jump of its slope df/du
 };
 
-/// The corners (kinks) of the functions, the sharpest first.
 std::vector<Corner> corners_of(const SkyBasis& basis) {
   constexpr double kStep = 1e-4;
   std::vector<Corner> corners;

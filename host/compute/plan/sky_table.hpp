@@ -18,15 +18,15 @@ struct SkyTable {
   bool has_cusp = false;            ///< a function has a cusp at the zenith
   std::vector<double> corners_deg;  ///< zeniths of the corners at which azimuths are split, the sharpest first
   std::vector<double> error;        ///< for each function: bound of its difference from its table
-  std::vector<double> bends;      ///< for each function: root of the sum of (slope jump)^2 over corners without a split
-  std::vector<double> steepness;  ///< for each function: slope over u at the zenith, where u has large rounding errors
+  std::vector<double> bends;        ///< for each function f: jumps of df/du at unsplit corners, added in quadrature
+  std::vector<double> steepness;  ///< for each function f: |df/du| at the zenith, where rounding errors of u are large
 
   /// start, corners and log2_cells in one word, the member `sky` of DOLP_PUSH_CONSTANTS (interface.glsl)
   std::uint32_t word() const;
 };
 
-/// Appends as many cells to `nodes` as the tolerance needs, up to kMostSkyCells or kMostTightSkyCells. If `splits`, the
-/// azimuths will be split at the sharpest corners. Then also appends the cosines of the zeniths of these corners.
+/// Appends to `nodes` as many cells as the tolerance needs, up to a limit. If `splits`, the kernel splits the azimuths
+/// at the sharpest corners. The cosines of the zeniths of these corners then follow the cells in `nodes`.
 SkyTable append_sky(const SkyBasis& basis, double tolerance, bool splits, std::vector<std::array<double, 2>>& nodes);
 
 }  // namespace dolp

@@ -274,7 +274,7 @@ void AtomicFile::resize(std::uint64_t size) {
 
 void AtomicFile::commit() {
   if (is_device_or_pipe(impl_->target)) return impl_->copy_to_target();
-  const fs::path folder = folder_of(impl_->target);  // before the rename, because it allocates memory and can fail
+  const fs::path folder = folder_of(impl_->target);  // allocated before the rename, because an allocation can fail
   if (interrupted()) throw Cancelled();
   if (::fsync(impl_->descriptor()) != 0) fail_errno(impl_->path, "cannot write");
   if (impl_->name.empty()) impl_->link();

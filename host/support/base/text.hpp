@@ -36,7 +36,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 /// The candidate that a mistyped or shortened name probably means; empty if no candidate is similar.
 std::optional<std::string> near_name(std::string_view name, const std::vector<std::string>& candidates);
 
-std::string one_line(std::string_view text);  ///< replaces line ends by blanks; cuts long texts for a message
+std::string one_line(std::string_view text);  ///< for messages: replaces line ends by blanks; cuts off a long text
 
 /// Text from files and command lines, made safe to display: control characters, bytes that are not UTF-8, and
 /// characters that change the text direction become "?". Tabs stay.
@@ -50,8 +50,8 @@ inline constexpr std::size_t kMostTextBytes = 16U << 20U;  ///< size limit of a 
 /// is longer than `most_bytes` or contains a zero byte.
 std::string read_text(const std::string& path, const std::string& prefix, std::size_t most_bytes = kMostTextBytes);
 
-/// Checks a file name from a scene or from the window. Refuses "-", pipes and devices, because reading them could wait
-/// forever. Errors: InputError that begins with `prefix`.
+/// Checks a file name from a scene or from the window of `dolp explore`. Refuses "-", pipes and devices, because
+/// reading them could take forever. Errors: InputError that begins with `prefix`.
 void check_named_file(const std::string& path, const std::string& prefix);
 
 std::string read_named_file(const std::string& path, const std::string& prefix,

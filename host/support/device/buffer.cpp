@@ -9,7 +9,7 @@
 namespace dolp::vulkan {
 namespace {
 
-// Smallest size of a buffer in bytes. Vulkan forbids empty buffers; each struct of a shader must fit in a buffer.
+// Smallest size of a buffer in bytes. Vulkan forbids empty buffers.
 constexpr VkDeviceSize kSmallestBuffer = 256;
 
 }  // namespace

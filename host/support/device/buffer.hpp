@@ -11,7 +11,7 @@ namespace dolp::vulkan {
 /// A Vulkan storage buffer with its memory.
 class Buffer {
  public:
-  /// Creates a buffer with at least `bytes`. If `texels` is a format, shaders can also read the buffer as texels of it.
+  /// Creates a buffer with at least `bytes`. If `texels` is a format, shaders can also read texels in this format.
   Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, VkFormat texels = VK_FORMAT_UNDEFINED);
 
   VkBuffer get() const { return buffer_.get(); }
@@ -20,7 +20,7 @@ class Buffer {
 
   /// Writes bytes to the start of a mapped buffer. Work that is submitted to the queue later sees these bytes.
   void write(std::span<const std::byte> bytes);
-  /// Reads bytes from the start of a mapped buffer. Before, the device must end its work with a barrier for the host.
+  /// Reads the start of a mapped buffer. The device must have ended its work with a barrier that lets the host read it.
   void read(std::span<std::byte> bytes) const;
 
  private:

@@ -22,7 +22,7 @@ constexpr const char* kDriverNotLoaded =
 constexpr const char* kTooFewThreads =
     "out of memory: the system allows too few threads for a Vulkan driver (ulimit -u); the evaluator cpu needs one";
 
-/// Throws the error for a missing driver. If too little address space is left, the Vulkan loader skips all drivers.
+/// Throws the error for a missing driver: MemoryError if the loader skipped all drivers for lack of address space.
 [[noreturn]] void fail_without_driver() {
   if (lacks_addresses()) throw MemoryError("out of memory: too little is left to load a Vulkan driver");
   throw DeviceError(kNoDriver);

@@ -75,7 +75,7 @@ void add_properties_1_2(VkPhysicalDevice physical, dolp::Device& description) {
   description.subgroup_size = subgroup.subgroupSize;
 }
 
-// On a CPU a workgroup is one subgroup. A larger workgroup would leave many invocations idle in a small dispatch.
+// On a CPU the program makes a workgroup as small as a subgroup, because a small dispatch would not fill larger ones.
 std::uint32_t local_size_of(const dolp::Device& device) {
   if (device.type != dolp::Device::Type::kCpu || device.subgroup_size == 0) return kLocalSize;
   return std::min(device.subgroup_size, kLocalSize);
@@ -141,7 +141,7 @@ MemoryType Device::memory_type(std::uint32_t allowed, MemoryUse use) const {
   VkMemoryPropertyFlags required = 0;
   VkMemoryPropertyFlags preferred = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
   if (use != MemoryUse::kDeviceOnly) required = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT;
-  // Without a cache of the host, reading results back would be a hundred times slower.
+  // The host would need a hundred times as long to read results from memory that it does not cache.
   if (use == MemoryUse::kReadback) preferred = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
 
   std::optional<MemoryType> best;

@@ -1,5 +1,6 @@
-// Light after all its bounces in V-grooves, and direct emission, with every kernel. Results must agree with stored
-// values and with the reference evaluator, and must have properties that hold for all inputs.
+// Two models of the light, with every kernel: all bounces in V-grooves, and direct emission, which goes straight from a
+// facet to the viewer. Results must agree with stored values and with the reference evaluator, and must have properties
+// that hold for all inputs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -128,7 +129,9 @@ TEST_P(Grooves, WithoutAndWithTheDirectEmission_TheOtherMomentsAgree) {
     const Moments b = evaluator->evaluate(without, {}).front();
     expect_within_bounds(a, b, name_of({Distribution::kCauchy, masking}));
     EXPECT_TRUE(std::isnan(b.direct_i));
-    // The true emissivity is at least direct_i / cos(theta). It is at most deficit / cos(theta) of single scattering.
+    // The emissivity is deficit / cos(theta) with single scattering, and direct_i / cos(theta) with direct emission.
+    // The first is too high: it counts light that meets a second facet as absorbed. The second is too low: it leaves
+    // out emission that other facets reflect.
     EXPECT_LE(a.direct_i, a.deficit);
   }
 }
@@ -170,7 +173,8 @@ const std::vector<ScatteringPoint> kBeams = {
     {{0.0, 50.0, 30.0}, {0.5, 2.0}, {10.0, 60.0}},  {{80.0, 75.0, 170.0}, {0.2, 1.5}, {1.33, 0.02}},
     {{50.0, 50.0, 0.0}, {0.5, 3.0}, {3.0, 4.0}}};
 
-/// Compares Mueller matrices with the reference, except where the reference gives NaN. `rounding` is divided by m00.
+/// Compares Mueller matrices with the reference, except where the reference gives NaN. `rounding` is the allowed
+/// rounding error of an element, divided by the element m00.
 void expect_like_reference(ModelEvaluator& evaluator, const std::vector<ScatteringPoint>& points, double rounding) {
   const std::vector<ScatteringMatrix> computed = evaluator.scatter(bounces_of(points), {});
   const std::vector<ScatteringMatrix> exact = ReferenceEvaluator().scatter(bounces_of(points), {});
@@ -232,7 +236,7 @@ TEST(GroovesMueller, TowardTheMirrorDirection_WorkIsBounded) {
 }
 
 TEST(GroovesMueller, TowardTheMirrorDirection_SumsAreThoseOfTheReference) {
-  constexpr double kPrinted = 1e-15;  // allowed rounding error over m00: the last digit that a double prints
+  constexpr double kPrinted = 1e-15;  // allowed rounding error divided by m00: about the last decimal digit of a double
   for (const OpticalConstants& index : {OpticalConstants{1.5, 0.1}, OpticalConstants{3.0, 4.0}}) {
     std::vector<ScatteringPoint> points;
     for (const BeamAngles& angles : toward_the_mirror()) points.push_back({angles, {0.3, 2.02}, index});
@@ -342,7 +346,8 @@ TEST(GrooveScenes, Bracket_IsWhatItsEndsSayAndHoldsAllBounces) {
     if (i == 0) continue;  // at theta = 0 nothing is polarised
     const double direct_q = 0.5 * std::abs(direct[i][Quantity::kEmissivityS] - direct[i][Quantity::kEmissivityP]);
     const double slack = mean_emissivity(single[i]) - mean_emissivity(direct[i]);
-    // All models have the same factor N in Q = N (eps_s - eps_p) / 2. Single scattering has Q = -N rho_Q.
+    // Q = N (eps_s - eps_p) / 2, where eps is an emissivity. N is the same in all scenes of this test. With single
+    // scattering (eps_s - eps_p) / 2 = -rho_Q.
     const double net = std::abs(single[i][Quantity::kStokesQ] / single[i][Quantity::kRhoQ]);
     EXPECT_NEAR(high, net * (direct_q + slack) / single[i][Quantity::kStokesI], kAccuracy);
     EXPECT_NEAR(low, net * std::max(direct_q - slack, 0.0) / single[i][Quantity::kStokesI], kAccuracy);

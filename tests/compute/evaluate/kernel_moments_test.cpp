@@ -131,7 +131,7 @@ TEST_P(KernelProperties, OrderOfAxes_TilesAndBlocks_ChangeNoBit) {
     const Reordered other = reordered(request, random);
     VulkanOptions options;
     options.max_tile_invocations = static_cast<std::uint32_t>(random.uniform(1.0, 20.0));
-    // 1 shape is less than a kernel row needs: the evaluator must raise this limit
+    // In round 0 the limit is 1 shape. A row of a kernel may need more shapes, so the evaluator must raise the limit.
     options.max_block_shapes = round == 0 ? 1 : static_cast<std::uint32_t>(random.uniform(1.0, 6.0));
     options.staged_uploads = random.chance(0.5);
     const std::vector<Moments> actual = make_evaluator(kernel, options)->evaluate(other.request, {});
@@ -143,7 +143,7 @@ TEST_P(KernelProperties, OrderOfAxes_TilesAndBlocks_ChangeNoBit) {
   }
 }
 
-// More shapes than fit into the masking tables at one time.
+// These shapes need more masking tables than the evaluator holds at one time.
 TEST(CpuEvaluator, ManyShapes_HaveTheBitsOfEachByItself) {
   constexpr std::size_t kShapes = 9000;
   MomentsRequest request{.masking = Masking::kSmith,

@@ -124,10 +124,11 @@ template <class Source>
 class Elementary : public ::testing::Test {};
 TYPED_TEST_SUITE(Elementary, Sources, SourceNames);
 
-// Allowed error: half an ulp for each of the last two or three roundings, and the rounding error of the argument of the
-// series. The comments of the kernel source promise "a few units in the last place".
+// Allowed error in ulps. The last two or three roundings cause half an ulp each. The rest is for the rounding error in
+// the argument of the series. The comments of the kernel source promise "a few units in the last place".
 constexpr double kFewUlps = 3.0;
-// Before their series, acosh, atan and acos compute several roots and quotients, each with a rounding error.
+// The functions acosh, atan and acos first compute roots and quotients, and then a series of the result. Each root and
+// each quotient adds a rounding error.
 constexpr double kRootUlps = 6.0;
 
 TYPED_TEST(Elementary, Functions_OverTheirDomain_AreAFewUlpsFromExact) {
@@ -301,7 +302,8 @@ TYPED_TEST(FresnelSource, NormalIncidence_HasTheLimitOfTheQuotient) {
   for (const OpticalConstants& optical : {OpticalConstants{1.508, 0.0}, OpticalConstants{27.0, 90.0}}) {
     const kernel::IndexNode index = rounded_index<TypeParam>(optical);
     const auto f = source.fresnel(index_in<TypeParam>(index), Real(1));
-    // At c = 1 - 1e-20 (R_s - R_p) / sin^2(beta) equals its limit. Cancellation leaves 30 of the 50 digits.
+    // At normal incidence (R_s - R_p) / sin^2(beta) is 0/0. So the exact limit is computed with c = cos(beta) slightly
+    // below 1. The value c = 1 - 1e-20 leaves 30 of the 50 digits after cancellation.
     const Wide c = 1 - Wide(1e-20);
     const Wide sin2 = 1 - c * c;
     const WideComplex n2(Wide(index.n2m1_re) + 1, Wide(index.n2m1_im));
@@ -331,7 +333,7 @@ TYPED_TEST(FresnelSource, TotalReflection_AbsorbsExactlyNothing) {
     const Real above = static_cast<Real>(index.critical_cos + 0.5 * (1.0 - index.critical_cos));
     const auto f = source.fresnel(index_in<TypeParam>(index), above);
     const ExactFresnel exact = exact_fresnel(index, static_cast<double>(above));
-    // At this angle the subtraction in n^2 - 1 + cos^2(beta) amplifies the relative rounding error 2 to 3 times.
+    // Beside the critical angle, the subtraction in n^2 - 1 + cos^2(beta) amplifies the rounding error of cos^2(beta).
     EXPECT_LE(relative_error(f.absorbed_s, 1 - exact.r_s), 3.0 * kFresnelUlps * kEpsilon<TypeParam>) << n;
     EXPECT_GT(f.absorbed_s, Real(0));
   }

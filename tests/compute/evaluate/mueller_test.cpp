@@ -116,7 +116,8 @@ TEST(MuellerLimits, Retro_IsTheSameFromEverySide) {
   EXPECT_EQ(plain_mueller({40.0, 40.0, 360.0}), at);
 }
 
-// At the critical angle a square root in Fresnel's formulas is almost 0, which amplifies the rounding of the angles.
+// At the critical angle a square root in Fresnel's formulas is almost 0. This amplifies the rounding errors of the
+// angles. The stated error must cover the amplified errors.
 TEST(MuellerLimits, CriticalAngle_AgreesWithExplicitVectors) {
   std::vector<ScatteringPoint> points;
   for (double n = 0.1; n < 0.96; n += 0.05) {

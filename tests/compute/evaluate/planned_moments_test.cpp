@@ -1,4 +1,4 @@
-// Plans of requests for moments, carried out by an artificial evaluator with known moments.
+// An artificial evaluator carries out a MomentsPlan. Its moments are known functions of the slope distribution.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 using namespace dolp;
 
-/// Moments that are a given function of the slope distribution, with a given bound.
+/// An evaluator whose moments are a given function of the slope distribution, with error bounds of 0.
 class Invented final : public MomentsOnly {
  public:
   using Function = double (*)(const SlopeShape&);
@@ -56,7 +56,7 @@ MomentsRequest dense_request() {
   return request;
 }
 
-// A test function with the features of real moments: a peak that moves with sigma, and a power with exponent q - 1.
+// A smooth test function: 0.05 plus the share of facets of a Cauchy surface whose squared slope is below 0.3.
 double smooth(const SlopeShape& shape) {
   const double m2 = 2.0 * shape.sigma * shape.sigma;
   return 0.05 + 1.0 - std::pow(m2 / (0.3 + m2), shape.q - 1.0);

@@ -107,7 +107,7 @@ TEST(VulkanDeathTest, TileThatExceedsItsTime_IsADeviceErrorAndNoCrash) {
 
 TEST(VulkanDeathTest, ThreadsRefused_IsAMemoryErrorAndNoWait) {
   expect_true_in_a_child([] {
-    // The limit does not apply to root, so root becomes another user.
+    // The limit on the number of threads does not apply to root, so root becomes another user.
     const bool is_bound = ::geteuid() != 0 || ::setuid(kNobody) == 0;
     const ::rlimit none{};
     const bool is_set = ::setrlimit(RLIMIT_NPROC, &none) == 0;
@@ -268,7 +268,8 @@ constexpr double kSentinel = -12'345.0;
 constexpr std::uint32_t kFirst = 3;   // position of the first computed entry
 constexpr std::uint32_t kCount = 70;  // number of entries: more than a workgroup, but no multiple of it
 
-// Runs the kernels for a request. Too many results would overwrite sentinel values at the end of the output buffers.
+// Runs the kernels for a request. The output buffers are longer than needed and begin full of sentinel values. So the
+// tests see each value that a kernel has overwritten.
 class SentinelRun {
  public:
   SentinelRun(Session& session, const MomentsRequest& request) : session_(session), data_(kernel_data(request)) {

@@ -1,6 +1,7 @@
-// Error estimates hold over the whole range of scenes, and close to parameter values at which the integration rule
-// changes. The error estimate of a coarse rule must cover the difference from the result of a rule with four more
-// digits. The environment variable DOLP_PROPERTY_DRAWS sets the number of points for each kernel and model.
+// Error estimates must hold over the whole range of scenes, and close to parameter values at which the integration rule
+// changes. Moments with a tolerance of 1e-2 are compared with moments with a tolerance of 1e-6. The error estimates
+// must cover the difference. The environment variable DOLP_PROPERTY_DRAWS sets the number of points per kernel and
+// model.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,14 +17,15 @@
 namespace dolp {
 namespace {
 
-// Allowed difference of moments that are 0, such as all moments with smith masking at exactly 90 degrees.
+// Allowed difference between two values of a moment that is exactly 0. With smith masking all moments are 0 at exactly
+// 90 degrees.
 constexpr double kNothing = 1e-28;
 constexpr std::uint64_t kSeed = 20260402;
 constexpr std::size_t kDraws = 60;
 constexpr double kCoarse = 1e-2;
 constexpr double kFine = 1e-6;
-constexpr double kLeastShare =
-    0.1;  // least relative error bound over the tolerance (shaders/physics/README.md, section 9)
+// A relative error bound is never below this share of the tolerance, see section 9 of shaders/physics/README.md.
+constexpr double kLeastShare = 0.1;
 
 std::uint64_t seed_of(const Model& model) {
   return kSeed + 2 * static_cast<std::uint64_t>(model.masking) + static_cast<std::uint64_t>(model.distribution);
@@ -35,8 +37,9 @@ class Switches {
   Switches(const Model& model, std::uint64_t seed) : model_(model), random_(seed) {}
 
   std::vector<Point> points() {
-    // With some of the maskings, two breakpoints of the slope axis coincide at theta = 90/7 = 12.857, 18, 30 and 45
-    // degrees, and nearly coincide at 12.9, 18.05 and 30.2 degrees.
+    // The plan splits the slope axis at breakpoints, which depend on theta and on the masking. With some maskings, two
+    // breakpoints coincide at theta = 90/7 = 12.857, 18, 30 and 45 degrees. They almost coincide at 12.9, 18.05
+    // and 30.2 degrees.
     for (const double theta_deg :
          {12.857142857142858, 12.9, 18.0, 18.05, 22.5, 30.0, 30.2, 36.0, 44.9, 45.0, 60.0, 65.0, 80.0, 88.0, 89.0}) {
       add([&](Point& p) { p.theta_deg = beside(theta_deg); });
@@ -65,11 +68,12 @@ class Switches {
   double least_q() const {
     return model_.masking == Masking::kSmith && model_.distribution == Distribution::kCauchy ? 1.501 : 1.001;
   }
-  // Total reflection begins where sin(beta) = n. This is a line in the plane of slope and azimuth. Three zeniths are
-  // special because intersections of this line with other lines appear or coincide there: the critical angle, its
-  // complement, and the absolute difference of twice the critical angle and 90 degrees.
+  // Total reflection begins on the line sin(beta) = n in the plane of slope and azimuth. The plan splits the integral
+  // at this line and at other lines, such as the horizon. The points where these lines intersect depend on the zenith
+  // theta. At three values of theta such points appear or coincide: at the critical angle, at its complement, and at
+  // the absolute difference of twice the critical angle and 90 degrees.
   void add_total_reflection(double n) {
-    constexpr double kSoftCriticalLine = 0.3;  // if 2 n k is larger, the plan ignores the line of total reflection
+    constexpr double kSoftCriticalLine = 0.3;  // if 2 n k is larger than this, the plan ignores the line
     const double critical_deg = std::asin(n) * 180.0 / std::numbers::pi;
     for (const double theta_deg : {critical_deg, 90.0 - critical_deg, std::abs(2.0 * critical_deg - 90.0)}) {
       add([&](Point& p) { p.theta_deg = beside(theta_deg), p.index = {n, 0.0}; });
@@ -104,8 +108,9 @@ TEST_P(CoarseRule, CoarseAndFineRule_DifferByNoMoreThanTheyState) {
 INSTANTIATE_TEST_SUITE_P(Kernels, CoarseRule, testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kModels)),
                          kernel_and_model_name);
 
-// Entries that had too small error estimates in the past. An estimate compares two rules, and here both rules agreed by
-// chance or made equal errors. Therefore a bound is now at least a share of the tolerance.
+// Entries whose error estimates were too small in the past. An estimate is based on the difference between two rules.
+// For these entries both rules agreed by chance or made equal errors. Therefore an error bound is now never below
+// kLeastShare of the tolerance.
 struct HardEntry {
   Model model;
   double tolerance;
@@ -154,7 +159,8 @@ TEST(HardEntries, Moments_AreWithinTheirBoundsOfFinerRulesAndOfTheReference) {
   }
 }
 
-// Points with q just above 3/2. Near the zenith, Lambda of Smith's masking rises from 0 to thousands within 1 degree.
+// Number of points with q just above 3/2. For such q, Lambda of Smith's masking rises steeply beside the zenith: from 0
+// to thousands within 1 degree.
 constexpr std::size_t kDivergingDraws = 150;
 
 std::vector<Point> diverging_points(std::size_t count) {

@@ -17,9 +17,10 @@ namespace {
 constexpr std::uint64_t kSeed = 20261123;
 constexpr std::size_t kChecked = 30;  // entries checked per grid
 
-/// kSlopes: sums over the azimuths at a slope serve all slope distributions. kRows: one kernel invocation computes
-/// several values of q. kShapes: moments are interpolated between slope distributions. kIndices: moments of many
-/// indices are sums of a few responses (model/response_basis.hpp).
+/// How the entries of a grid share work. kSlopes: one sum over the azimuths at a slope is used for all slope
+/// distributions. kRows: one kernel invocation computes several values of q. kShapes: moments are interpolated between
+/// slope distributions. kIndices: the moments of many indices are weighted sums of the same few responses, see
+/// model/response_basis.hpp.
 enum class Sharing { kSlopes, kRows, kShapes, kIndices };
 constexpr std::array kSharings = {Sharing::kSlopes, Sharing::kRows, Sharing::kShapes, Sharing::kIndices};
 
@@ -41,7 +42,8 @@ std::vector<FacetOptics> many_indices(Random& random) {
   return indices;
 }
 
-/// A random grid. Largest value over smallest value is up to 60 for sigma, and up to 30 for q minus its lower limit.
+/// A random grid. Its largest sigma is up to 60 times its smallest sigma. The distance of q from the lower limit of q
+/// varies by a factor of up to 30.
 MomentsRequest random_grid(Random& random, const Model& model, Scattering scattering, Sharing sharing) {
   MomentsRequest request;
   request.distribution = model.distribution;
@@ -121,7 +123,8 @@ TEST_P(Grids, StatedErrors_HoldAgainstEveryEntryByItself) {
       }
     }
   }
-  // No check for kIndices: `interpolated` also counts entries from responses, which only some grids use.
+  // For kIndices the number is not known: `interpolated` also counts entries that are sums of responses, and only some
+  // of the grids use responses.
   if (sharing == Sharing::kShapes) {
     EXPECT_GT(2 * work.interpolated, entries);
   } else if (sharing != Sharing::kIndices) {
@@ -137,7 +140,8 @@ std::string case_name(const testing::TestParamInfo<std::tuple<Kernel, Sharing>>&
 INSTANTIATE_TEST_SUITE_P(Kernels, Grids, testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kSharings)),
                          case_name);
 
-// A second pass wants only some entries. Their shared slope samples must also serve the heaviest tail (q = 1.2).
+// A second pass computes only some entries of a grid, with the same nodes on the slope axis for all of them. These
+// nodes must reach far enough for the entry with the heaviest tail (q = 1.2).
 TEST(SecondPass, SomeShapesOfAGrid_HeaviestTailIsNotLost) {
   for (const Masking masking : {Masking::kNone, Masking::kVCavity}) {
     MomentsRequest request;

@@ -1,4 +1,4 @@
-// Functions of compute/plan/, one by one: cosines of directions, loop iterations, Gauss nodes, rows, levels, tables.
+// Single functions of compute/plan/: cosines, loops, Gauss nodes, kernel rows, refinement levels, tables.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -97,14 +97,16 @@ TEST(GaussLegendre, Orders_IntegratePolynomialsOfDegree2nMinus1AndNoMore) {
 
 double tan_deg(double angle_deg) { return std::tan(angle_deg * std::numbers::pi / 180.0); }
 
-// The expected slopes are in section 8 of shaders/physics/README.md. Its t_1 = c/(1+s) is tan(45 degrees - theta/2).
+// The expected slopes are in section 8 of shaders/physics/README.md. There t_1 = cos(theta) / (1 + sin(theta)), which
+// is tan(45 degrees - theta/2).
 TEST(Breakpoints, Directions_AreAtTheAnglesWhereLinesMeet) {
   constexpr unsigned kBoth = kRootAbove | kRootBelow;
   struct Case {
     double theta_deg;
     Masking masking;
     DirectionVariant variant;
-    std::vector<std::pair<double, unsigned>> expected;  // of each breakpoint: atan(slope) in degrees, roots
+    // For each breakpoint: atan(slope) in degrees, and the sides on which the integrand behaves like a square root.
+    std::vector<std::pair<double, unsigned>> expected;
   };
   const std::vector<Case> cases = {
       {0.0, Masking::kNone, {}, {{0, 0}, {45, kBoth}}},
@@ -164,7 +166,7 @@ TEST(Rows, WantedEntriesOfAGrid_AreEachInOneRowOfShapesAlike) {
   EXPECT_EQ(pieces.size(), expected);
   request.q.resize(2);
   request.wanted.clear();
-  EXPECT_EQ(rows_of(request, kernel_data(request)).width, 1U);  // rows for 4 entries would be half empty
+  EXPECT_EQ(rows_of(request, kernel_data(request)).width, 1U);  // rows with 4 places would hold 2 entries each
 }
 
 // ---- Orders and levels ---------------------------------------------------------------------------------------------
@@ -202,7 +204,8 @@ TEST(Refinement, Levels_TightenByHalfDecadesAndTurnToDouble) {
     bool has_double;
     std::optional<RefinementLevel> expected;
   };
-  const std::vector<Case> cases = {// 1.5 times the miss, rounded up to half decades: log10(15) = 1.18
+  const std::vector<Case> cases = {// first case: the error is 10 times too large. With the safety
+                                   // factor 1.5, log10(15) = 1.18, rounded up to 1.5 decades
                                    {{kFloat, 1e-3}, 10.0, true, RefinementLevel{kFloat, 1e-3 * std::pow(10.0, -1.5)}},
                                    {{kFloat, 1e-3}, 1.1, true, RefinementLevel{kFloat, 1e-3 * std::pow(10.0, -0.5)}},
                                    {{kFloat, 1e-3}, kInfinity, true, RefinementLevel{kDouble, 1e-8}},

@@ -1,4 +1,4 @@
-// Response bases: reflectances as sums of Chebyshev polynomials, compared with Fresnel's equations of the reference.
+// Response bases: reflectances as sums of Chebyshev polynomials, compared with Fresnel's equations in host/reference.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

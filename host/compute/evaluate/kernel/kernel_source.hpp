@@ -37,7 +37,7 @@ using glm::sqrt;
 using glm::uint;
 using glm::uintBitsToFloat;
 
-// x 2^k, if 2^k is a normal number; the kernel source uses no other k. The C library's ldexp takes ten times as long.
+// Returns x * 2^k. Domain: 2^k must be a normal number. The C library's ldexp takes ten times as long.
 inline float ldexp(float x, int k) { return x * std::bit_cast<float>((k + 127) << 23); }
 inline double ldexp(double x, int k) { return x * std::bit_cast<double>(static_cast<std::int64_t>(k + 1023) << 52); }
 

@@ -16,19 +16,19 @@ using sampling_kernel::KernelSource;
 
 namespace {
 
-// If the widths of the slope distributions differ much, the slope axis is also divided between the smallest and the
-// largest width. This is the largest step of ln(slope). Tuned: half the value needs up to 14 % more evaluations.
+// Between the smallest and the largest width of the slope distributions, ends_of() divides the slope axis into pieces.
+// They are at most this long in ln(slope). Tuned: half the value needs up to 14 % more evaluations.
 constexpr double kWidthStep = 1.3;
 constexpr double kNodeWidthStep = 0.4;  // largest step of ln(m) between the widths m in corners_of()
 
-constexpr double kNoFacets = 80.0;  // skips pieces at slopes that less than exp(-kNoFacets) of the facets exceed
+constexpr double kNoFacets = 80.0;  // pieces with only the steepest exp(-kNoFacets) of the facets are skipped
 
 struct SampleRequest {
   double all = 0.0;  // estimate of the light that all facets reflect upward, from weight_of_shape()
   double digits = 0.0;
 };
 
-// A slope at which a piece of the slope axis ends. Breakpoints are the slopes in ThetaNode::end.
+// An end of a piece of the slope axis: a breakpoint of the direction, or a slope between two breakpoints (kWidthStep).
 struct End {
   double slope = 0.0;
   std::uint32_t direction_piece = 0;  // position in ThetaNode::end of the last breakpoint that is not above `slope`
@@ -43,8 +43,8 @@ struct SlopeWeights {
   Eigen::ArrayXd common;
 };
 
-// Returns some artificial shapes. The nodes are chosen for them, because there may be very many wanted shapes. The
-// artificial widths m go from the smallest to the largest wanted m. Each occurs with the smallest and the largest q.
+// Artificial shapes that replace `shapes`, which may be very many, when slopes are chosen for them all. Their widths m
+// go from the smallest to the largest m of `shapes`. Each m occurs with the smallest q and with the largest q.
 std::vector<kernel::ShapeNode> corners_of(const KernelData& data, std::span<const std::uint32_t> shapes) {
   kernel::ShapeNode corner = data.shapes[shapes.front()];
   double widest = corner.m, lightest = corner.q_minus_1;
@@ -151,7 +151,7 @@ struct SlopeSampling::Impl {
       slope.t = scale * hyperbolic.x;
       slope.dt = 2.0 * node.y * scale * hyperbolic.y * piece.extent * on_piece.y;
       for (std::size_t j = 0; j < corners.size(); ++j) {
-        if (requests[j].digits <= slope.digits) continue;  // enough digits, because of an earlier shape
+        if (requests[j].digits <= slope.digits) continue;  // this shape cannot raise slope.digits
         const auto shape = std::bit_cast<KernelSource::ShapeNode>(corners[j]);
         const double u = slope.t / shape.m;
         const double mass =
@@ -190,7 +190,8 @@ struct SlopeSampling::Impl {
     return std::bit_cast<kernel::AzimuthNode>(sums);
   }
 
-  // Adds four numbers per column to `sums`: the column's i and q by the finer rule, then differences between the rules.
+  // Adds four numbers per column to `sums`: i and q by the finer rule, and how much i and q by the coarser rule differ.
+  // For a sky, the larger difference and 0 replace the two differences.
   void add_columns(const SampledPiece& piece, const Eigen::ArrayXd& shape_weights, double share,
                    std::span<const double> azimuths, std::span<double> sums) {
     const auto functions = static_cast<Eigen::Index>(sums.size() / DOLP_COLUMN_PARTS);

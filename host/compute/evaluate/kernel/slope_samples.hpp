@@ -43,7 +43,7 @@ struct SampledPiece {
   std::uint32_t direction_piece = 0;  ///< number of the direction's piece (see Pieces) that contains this piece
 };
 
-/// The slopes at which the kernel samples one direction and one index, for all wanted shapes.
+/// The slopes at which the kernel computes samples for one direction and one index. All entries.shapes share them.
 struct SlopeSamples {
   SampledEntries entries;
   double cut = 0.0;  ///< largest slope; steeper facets are left out

@@ -24,7 +24,6 @@ class CommandStream {
  public:
   explicit CommandStream(const Device& device);
 
-  /// Begins a new recording, and starts the clock.
   void begin();
   void copy(const Buffer& from, VkBuffer to, VkDeviceSize bytes);
   void barrier(Barrier barrier);

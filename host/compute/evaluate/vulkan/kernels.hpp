@@ -47,8 +47,8 @@ class Kernels {
     std::array<VkBuffer, kStorageCount> buffers{};
     std::array<VkBufferView, kTexelCount> texels{};  ///< for DOLP_BINDING_RULE_NODES and DOLP_BINDING_MASKING_NODES
   };
-  /// Binds the buffers. Where one is null, binds any other buffer of `bindings`: no kernel reads it there, but the old
-  /// binding may be to a destroyed buffer, which Vulkan forbids.
+  /// Binds the buffers. In place of a null buffer, which no kernel reads, binds any other buffer of `bindings`. This
+  /// replaces the old binding, whose buffer may be destroyed: Vulkan forbids bindings to destroyed buffers.
   void bind(const Bindings& bindings);
 
   VkPipeline pipeline(const KernelVariant& variant);

@@ -18,10 +18,10 @@ namespace dolp::vulkan {
 
 using MaskingNode = std::array<double, 4>;
 
-/// Memory that a tile needs per shape and per invocation. One invocation computes a piece of a row, a slope or a beam.
+/// Memory that a tile needs per shape and per invocation. An invocation computes a beam, a slope or a piece of a row.
 struct TileCosts {
   std::uint64_t invocation_bytes = 0;  ///< bytes in all buffers that grow with the invocations of a tile
-  std::uint64_t shape_bytes = 1;   ///< bytes of a shape's node and masking table; without tables 1, not to divide by 0
+  std::uint64_t shape_bytes = 1;   ///< bytes of a shape's node and masking table; 1 without tables, as it is a divisor
   std::uint64_t shape_texels = 0;  ///< texels of a shape's masking table
 };
 
@@ -31,8 +31,8 @@ struct TileSizes {
   std::uint32_t shapes = 1;
 };
 
-/// The CPU driver lavapipe runs this many invocations in lockstep: each loop continues until the last of them is done.
-/// After 65,535 iterations lavapipe stops the group without an error, so its invocations should have equal loop bounds.
+/// The CPU driver lavapipe runs this many invocations in lockstep: a loop lasts until all of them leave it. So
+/// different loop bounds add iterations, and after 65,535 iterations lavapipe stops the group without an error.
 inline constexpr std::uint32_t kLockstep = 16;
 
 /// Consecutive shapes whose masking tables are on the device at a time, and the kernel rows with these shapes.
@@ -48,7 +48,7 @@ struct SlopeBatch {
   std::vector<SlopeSamples> samples;
   std::vector<std::size_t> first;  ///< for each of `samples`, the position of its first slope in `slopes`
   std::vector<kernel::SlopeNode> slopes;
-  std::vector<std::uint32_t> in_lockstep;  ///< positions in `slopes`; each group of kLockstep has equal loop bounds
+  std::vector<std::uint32_t> in_lockstep;  ///< positions in `slopes`, in groups of kLockstep with equal loop bounds
 };
 
 struct DispatchCount {

@@ -194,7 +194,7 @@ std::vector<Result> VulkanEvaluator::compute(const Request& request, const Progr
 
 std::vector<Moments> VulkanEvaluator::evaluate(const MomentsRequest& request, const Progress& progress) {
   std::vector<Moments> moments = compute<Moments>(request, progress);
-  moments.resize(request.size());  // compute() returns nothing if no entry is wanted
+  moments.resize(request.size());  // if no entry is wanted, compute() returns an empty vector
   return moments;
 }
 

@@ -15,7 +15,6 @@ namespace dolp {
 struct VulkanOptions {
   std::string device;  ///< name or position of the device, see choose_device
   bool needs_double = false;
-  /// Any message of the validation layer makes `evaluate` throw DeviceError.
   ValidationMode validation = ValidationMode::kFromEnvironment;
   // The following options do not change results.
   std::uint32_t max_tile_invocations = 65'536;  ///< limit per dispatch; cancelling waits for the end of a dispatch

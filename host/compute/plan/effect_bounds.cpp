@@ -109,8 +109,7 @@ EntriesExtent extent_of_grid(const SceneEntries& entries) {
   return extent;
 }
 
-/// All optics that facets can have: at each wavelength the scene's index and films, and also each index of the entries
-/// with these films.
+/// All optics that facets can have: the scene's at each wavelength, and each index of the entries with these films.
 std::vector<FacetOptics> indices_of(const SpectralRule& rule, const EntriesExtent& extent) {
   std::vector<FacetOptics> indices = rule.indices();
   const std::vector<FacetOptics> samples = indices;

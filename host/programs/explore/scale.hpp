@@ -9,8 +9,7 @@
 
 namespace dolp::explore {
 
-/// A linear or logarithmic range of values. The position of a value is 0 at `from` and 1 at `to`. Call other functions
-/// only if refusal() is empty.
+/// A linear or logarithmic range. The position of a value is 0 at `from`, 1 at `to`. Domain: refusal() returns "".
 struct Scale {
   double from = 0.0;
   double to = 1.0;

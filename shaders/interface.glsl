@@ -1,5 +1,5 @@
 // The interface between host and shaders. Structures have only members of type `real` (float or double), so std430
-// packs them tightly, and the host may treat them as numbers. Members that count something are small integers.
+// packs them tightly and the host may treat them as arrays. Counts are `real`, too. They are exact, as they are small.
 
 // ---- Bindings of descriptor set 0: storage buffers; from DOLP_BINDING_RULE_NODES, texel buffers ---------------------
 #define DOLP_BINDING_THETAS 0         // ThetaNode[]
@@ -23,7 +23,7 @@
 #define DOLP_SPEC_TOTAL_REFLECTION 3  // true if any index has total reflection (IndexNode::critical_cos > 0)
 #define DOLP_SPEC_MULTIPLE 4          // true if rays are followed through all bounces in a groove
 #define DOLP_SPEC_DIRECT 5            // true if the request needs the emission straight to the viewer
-#define DOLP_SPEC_COLUMN_COUNT 6      // number of columns: further sums over the facets, see physics/columns.glsl
+#define DOLP_SPEC_COLUMN_COUNT 6      // number of columns. A column is a sum over the facets, see physics/columns.glsl
 #define DOLP_SPEC_COLUMNS 7           // kind of the columns, DOLP_COLUMNS_*
 #define DOLP_SPEC_CURVES 8            // true if reflectances come from tables, for films and measured reflectances
 
@@ -33,9 +33,9 @@
 #define DOLP_MASKING_V_CAVITY 1u
 #define DOLP_MASKING_INTEGRAL 2u
 #define DOLP_MASKING_SMITH 3u
-#define DOLP_COLUMNS_SKY 0u           // moments times functions of a sky, see physics/columns.glsl
+#define DOLP_COLUMNS_SKY 0u           // integrands of r_i and r_q times a function of the sky, see physics/columns.glsl
 #define DOLP_COLUMNS_RESPONSE 1u      // responses: r_i and r_q with polynomials in the place of the reflectances
-#define DOLP_COLUMNS_SKY_RESPONSE 2u  // responses times a function of a sky
+#define DOLP_COLUMNS_SKY_RESPONSE 2u  // responses, with a function of the sky as a factor of the integrand
 #define DOLP_COLUMNS_DIRECT 3u        // responses of the direct emission
 
 // ---- Push constants of all entry points -----------------------------------------------------------------------------
@@ -50,15 +50,15 @@
 #define DOLP_SKY_START_SHIFT 10
 
 // ---- Task word: the bits that describe the task of an invocation of moments.comp ------------------------------------
-#define DOLP_TASK_MEMBERS_BITS 5u    // from bit 0: number of entries that the invocation computes
-#define DOLP_TASK_PIECE_SHIFT 5u     // from this bit: number of the piece of the slope axis
+#define DOLP_TASK_MEMBERS_BITS 5u    // bits 0 to 4: number of entries that the invocation computes
+#define DOLP_TASK_PIECE_SHIFT 5u     // bits 5 to 10: index of the piece of the slope axis
 #define DOLP_TASK_PIECE_BITS 6u
 #define DOLP_TASK_ROOT_AT_START 11u   // bit: the integrand behaves like a square root at the start of the piece
 #define DOLP_TASK_ROOT_AT_END 12u    // bit: square root at the end of the piece
 #define DOLP_TASK_ROOT_BEFORE_START 13u // bit: square root at the start of the preceding piece
 #define DOLP_TASK_ROOT_AFTER_END 14u // bit: square root at the end of the next piece
-#define DOLP_TASK_SPLIT_LINE 15u     // bit: pieces or arcs end at the kink of smith or `integral` masking (split line)
-#define DOLP_TASK_AZIMUTHS_SHIFT 16u // from this bit: largest number of azimuth nodes on an arc; bounds the loops
+#define DOLP_TASK_SPLIT_LINE 15u     // bit: pieces or arcs are split at the kink of smith or `integral` masking
+#define DOLP_TASK_AZIMUTHS_SHIFT 16u // bits 16 to 31: largest number of azimuth nodes on an arc; bounds the loops
 
 // ---- Sizes ---------------------------------------------------------------------------------------------------------
 #ifndef DOLP_WIDTH
@@ -69,11 +69,11 @@
 #define DOLP_MOST_COLUMNS 0      // largest number of columns in the kernel being compiled; 0 if it has no columns
 #endif
 #define DOLP_COLUMNS 24          // largest number of columns that any kernel computes
-#define DOLP_SKY_FUNCTIONS 8     // largest number of functions of a sky, and of columns in kernels for skies
+#define DOLP_SKY_FUNCTIONS 8     // largest number of functions of a sky; also of columns in the kernels for skies
 #define DOLP_MOST_SKY_CORNERS 24 // largest number of corners of a sky that split the azimuths
 #define DOLP_COLUMN_PARTS 4      // numbers per column: r_i and r_q by the coarser rule, r_i and r_q by the finer rule
 #define DOLP_MAX_PIECES 63       // largest number of pieces of the slope axis for one direction
-#define DOLP_MAX_ARCS 13        // most azimuth arcs at one slope, before total reflection and skies split them further
+#define DOLP_MAX_ARCS 13         // largest number of azimuth arcs; total reflection and skies split these arcs further
 // V-grooves, see physics/groove.glsl
 #define DOLP_STEEPEST_SPLIT 20.0  // for slopes below this, azimuths are split where the number of bounces changes
 #define DOLP_MOST_SPLITS 8       // largest RuleNode::split_bounces
@@ -81,7 +81,7 @@
 #define DOLP_GROUPS_PER_DISTANCE 6 // a group of n > 1 bounces has at least 6 n bounces before it and 5 n after it
 #define DOLP_MOST_DOUBLINGS 12    // a group has at most 2^12 bounces
 #define DOLP_LAST_BOUNCES (DOLP_MOST_BOUNCES << DOLP_MOST_DOUBLINGS)  // a ray with more bounces is absorbed
-#define DOLP_CURVE_NODES 6       // rule nodes (pairs) per cell of a table of reflectances: 3 cubics of 4 coefficients
+#define DOLP_CURVE_NODES 6       // pairs of numbers per cell of a reflectance table: 3 cubics with 4 coefficients each
 #define DOLP_MAX_ORDER 128       // largest order (number of nodes) of a Gauss rule
 #define DOLP_MASKING_OCTAVES 29  // octaves of v = 1 + tau / table_scale in a masking table, where tau is a slope
 #define DOLP_MASKING_CELL_BITS_FLOAT 3   // a masking table has 2^bits cells per octave
@@ -95,14 +95,14 @@ struct RuleNode {
   real digits;            // decimal digits required of the moments
   real t_nodes;           // slope axis: constant part of the number of nodes of a piece
   real t_digits;          // slope axis: a fitted constant, added to the required digits
-  real t_fall;            // slope axis: nodes for each factor e by which the share of steeper facets falls on a piece
-  real phi_nodes;         // azimuth: nodes per radian of an arc, in addition to the nodes for the digits
+  real t_fall;            // slope axis: nodes per factor e by which the share of steeper facets falls within a piece
+  real phi_nodes;         // azimuth: nodes per radian of an arc, in addition to the nodes that the digits require
   real phi_digits;        // azimuth: a fitted constant, added to the required digits
-  real cluster_stretch;   // smith: nodes cluster at the cusp of G at theta_r = 0 if it costs more nodes per digit
-  real split_bounces;     // all bounces: azimuths are split where the number of bounces changes, up to this number
-  real dimmest;           // all bounces: a ray is followed until less than this share of its light is left
-  real cluster_below_q;   // `integral`: if q is below this, nodes cluster at the azimuth where G has a kink
-  real response_scale;    // for responses: 1 / c0; their polynomials resolve most detail at cos(beta) < c0
+  real cluster_stretch;   // smith masking: nodes cluster at the cusp of G if it needs more nodes per digit than this
+  real split_bounces;     // V-grooves: azimuths are split where the number of bounces changes, if it is at most this
+  real dimmest;           // V-grooves: a ray is followed until less than this share of its light is left
+  real cluster_below_q;   // masking `integral`: if q is below this, nodes cluster at the azimuth where G has a kink
+  real response_scale;    // for responses: 1 / c0; their polynomials resolve the finest detail at cos(beta) < c0
   real response_norm;     // for responses: 2 / asinh(1 / c0), see chebyshev_at() in physics/columns.glsl
 };
 

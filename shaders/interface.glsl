@@ -102,12 +102,12 @@ struct RuleNode {
   real split_bounces;     // V-grooves: azimuths are split where the number of bounces changes, if it is at most this
   real dimmest;           // V-grooves: a ray is followed until less than this share of its light is left
   real cluster_below_q;   // masking `integral`: if q is below this, nodes cluster at the azimuth where G has a kink
-  real response_scale;    // for responses: 1 / c0; their polynomials resolve the finest detail at cos(beta) < c0
-  real response_norm;     // for responses: 2 / asinh(1 / c0), see chebyshev_at() in physics/columns.glsl
+  real response_scale;    // responses, see chebyshev_at(): 1 / c0. They resolve the finest detail at cos(beta) < c0
+  real response_norm;     // responses, see chebyshev_at() in physics/columns.glsl: 2 / asinh(1 / c0)
 };
 
-// One direction theta, and the pieces of the slope axis t = tan(alpha) on which the integrand is smooth. A direction
-// has several ThetaNodes if indices with total reflection, or some slope distributions, need other pieces.
+// One direction theta, and the pieces of the slope axis t = tan(alpha) on which the integrand is smooth. The pieces may
+// depend on the index or on the slope distribution. Then the direction has one ThetaNode for each set of pieces.
 struct ThetaNode {
   real c;                         // cos(theta)
   real s;                         // sin(theta)
@@ -133,7 +133,7 @@ struct ShapeNode {
   real scale;          // the slope t is mapped to X with t = scale sinh(X)
   real cut;            // slopes above this one are left out
   real table_scale;    // the variable of the masking table is v = 1 + tau / table_scale, where tau is a slope
-  real cusp_digits;    // smith: log10 of the relative error of Lambda if no rule is split at its cusp, theta_r = 0
+  real cusp_digits;    // smith: log10 of the relative error of rules that are not split at Lambda's cusp, theta_r = 0
 };
 
 struct IndexNode {
@@ -144,7 +144,7 @@ struct IndexNode {
   real branch_re;     // complex cos(beta) at which w = sqrt(N^2 - sin^2(beta)) is 0: i sqrt(N^2 - 1), with re, im >= 0
   real branch_im;
   real critical_cos;  // cos(beta) at which total reflection begins, sqrt(1 - Re N^2), if k is 0 or small; else 0
-  real curve_start;   // position of the table of reflectances among the rule nodes
+  real curve_start;   // position of the table of reflectances in the buffer DOLP_BINDING_RULE_NODES
   real curve_cells;   // number of cells of the table of reflectances; 0 without a table
 };
 
@@ -164,8 +164,8 @@ struct GeometryNode {
 // One pair of directions. The host computes the geometry, the reflection of the facet and the density in double.
 struct BeamNode {
   GeometryNode g;
-  ShapeNode shape;  // with the scale and the cut that physics/in_plane.glsl needs
-  real density;     // D(alpha) / 4 [1/sr] over 2^Beam::power, so that a float can hold it: 0 or in [1/2, 1)
+  ShapeNode shape;  // its members `scale` and `cut` serve the masking integral in physics/in_plane.glsl
+  real density;     // D(alpha) / 4 in 1/sr, divided by 2^Beam::power. The quotient fits a float: 0 or in [1/2, 1)
   // Mueller matrix of the facet in the frame of the facet, with r_s* r_p = cross_re + i cross_im:
   // [m00 m01 0 0; m01 m00 0 0; 0 0 cross_re -cross_im; 0 0 cross_im cross_re].
   real m00;
@@ -199,7 +199,7 @@ struct MomentsNode {
   real r_q;
   real albedo;
   real deficit;
-  real behind;               // slope_sums() computes `deficit` as another sum minus this sum; for its error bound
+  real behind;               // slope_sums() subtracts it to get `deficit`. Error bounds need it: digits are lost
   real many;                 // part of r_i from grooves with more bounces than DOLP_MOST_BOUNCES
   real direct_i;             // direct emission
   real direct_q;

@@ -1,5 +1,5 @@
 // The interface between host and shaders. Structures have only members of type `real` (float or double), so std430
-// packs them tightly, and the host may treat them as numbers. Members that count something are small integers.
+// packs them tightly and the host may treat them as arrays. Counts are `real`, too. They are exact, as they are small.
 
 // ---- Bindings of descriptor set 0: storage buffers; from DOLP_BINDING_RULE_NODES, texel buffers ---------------------
 #define DOLP_BINDING_THETAS 0         // ThetaNode[]
@@ -23,7 +23,7 @@
 #define DOLP_SPEC_TOTAL_REFLECTION 3  // true if any index has total reflection (IndexNode::critical_cos > 0)
 #define DOLP_SPEC_MULTIPLE 4          // true if rays are followed through all bounces in a groove
 #define DOLP_SPEC_DIRECT 5            // true if the request needs the emission straight to the viewer
-#define DOLP_SPEC_COLUMN_COUNT 6      // number of columns: further sums over the facets, see physics/columns.glsl
+#define DOLP_SPEC_COLUMN_COUNT 6      // number of columns. A column is a sum over the facets, see physics/columns.glsl
 #define DOLP_SPEC_COLUMNS 7           // kind of the columns, DOLP_COLUMNS_*
 #define DOLP_SPEC_CURVES 8            // true if reflectances come from tables, for films and measured reflectances
 
@@ -33,9 +33,9 @@
 #define DOLP_MASKING_V_CAVITY 1u
 #define DOLP_MASKING_INTEGRAL 2u
 #define DOLP_MASKING_SMITH 3u
-#define DOLP_COLUMNS_SKY 0u           // moments times functions of a sky, see physics/columns.glsl
+#define DOLP_COLUMNS_SKY 0u           // integrands of r_i and r_q times a function of the sky, see physics/columns.glsl
 #define DOLP_COLUMNS_RESPONSE 1u      // responses: r_i and r_q with polynomials in the place of the reflectances
-#define DOLP_COLUMNS_SKY_RESPONSE 2u  // responses times a function of a sky
+#define DOLP_COLUMNS_SKY_RESPONSE 2u  // responses, with a function of the sky as a factor of the integrand
 #define DOLP_COLUMNS_DIRECT 3u        // responses of the direct emission
 
 // ---- Push constants of all entry points -----------------------------------------------------------------------------
@@ -50,15 +50,15 @@
 #define DOLP_SKY_START_SHIFT 10
 
 // ---- Task word: the bits that describe the task of an invocation of moments.comp ------------------------------------
-#define DOLP_TASK_MEMBERS_BITS 5u    // from bit 0: number of entries that the invocation computes
-#define DOLP_TASK_PIECE_SHIFT 5u     // from this bit: number of the piece of the slope axis
+#define DOLP_TASK_MEMBERS_BITS 5u    // bits 0 to 4: number of entries that the invocation computes
+#define DOLP_TASK_PIECE_SHIFT 5u     // bits 5 to 10: index of the piece of the slope axis
 #define DOLP_TASK_PIECE_BITS 6u
 #define DOLP_TASK_ROOT_AT_START 11u   // bit: the integrand behaves like a square root at the start of the piece
 #define DOLP_TASK_ROOT_AT_END 12u    // bit: square root at the end of the piece
 #define DOLP_TASK_ROOT_BEFORE_START 13u // bit: square root at the start of the preceding piece
 #define DOLP_TASK_ROOT_AFTER_END 14u // bit: square root at the end of the next piece
-#define DOLP_TASK_SPLIT_LINE 15u     // bit: pieces or arcs end at the kink of smith or `integral` masking (split line)
-#define DOLP_TASK_AZIMUTHS_SHIFT 16u // from this bit: largest number of azimuth nodes on an arc; bounds the loops
+#define DOLP_TASK_SPLIT_LINE 15u     // bit: pieces or arcs are split at the kink of smith or `integral` masking
+#define DOLP_TASK_AZIMUTHS_SHIFT 16u // bits 16 to 31: largest number of azimuth nodes on an arc; bounds the loops
 
 // ---- Sizes ---------------------------------------------------------------------------------------------------------
 #ifndef DOLP_WIDTH
@@ -69,11 +69,11 @@
 #define DOLP_MOST_COLUMNS 0      // largest number of columns in the kernel being compiled; 0 if it has no columns
 #endif
 #define DOLP_COLUMNS 24          // largest number of columns that any kernel computes
-#define DOLP_SKY_FUNCTIONS 8     // largest number of functions of a sky, and of columns in kernels for skies
+#define DOLP_SKY_FUNCTIONS 8     // largest number of functions of a sky; also of columns in the kernels for skies
 #define DOLP_MOST_SKY_CORNERS 24 // largest number of corners of a sky that split the azimuths
 #define DOLP_COLUMN_PARTS 4      // numbers per column: r_i and r_q by the coarser rule, r_i and r_q by the finer rule
 #define DOLP_MAX_PIECES 63       // largest number of pieces of the slope axis for one direction
-#define DOLP_MAX_ARCS 13        // most azimuth arcs at one slope, before total reflection and skies split them further
+#define DOLP_MAX_ARCS 13         // largest number of azimuth arcs; total reflection and skies split these arcs further
 // V-grooves, see physics/groove.glsl
 #define DOLP_STEEPEST_SPLIT 20.0  // for slopes below this, azimuths are split where the number of bounces changes
 #define DOLP_MOST_SPLITS 8       // largest RuleNode::split_bounces
@@ -81,7 +81,7 @@
 #define DOLP_GROUPS_PER_DISTANCE 6 // a group of n > 1 bounces has at least 6 n bounces before it and 5 n after it
 #define DOLP_MOST_DOUBLINGS 12    // a group has at most 2^12 bounces
 #define DOLP_LAST_BOUNCES (DOLP_MOST_BOUNCES << DOLP_MOST_DOUBLINGS)  // a ray with more bounces is absorbed
-#define DOLP_CURVE_NODES 6       // rule nodes (pairs) per cell of a table of reflectances: 3 cubics of 4 coefficients
+#define DOLP_CURVE_NODES 6       // pairs of numbers per cell of a reflectance table: 3 cubics with 4 coefficients each
 #define DOLP_MAX_ORDER 128       // largest order (number of nodes) of a Gauss rule
 #define DOLP_MASKING_OCTAVES 29  // octaves of v = 1 + tau / table_scale in a masking table, where tau is a slope
 #define DOLP_MASKING_CELL_BITS_FLOAT 3   // a masking table has 2^bits cells per octave
@@ -95,19 +95,19 @@ struct RuleNode {
   real digits;            // decimal digits required of the moments
   real t_nodes;           // slope axis: constant part of the number of nodes of a piece
   real t_digits;          // slope axis: a fitted constant, added to the required digits
-  real t_fall;            // slope axis: nodes for each factor e by which the share of steeper facets falls on a piece
-  real phi_nodes;         // azimuth: nodes per radian of an arc, in addition to the nodes for the digits
+  real t_fall;            // slope axis: nodes per factor e by which the share of steeper facets falls within a piece
+  real phi_nodes;         // azimuth: nodes per radian of an arc, in addition to the nodes that the digits require
   real phi_digits;        // azimuth: a fitted constant, added to the required digits
-  real cluster_stretch;   // smith: nodes cluster at the cusp of G at theta_r = 0 if it costs more nodes per digit
-  real split_bounces;     // all bounces: azimuths are split where the number of bounces changes, up to this number
-  real dimmest;           // all bounces: a ray is followed until less than this share of its light is left
-  real cluster_below_q;   // `integral`: if q is below this, nodes cluster at the azimuth where G has a kink
-  real response_scale;    // for responses: 1 / c0; their polynomials resolve most detail at cos(beta) < c0
-  real response_norm;     // for responses: 2 / asinh(1 / c0), see chebyshev_at() in physics/columns.glsl
+  real cluster_stretch;   // smith masking: nodes cluster at the cusp of G if it needs more nodes per digit than this
+  real split_bounces;     // V-grooves: azimuths are split where the number of bounces changes, if it is at most this
+  real dimmest;           // V-grooves: a ray is followed until less than this share of its light is left
+  real cluster_below_q;   // masking `integral`: if q is below this, nodes cluster at the azimuth where G has a kink
+  real response_scale;    // responses, see chebyshev_at(): 1 / c0. They resolve the finest detail at cos(beta) < c0
+  real response_norm;     // responses, see chebyshev_at() in physics/columns.glsl: 2 / asinh(1 / c0)
 };
 
-// One direction theta, and the pieces of the slope axis t = tan(alpha) on which the integrand is smooth. A direction
-// has several ThetaNodes if indices with total reflection, or some slope distributions, need other pieces.
+// One direction theta, and the pieces of the slope axis t = tan(alpha) on which the integrand is smooth. The pieces may
+// depend on the index or on the slope distribution. Then the direction has one ThetaNode for each set of pieces.
 struct ThetaNode {
   real c;                         // cos(theta)
   real s;                         // sin(theta)
@@ -133,7 +133,7 @@ struct ShapeNode {
   real scale;          // the slope t is mapped to X with t = scale sinh(X)
   real cut;            // slopes above this one are left out
   real table_scale;    // the variable of the masking table is v = 1 + tau / table_scale, where tau is a slope
-  real cusp_digits;    // smith: log10 of the relative error of Lambda if no rule is split at its cusp, theta_r = 0
+  real cusp_digits;    // smith: log10 of the relative error of rules that are not split at Lambda's cusp, theta_r = 0
 };
 
 struct IndexNode {
@@ -144,7 +144,7 @@ struct IndexNode {
   real branch_re;     // complex cos(beta) at which w = sqrt(N^2 - sin^2(beta)) is 0: i sqrt(N^2 - 1), with re, im >= 0
   real branch_im;
   real critical_cos;  // cos(beta) at which total reflection begins, sqrt(1 - Re N^2), if k is 0 or small; else 0
-  real curve_start;   // position of the table of reflectances among the rule nodes
+  real curve_start;   // position of the table of reflectances in the buffer DOLP_BINDING_RULE_NODES
   real curve_cells;   // number of cells of the table of reflectances; 0 without a table
 };
 
@@ -164,8 +164,8 @@ struct GeometryNode {
 // One pair of directions. The host computes the geometry, the reflection of the facet and the density in double.
 struct BeamNode {
   GeometryNode g;
-  ShapeNode shape;  // with the scale and the cut that physics/in_plane.glsl needs
-  real density;     // D(alpha) / 4 [1/sr] over 2^Beam::power, so that a float can hold it: 0 or in [1/2, 1)
+  ShapeNode shape;  // its members `scale` and `cut` serve the masking integral in physics/in_plane.glsl
+  real density;     // D(alpha) / 4 in 1/sr, divided by 2^Beam::power. The quotient fits a float: 0 or in [1/2, 1)
   // Mueller matrix of the facet in the frame of the facet, with r_s* r_p = cross_re + i cross_im:
   // [m00 m01 0 0; m01 m00 0 0; 0 0 cross_re -cross_im; 0 0 cross_im cross_re].
   real m00;
@@ -199,7 +199,7 @@ struct MomentsNode {
   real r_q;
   real albedo;
   real deficit;
-  real behind;               // slope_sums() computes `deficit` as another sum minus this sum; for its error bound
+  real behind;               // slope_sums() subtracts it to get `deficit`. Error bounds need it: digits are lost
   real many;                 // part of r_i from grooves with more bounces than DOLP_MOST_BOUNCES
   real direct_i;             // direct emission
   real direct_q;

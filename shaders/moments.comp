@@ -2,14 +2,14 @@
 #extension GL_GOOGLE_include_directive : require
 // Computes one piece of the slope axis for a row of DOLP_WIDTH entries that differ only in the exponent q.
 
-// Scenes with all bounces use slopes.comp. Without the code for grooves, drivers compile this kernel faster.
+// This macro leaves out the code for several bounces, which only slopes.comp needs. So drivers compile faster.
 #define DOLP_SINGLE_SCATTERING
 #include "physics/prelude.glsl"
 #include "interface.glsl"
 #include "physics/buffers.glsl"
 
 #if DOLP_MOST_COLUMNS > 0
-// The columns follow all MomentsNodes: DOLP_COLUMN_PARTS numbers for each column of each entry.
+// The columns (physics/columns.glsl) follow all MomentsNodes: DOLP_COLUMN_PARTS numbers per column and entry.
 layout(std430, binding = DOLP_BINDING_MOMENTS) writeonly buffer ColumnsOut { real columns_out[]; };
 
 void store_column(uint position, real value) {

@@ -31,7 +31,7 @@ using Emitted = Values<kCount>;
 
 using Absorption = std::function<FresnelCoefficients(double cos_beta)>;
 
-// The emission of all facets toward one direction. Errors are relative to it; if `is_response`, to cos(theta).
+// The emission of all facets toward one direction. Tolerances are relative to it or, if `is_response`, to cos(theta).
 class Facets {
  public:
   Facets(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants, Absorption absorption,
@@ -151,7 +151,7 @@ Moments direct_emission(const Slopes& slopes, Masking masking, double theta_deg,
 Moments direct_response(const Slopes& slopes, Masking masking, double theta_deg,
                         const std::function<double(double cos_beta)>& curve, double bend,
                         const Refinement& refinement) {
-  const FacetOptics bent{1.0 / bend, 0.0};  // an index whose Brewster angle is near the bend of `curve`
+  const FacetOptics bent{1.0 / bend, 0.0};  // its Brewster angle splits the integral near the bend of `curve`
   const auto absorption = [&](double cos_beta) -> FresnelCoefficients {
     const double sin2_beta = (1.0 - cos_beta) * (1.0 + cos_beta);
     const double f = curve(cos_beta);

@@ -26,13 +26,13 @@ constexpr double kDark = 1e-24;  // light of lower intensity is not followed
 constexpr int kMostFollowed = 2000;
 constexpr double kSteepest = 1e15;
 constexpr double kSteeper = 1.5;
-// The integral over slopes ends at a largest slope. The program assumes that steeper grooves reflect at most kTailRoom
-// times as much as a groove of this slope. A steeper groove may reflect more if the number of bounces jumps.
+// The integral over slopes ends at a largest slope. Steeper grooves may reflect more, as their light bounces more often
+// or less often. The program assumes that they reflect at most kTailRoom times as much as a groove of this slope.
 constexpr double kTailRoom = 2.0;
-constexpr double kTailShare = 0.01;     // share of the tolerance for the error due to grooves that are not integrated
+constexpr double kTailShare = 0.01;     // share of the tolerance for the light of grooves beyond the largest slope
 constexpr double kStepsPerGamma = 3.0;  // ScanSteps::per_gamma
-// The integral over slopes is split at bends, but not above the slope kSteepestBends, and not where less than the share
-// kBendShare of the integral remains. The bends at steeper slopes are many and small.
+// The integral over slopes is split at bends up to a slope: kSteepestBends or, if smaller, the slope beyond which less
+// than the share kBendShare of the light is reflected. The bends at steeper slopes are many and small.
 constexpr double kBendShare = 1e-2;
 constexpr double kSteepestBends = 10.0;
 // An integration is abandoned after kMostBounces bounces (two seconds) and repeated with kLessAmbitious times the
@@ -49,7 +49,7 @@ constexpr int kLookShares = 16;
 constexpr int kLookAzimuths = 16;
 constexpr double kLookSteepest = 50.0;
 
-// kReflected includes kLost: light after kMostFollowed bounces, which may or may not leave the groove.
+// kLost is the light that is left after kMostFollowed bounces. It may leave the groove. kReflected includes it.
 enum Component : std::size_t {
   kAlbedo,
   kReflected,
@@ -101,9 +101,9 @@ void follow(const Groove<double>& groove, const SlopePoint& point, const Vector3
   }
 }
 
-// A number that differs on both sides of a bend of the integrand (see Regime): a hash over the bounces of a beam. Each
-// bounce adds three facts: whether no light, some light or all light leaves the groove; on which side of each special
-// angle the angle of incidence lies; how many kinks of the sky have a smaller zenith than the light that leaves.
+// A Regime: a number that changes at a bend of the integrand. It is a hash over the bounces of a beam. Each bounce
+// adds three facts: whether no light, some light or all light leaves the groove; on which side of each special angle
+// the angle of incidence lies; how many kinks of the sky have a smaller zenith than the light that leaves.
 std::uint64_t history(const SlopePoint& point, const Vector3& omega, Facet first, const SpecialAngles& special,
                       const SkyFunction* sky) {
   constexpr std::uint64_t kPrime = 1099511628211U;
@@ -186,7 +186,7 @@ class Surveyor {
     m.r_q = integral.value[kPolarised];
     m.deficit = integral.value[kAbsorbed] + (tail_weight - 0.5 * tail_most) + half_lost;
     m.albedo_error = error_of(kAlbedo) + kRounding * tail_weight;
-    // Amplitudes have an absolute rounding error, so their squares have a large relative error if N is near 1.
+    // Amplitudes have an absolute rounding error, so their squares have a large relative error if the index is near 1.
     const double amplitude_error = kRounding * (std::sqrt(m.r_i * m.albedo) + kRounding * m.albedo);
     m.r_i_error = error_of(kReflected) + unknown + amplitude_error;
     m.r_q_error = std::max(error_of(kPolarised), error_of(kReflected)) + 2.0 * unknown + amplitude_error;
@@ -232,7 +232,7 @@ class Surveyor {
     double bends;  ///< the integral over slopes is split at bends up to this slope
     double all;    ///< the integral over slopes ends at this slope
   };
-  // The integral ends where the rest is negligible, or where most of the reflected light has too many bounces.
+  // The integral ends where its rest is negligible or where most reflected light needs more than kMostFollowed bounces.
   Ends ends(const GrooveValues& expected) {
     const double scale = std::min(expected[kReflected], expected[kAbsorbed]);
     Ends ends{kSteepestBends, kSteepest};

@@ -1,7 +1,7 @@
-// Integrals over the zenith theta_r and the azimuth Delta_phi of the reflected ray, for a fixed zenith theta. Let mean
-// = (theta + theta_r)/2, t = tan((theta_r - theta)/2), delta = pi - Delta_phi and s2 = sin^2(delta/2). Then the angle
-// of incidence beta and the tilt alpha of the facet, equations (2) and (3) of Wang, Li, Wang 2025, are sums of
-// non-negative terms, in which no digits cancel:
+// Integrals over the zenith theta_r and the azimuth Delta_phi of the reflected ray, for a fixed zenith theta. Symbols:
+// mean = (theta + theta_r)/2, t = tan((theta_r - theta)/2), delta = pi - Delta_phi, s2 = sin^2(delta/2). The angle of
+// incidence beta and the tilt alpha of the facet follow from equations (2) and (3) of Wang, Li, Wang 2025, here as sums
+// of non-negative terms, in which no digits cancel:
 //   cos^2 beta  = cos^2 mean + sin(theta) sin(theta_r) s2
 //   sin^2 beta  = t^2/(1 + t^2) + sin(theta) sin(theta_r) cos^2(delta/2)
 //   tan^2 alpha = t^2 + (1 + t^2) sin(theta) sin(theta_r) s2 / cos^2 mean
@@ -25,11 +25,11 @@ namespace {
 
 constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// If less than this share of the albedo is absorbed, the error of the absorbed part is relative to this share.
+// The tolerance of the absorbed part is relative to this part or, if it is larger, to this share of the albedo.
 constexpr double kSmallAbsorbed = 1e-2;
-// Relative error of elevations above the horizon, even tiny ones (test ReferenceMoments_NextToGrazing_KeepTheirDigits).
+// Relative rounding error of an elevation, however small (test ReferenceMoments_NextToGrazing_KeepTheirDigits).
 constexpr double kElevationRounding = 32.0 * std::numeric_limits<double>::epsilon();
-// At theta = 90 degrees the integral over theta_r ends this far from the horizon. A power law gives the rest.
+// At theta = 90 degrees the integral over u (zenith_breaks()) ends at -kHorizonGap. A power law gives its rest up to 0.
 constexpr double kHorizonGap = 1e-30;
 // If theta is this close to the horizon, the integral over theta_r gets additional break points near the horizon.
 constexpr double kNearHorizon_rad = 1e-3;
@@ -57,8 +57,8 @@ Values<N> moment_scales(const Values<N>& value) {
 template <std::size_t K>
 class Hemisphere {
  public:
-  // Inner integral, over the azimuth: the moments, r_i for each of K curves, and r_q for each curve. Outer integral:
-  // also r_i and r_q with the sky's function as a factor, and the sums of the errors of the inner integrals.
+  // The inner integral, over the azimuth, gives the moments, r_i for each of K curves and r_q for each curve. The outer
+  // integral, over the zenith, adds r_i and r_q with the factor sky_->value(), and the errors of the inner integrals.
   static constexpr std::size_t kAzimuthCount = kMomentCount + 2 * K;
   static constexpr std::size_t kSkyReflected = kAzimuthCount;
   static constexpr std::size_t kSkyPolarised = kAzimuthCount + 1;
@@ -116,8 +116,8 @@ class Hemisphere {
     Attenuation attenuation;
   };
   // Break points of the outer integral. Its variable is u, with tan((theta_r - theta)/2) = width sinh(u). Among the
-  // break points are the specular direction u = 0, kinks of the sky, and the values of theta_r at which a break point
-  // of the inner integral lies at Delta_phi = 180 or 0 degrees.
+  // break points are the specular direction u = 0, kinks of the sky, and those theta_r at which a break point of the
+  // inner integral appears or vanishes at an end of its range, Delta_phi = 180 or 0 degrees.
   Breaks zenith_breaks() const {
     const double width = slopes_.width();
     Breaks breaks(std::asinh(-std::tan(0.5 * theta_rad_) / width),
@@ -149,10 +149,10 @@ class Hemisphere {
     return breaks;
   }
 
-  // Break points of the azimuth:
+  // Break points of the integral over the azimuth are the azimuths at which:
   //   beta is one of special_beta_rad()
   //   v-cavity masking reaches 1: (cos theta + cos theta_r) min(cos theta, cos theta_r) = cos^2 beta
-  //   `integral` masking (IntegralMasking): alpha = 2 max(theta, theta_r) - pi/2, where the limit b reaches pi/2
+  //   the limit b of `integral` masking (see IntegralMasking) reaches pi/2: alpha = 2 max(theta, theta_r) - pi/2
   Breaks azimuth_breaks(const Row& row, double width) const {
     Breaks breaks(0.0, std::asinh(1.0 / width));
     const auto add_s2 = [&](double s2) {
@@ -293,8 +293,8 @@ double amplitude_rounding(double reflected, double albedo) {
   return kRounding * (2.0 * std::sqrt(reflected * albedo) + kRounding * albedo);
 }
 
-// Errors of the outer and inner integrals, plus the error of G and rounding, which are both relative to `magnitude`.
-// The tolerance of G_1 is absolute. G_1 is at least 1/2, so its relative error is at most twice this tolerance.
+// Sum of the errors of the outer and inner integrals, of the masking G and of rounding. The last two are relative to
+// `magnitude`. G_1 is at least 1/2, so its relative error is at most twice its absolute tolerance.
 template <std::size_t N>
 double error_of(const Integral<N>& integral, std::size_t k, double magnitude, const Refinement& refinement) {
   const double masking_error = 2.0 * masking_tolerance_for(refinement);
@@ -345,7 +345,7 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
   moments.albedo_error = error_at(kAlbedo);
   moments.r_i_error = error_at(kReflected) + amplitude_error;
   moments.r_q_error = error_at(kPolarised) + amplitude_error;
-  // The deficit has two formulas. cos(theta) - r_i is more accurate if little light is reflected.
+  // The deficit is the light that is not reflected. Of its two formulas, cos(theta) - r_i is better if r_i is small.
   const double direct_error = moments.r_i_error + kRounding * cos_theta;
   const double split_error = moments.albedo_error + error_at(kAbsorbed) + kRounding * cos_theta;
   const bool is_split = split_error < direct_error;
@@ -363,7 +363,7 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
 
 std::vector<ColumnMoments> hemisphere_responses(const Slopes& slopes, Masking masking, double theta_deg,
                                                 const Curves& curves, double bend, const Refinement& refinement) {
-  const FacetOptics bent{1.0 / bend, 0.0};  // an index whose Brewster angle is near the bend of `curves`
+  const FacetOptics bent{1.0 / bend, 0.0};  // its Brewster angle splits the integrals near the bend of `curves`
   const auto integral =
       Hemisphere<kCurves>(slopes, masking, theta_deg, bent, refinement, nullptr, &curves).integrate_zenith();
   std::vector<ColumnMoments> columns;

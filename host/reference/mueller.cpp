@@ -32,7 +32,7 @@ constexpr double kRetro = 1e-50;  // if sin^2(2 beta) is smaller, the plane of i
 constexpr double kMirrored = 1e-50;
 constexpr int kMostMuellerBounces = 2000;
 constexpr int kMostInQuad = 24;  // light with more bounces is weak, so it is computed in double
-// The sum over bounces ends if its last kIdleBounces terms together are at most the share kIdleShare of it.
+// The sum over bounces ends when its latest kIdleBounces terms together are at most the share kIdleShare of the sum.
 constexpr int kIdleBounces = 8;
 constexpr double kIdleShare = 1e-14;
 
@@ -86,8 +86,8 @@ reference::Amplitudes<Number> fresnel_amplitudes(const FacetOptics& constants,
   return {(cos_beta - w) / (cos_beta + w), (n2 * cos_beta - w) / (n2 * cos_beta + w)};
 }
 
-// Column 0: (s, p) amplitudes after reflection of an s wave of amplitude 1; column 1: after reflection of a p wave.
-// In the retro direction any vector in the facet may be `facet_s`, because r_p = -r_s.
+// Column 0: s and p amplitudes after reflection of an s wave of amplitude 1. Column 1: the same for a p wave. If light
+// goes straight back, the plane of incidence is undefined. Any direction in the facet can be facet_s, as r_p = -r_s.
 Jones<Complex> jones_matrix(const BeamFrame& in, const BeamFrame& out, const reference::Amplitudes<Complex>& r) {
   const Vector normal = cross(in.k, out.k);
   const Vector facet_s = dot(normal, normal) > kRetro ? unit(normal) : in.s;
@@ -179,7 +179,7 @@ Number along(const RealVector<Number>& a, const std::array<Number, 3>& e) {
   return a[0] * e[0] + a[1] * e[1] + a[2] * e[2];
 }
 
-// The part of reference_bounces() in one plane, for the beam that meets facet A first. `Number` is a complex type.
+// What the grooves of one GroovePlane add to reference_bounces(). Light meets facet A first. `Number`: a complex type.
 template <class Number>
 ReferenceMueller bounces_in_plane(const reference::Slopes& slopes, const FacetOptics& constants, const BeamFrame& in,
                                   const BeamFrame& out, const GroovePlane& plane, int bounces) {
@@ -208,7 +208,7 @@ ReferenceMueller bounces_in_plane(const reference::Slopes& slopes, const FacetOp
   return scaled_matrix(mueller_from_jones(jones), slopes.facet_density(cotangent * cotangent) * factor);
 }
 
-/// Two beams, and both planes across grooves that reflect one beam into the other (GroovePlane with `sign` 1 and -1).
+/// Two beams, and the planes across the two kinds of grooves that reflect one beam into the other (`sign` 1 and -1).
 struct GroovePair {
   BeamFrame in, out;
   GroovePlane toward, against;
@@ -264,7 +264,7 @@ BouncesSum reference_all_bounces(const Surface& surface, const FacetOptics& cons
     for (const double value : latest) recent += value;
     if (k >= kIdleBounces && recent <= kIdleShare * sum.matrix[0][0]) return sum;
   }
-  // A bound of the sum of all further terms, if they fall at least like k^(-9/8) or by the factor 0.9999 per bounce.
+  // If the further terms fall at least like k^(-9/8) or by the factor 0.9999 per bounce, their sum is below this bound.
   sum.error = recent * kMostMuellerBounces;
   return sum;
 }

@@ -159,7 +159,7 @@ ScatteringMatrix matrix_of(const ScatteringRequest& request, const ScatteringEnt
   return matrix;
 }
 
-// Tolerance of the integrals: a hundredth of `requested`, within limits. If `requested` is 0, that of the options.
+// Tolerance of the integrals: a hundredth of `requested`, within limits. If `requested` is 0, the one of `options`.
 double relative_tolerance(const ReferenceOptions& options, double requested) {
   if (requested <= 0.0) return options.relative_tolerance;
   return std::min(0.5 * requested, std::max(options.relative_tolerance, 0.01 * requested));

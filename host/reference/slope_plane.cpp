@@ -10,14 +10,14 @@ constexpr int kBisections = 60;
 constexpr int kMostSteps = 150;
 constexpr int kPlainSteps = 12;
 constexpr std::size_t kMostBends = 40;  // if there are more bends, each is tiny, and chi_breaks() ignores them
-// t_breaks() computes the regime at kStepsPerDecade slopes t per decade. It also takes steps of kStepInverse in
-// 1 / gamma, from 1 to kMostInverse, where gamma is the half-angle of the groove: t = cot(gamma).
+// t_breaks() computes the regime at kStepsPerDecade slopes t per decade. It adds slopes at which 1 / gamma rises from 1
+// to kMostInverse in steps of kStepInverse. gamma is the half-angle of the groove, t = cot(gamma).
 constexpr double kStepInverse = 0.04;
 constexpr double kMostInverse = 10.0;
 constexpr int kStepsPerDecade = 16;
 constexpr double kSmallestShare = 1e-7;  // smallest scanned slope, relative to the width of the distribution
-// For grazing views the integrand varies quickly in a layer: where chi or t is below about cot(theta). If the layer is
-// thinner than kThinLayer, break points are added: the first at cot(theta), each next one kPlaneLayerGrowth times it.
+// For grazing views the integrand varies quickly where chi or t is below about cot(theta). Break points are added at
+// cot(theta) and at its products with powers of kPlaneLayerGrowth, up to kThinLayer for chi, kThinLayer * width for t.
 constexpr double kThinLayer = 0.05;
 constexpr double kPlaneLayerGrowth = 8.0;
 

@@ -113,7 +113,7 @@ Azimuth azimuth(Arc arc, real2 node) {
 struct SplitLines {
   real2 end[DOLP_MAX_ARCS];  // end of each arc; the first begins at phi = 0
   int arcs;
-  int leaving;     // number of arcs whose reflected ray leaves the surface
+  int leaving;     // number of arcs, counted from phi = 0, on which the reflected ray leaves the surface
   real2 horizon;   // theta_r = 90 degrees; beyond it the reflected ray does not leave
   real2 critical;  // here total reflection begins; the integrand has a square root on both sides
 };

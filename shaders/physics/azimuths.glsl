@@ -6,15 +6,15 @@ struct Slope {
   int most_azimuths;
   bool is_coarse;
   SkyPlace sky;
-  real weight[DOLP_WIDTH];  // for each entry of the row (row.glsl): weight of the slope in AzimuthSums::columns
+  real weight[DOLP_WIDTH];  // factor of this slope in AzimuthSums::columns, for each entry of the row (row.glsl)
 };
 
 // Sums over azimuths. `member` holds (r_i, r_q, albedo, deficit) for each entry of a row.
 struct AzimuthSums {
   real4 member[DOLP_WIDTH];
-  Columns columns[DOLP_WIDTH];  // include the sums over the slopes and arcs before this one
+  Columns columns[DOLP_WIDTH];  // running sums, which include all earlier slopes and arcs
   real2 direct;       // (I, Q) of the direct emission, not yet multiplied by smith masking
-  real behind;        // slope_sums() subtracts it to compute the deficit; the error bound needs it, too
+  real behind;        // s t sin(phi) at the horizon, subtracted from the deficit; error bounds cover the lost digits
   real evaluations;
 };
 
@@ -40,7 +40,7 @@ real sine_of_ray(ThetaNode theta, Row row, Facet f, real t, Azimuth at) {
   return sqrt(along * along + across * across);
 }
 
-// Factors of the integrand in the two sums of a column (columns.glsl): x in the sum like r_i, y in the sum like r_q.
+// Factors of the integrand in the two sums of a column (columns.glsl): x for Columns::i, y for Columns::q.
 real2 column_factors(Slope slope, Facet f) {
   if (kColumns == DOLP_COLUMNS_SKY) return real2(f.m00, f.m01);
   real sky = (kColumns == DOLP_COLUMNS_SKY_RESPONSE) ? sky_function(slope.sky, 0, f.cos_r) : real(1.0);

@@ -13,7 +13,7 @@ layout(constant_id = DOLP_SPEC_CURVES) const bool kHasCurves = false;
 #if DOLP_MOST_COLUMNS > 0
 layout(constant_id = DOLP_SPEC_COLUMN_COUNT) const uint kColumnCount = 0u;
 layout(constant_id = DOLP_SPEC_COLUMNS) const uint kColumns = DOLP_COLUMNS_SKY;
-// Number of functions in the table of a sky: one for each column (columns.glsl), or one in all for responses.
+// Number of functions in the table of a sky: one for each column, but only one for all responses (columns.glsl).
 int sky_functions() { return kColumns == DOLP_COLUMNS_SKY ? int(kColumnCount) : 1; }
 #else
 const uint kColumns = DOLP_COLUMNS_SKY;

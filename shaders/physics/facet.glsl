@@ -45,7 +45,7 @@ Facet facet(ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
   return result;
 }
 
-// A facet's projection e in two parts: visible e G, hidden e (1 - G). Computed as e minus visible, hidden loses digits.
+// A facet's projection e in two parts: visible e G and hidden e (1 - G). Both are stored, because 1 - G loses digits.
 struct Projection {
   real visible;
   real hidden;

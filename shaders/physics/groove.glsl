@@ -9,16 +9,16 @@
 //   cos(beta_k) = X_k is the cosine of the angle of incidence,
 //   eta_k turns the plane of incidence: (cos(eta_k), sin(eta_k)) is proportional to (Y_k, b X_k).
 // The fields are mirrored, too. So bounce k turns the Stokes vector by eta_k, multiplies it by Fresnel's matrix, and
-// turns it back. The rays whose first bounce is on the same facet form a beam of the width min(c + s t x, 2c). Measured
-// across the beam, the beam begins at X_0 = max(a sin(psi - gamma), 0), and facet k ends at X_k. So the share
-// (min(X_k, X_1) - X_0) / (X_1 - X_0) of the beam goes on to bounce k.
+// turns it back. The rays whose first bounce is on the same facet form a beam of the width min(c + s t x, 2c). On an
+// axis across the beam, the beam begins at X_0 = max(a sin(psi - gamma), 0), and facet k ends at the position X_k. So
+// the share (min(X_k, X_1) - X_0) / (X_1 - X_0) of the beam goes on to bounce k.
 
 // The state of a ray in the fan. If a ray has many bounces, one step computes a group of 2, 4, 8 ... bounces. Groups
 // are smaller near the first and the last bounce, which may be grazing (error: host/compute/plan/error_bounds.cpp).
 struct Fan {
   real2 turn;    // (cos, sin) of gamma times `taken`
   real gamma;    // pi/2 - alpha; fan() sets gamma, left and slant only for steep grooves
-  real left;     // number of bounces ahead; before the first bounce (pi/2 - psi) / gamma
+  real left;     // number of bounces ahead; it begins as (pi/2 - psi) / gamma
   real done;     // number of bounces behind
   real slant;    // psi / gamma, but at most 1
   real taken;    // number of bounces in the next group, 2^doublings
@@ -53,7 +53,7 @@ Fan fan(real t, real c, real u) {
   return f;
 }
 
-// Share of the beam that goes on to the next bounce in a steep groove. At the last bounces X_k is nearly linear in k.
+// Share of the beam that goes on to the next bounce in a steep groove, computed as if X_k were linear in k.
 real last_share(Fan f) {
   real sum = max(real(1.0) + f.slant, real(1e-30));
   return (real(2.0) * f.left + f.slant - real(1.0)) / sum;
@@ -81,8 +81,8 @@ struct Bounce {
   real2 cross;    // r_s* r_p, with the sign of r_p for which r_p = r_s at normal incidence
 };
 
-// The matrix of one facet to the power 2^doublings, for a group of 2^doublings bounces. For one facet, Bounce::cross is
-// |r_s|^2 r_p / r_s, with r_p / r_s = (cos(beta) w - sin^2(beta)) / (cos(beta) w + sin^2(beta)) and w of fresnel.glsl.
+// The matrix of a group of 2^doublings bounces, a power of the matrix of one bounce. For one bounce, Bounce::cross is
+// |r_s|^2 r_p / r_s, and r_p / r_s = (cos(beta) w - sin^2(beta)) / (cos(beta) w + sin^2(beta)). fresnel.glsl defines w.
 Bounce bounce(IndexNode index, real cos_beta, real sin2_beta, int doublings) {
   real2 w = sqrt_upper(index.n2m1_re + cos_beta * cos_beta, index.n2m1_im);
   real2 s_sum = real2(cos_beta + w.x, w.y);
@@ -161,7 +161,7 @@ GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index,
   // Two Stokes vectors in the axes of the groove. `natural` begins as unpolarised light.
   real4 natural = real4(share, real(0.0), real(0.0), real(0.0));
   real2 seen = doubled_angle(-x, c * sin_phi);
-  real4 polarised = real4(real(0.0), share * seen.x, share * seen.y, real(0.0));  // begins as Q = 1 of the surface
+  real4 polarised = real4(real(0.0), share * seen.x, share * seen.y, real(0.0));  // begins as Q = 1 in theta's frame
   GrooveLight light;
   light.before = real2(real(0.0), real(0.0));
   light.cos_before = real(0.0);

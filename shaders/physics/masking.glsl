@@ -19,7 +19,7 @@ CONST uint kMaskingNodes = DOLP_MASKING_NODES(kCellBits);
 CONST uint kUnusedBits = 23u - kCellBits;
 CONST uint kFirstNodeBits = 0x3f800000u >> kUnusedBits;  // exponent and leading mantissa bits of v = 1.0f
 
-// v of a node. The leading bits of v (the exponent and the first mantissa bits) are the number node + kFirstNodeBits.
+// v of a node. Only the leading bits of v differ between nodes. Read as an integer, they are node + kFirstNodeBits.
 real masking_node_v(uint node) { return real(uintBitsToFloat((node + kFirstNodeBits) << kUnusedBits)); }
 
 real masking_node_tau(ShapeNode shape, uint node) { return (masking_node_v(node) - real(1.0)) * shape.table_scale; }
@@ -42,8 +42,8 @@ real weight_decay(real tau) {
   return (kMasking == DOLP_MASKING_SMITH) ? real(0.0) : tau / (real(1.0) + tau * tau);
 }
 
-// The cell of a table that contains tau, and weights for the quintic Hermite interpolation in this cell: f of the
-// values, d of the first derivatives, e of the second derivatives, at the start (0) and at the end (1) of the cell.
+// The cell of a table that contains tau, and the weights of the quintic Hermite interpolation in this cell. f0, d0 and
+// e0 multiply the value, the first and the second derivative at the start of the cell; f1, d1 and e1 those at its end.
 struct TableCell {
   uint node;  // the last node at or before tau
   real f0;
@@ -114,14 +114,14 @@ ShadowRange shadow_range(ShapeNode shape, real cos_theta, real sin_theta, real t
   return range;
 }
 
-// For d > 0 (head of this file), 1 - G1 is kappa l(mu) plus the term Pt(tb) - kappa [l(tb) + (tb - mu) C(tb)]. The
-// term is a weighted sum of l, C, p and Pt at both ends of the cell that contains tb. These are the weights.
+// Weights of l, C, p and Pt at both ends of the cell that contains tb (head of this file). The weighted sum is the term
+// Pt(tb) - kappa [l(tb) + (tb - mu) C(tb)]. If d > 0, 1 - G1 is kappa l(mu) plus this term.
 struct LimitTerms {
   real l0;
   real l1;
   real c0;
   real c1;
-  real p0;  // the weight of p is p0 + marginal_decay_factor() * decay0; only marginal_decay_factor() depends on q
+  real p0;  // p has the weight p0 + decay0 * marginal_decay_factor(). Only this factor depends on q: a row shares p0.
   real p1;
   real decay0;
   real decay1;

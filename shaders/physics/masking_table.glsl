@@ -1,8 +1,8 @@
 // Builds a masking table (masking.glsl) from its far end inwards. All terms are positive, so no digits are lost.
 
-CONST int kTableOrder = 4;  // Gauss order; across a cell v = 1 + tau / table_scale grows by a factor of at most 9/8
+CONST int kTableOrder = 4;  // Gauss order; 4 suffices because v = 1 + tau / table_scale grows by at most 9/8 in a cell
 
-// How much l, C and Pt (masking.glsl) grow from tau1 down to tau0, and p(tau0). `beyond` is (l, C, Pt, p) at tau1.
+// The growth of l, C and Pt (masking.glsl) from tau1 down to tau0, and p(tau0). `beyond` is (l, C, Pt, p) at tau1.
 real4 masking_cell(ShapeNode shape, real tau0, real tau1, real4 beyond) {
   real h = tau1 - tau0;
   real height = real(0.0);

@@ -82,7 +82,7 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
   for (int g = 0; g < DOLP_WIDTH; ++g) mass[g] = real(0.0);
   int fewer = min(coarse_order(piece.order), largest_order());
   int order = is_coarse ? fewer : piece.order;
-  if (task.start >= shape.cut) order = 0;  // the piece lies beyond the cut
+  if (task.start >= shape.cut) order = 0;  // slopes above ShapeNode::cut are left out
   real all = weight_of_shape(theta, shape);
   int first_node = rule_offset(kSectionGauss, order);
   for (int i = 0; i < order; ++i) {
@@ -137,7 +137,7 @@ struct RowMoments {
   MomentsNode member[DOLP_WIDTH];
 };
 
-// The deficit of the first piece also contains the light on facets that are steeper than the end of the last piece.
+// No piece contains the steepest facets. The light on them adds to the deficit (facet.glsl) of the first piece.
 RowMoments piece_moments(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Task task) {
   real cut = row.shape[0].cut;
   Piece piece = make_piece(rule, theta, row, index, task);

@@ -3,8 +3,8 @@
 //   turn by eta_i:  Q' = cos(2 eta_i) Q + sin(2 eta_i) U,  U' = -sin(2 eta_i) Q + cos(2 eta_i) U
 //   reflection:     [A B 0 0; B A 0 0; 0 0 C -S; 0 0 S C] with A, B = (R_s +- R_p)/2 and C + i S = r_s* r_p
 //   turn by -eta_r
-// A turn by eta makes cos(eta) s + sin(eta) p the s vector of the facet. sin(eta) has the sign of sin(dphi); eq. 4 as
-// printed in the paper has the opposite sign. The host computes A, B, C and S (host/compute/plan/beam.cpp).
+// Let s and p be the polarisation vectors of a direction. A turn by eta replaces s by the s vector of the facet,
+// cos(eta) s + sin(eta) p. sin(eta) has the sign of sin(dphi); eq. 4 as printed in the paper has the opposite sign.
 
 real attenuation(GeometryNode g, ShapeNode shape) {
   if (kMasking == DOLP_MASKING_NONE) return real(1.0);
@@ -20,7 +20,7 @@ real attenuation(GeometryNode g, ShapeNode shape) {
   return real(1.0) - in_plane_shadowed(shape, lower_cos, lower_sin, g.slope);
 }
 
-// The product of the pBRDF for k_s = 1 and cos(theta_i) cos(theta_r), divided by the power of two of BeamNode::density.
+// The pBRDF for k_s = 1, times cos(theta_i) cos(theta_r). Like BeamNode::density, it is divided by 2^Beam::power.
 MuellerNode mueller(BeamNode beam) {
   GeometryNode g = beam.g;
   real scale = beam.density * attenuation(g, beam.shape);

@@ -8,7 +8,7 @@ CONST real kLn10 = real(2.30258509299404568402);
 CONST real kInverseLn10 = real(0.43429448190325182765);
 // If Arc::resolution is above this, the arc does not cluster its nodes at the azimuth where total reflection begins.
 CONST real kWideResolution = real(0.1);
-CONST real kSharpResolution = real(1e-6);
+CONST real kSharpResolution = real(1e-6);  // a smaller Arc::resolution counts as 0
 CONST real kMoreDigits = real(0.3);  // slope axis: a digit beyond kPlainDigits counts as 1 + kMoreDigits
 CONST real kPlainDigits = real(7.0);
 CONST real kLeastWeight = real(1e-20);  // replaces the weights that are 0 at 90 degrees
@@ -83,8 +83,8 @@ real digits_of_piece(RuleNode rule, ThetaNode theta, ShapeNode shape, real a, re
   return digits_of_share(rule, mass * typical / weight_of_shape(theta, shape));
 }
 
-// Digits that the sum over the azimuths needs at slope t. This slope is a node of a rule with `order` nodes, and stands
-// for the share `mass` of the facets. `digits`: digits that the whole piece needs; `all`: weight_of_shape().
+// Digits that the sum over the azimuths at the slope t needs. The slope is one of the `order` nodes of a piece, and has
+// the weight `mass`, a share of all facets. The piece needs `digits` digits. `all` is weight_of_shape().
 real digits_of_slope(RuleNode rule, ThetaNode theta, real all, real digits, int order, real t, real mass) {
   return min(digits_of_share(rule, real(order) * mass * weight_of_slope(theta, t) / all), digits);
 }
@@ -101,8 +101,8 @@ real piece_cost(Piece piece, real re, real im) {
   return nodes_per_digit(acosh_above_1(gap_beside_unit(y.x, y.y)));
 }
 
-// Nodes because the integrand has a term like exp(-1/(m x)^2), where x is the distance from an end of the piece or arc.
-// The term is at most about exp(-1/m^2), so it affects only the digits beyond the first kInverseLn10 / m^2 (`wanted`).
+// Number of nodes for a term like exp(-1/(m x)^2) of the integrand, where x is the distance from an end of the piece or
+// arc. The term is at most about exp(-1/m^2), so it does not change the first kInverseLn10 / m^2 digits.
 real essential_nodes(ShapeNode shape, real digits) {
   real wanted = max(digits - kInverseLn10 / (shape.m * shape.m), real(0.0));
   return real(0.25) * wanted * wanted;
@@ -121,8 +121,8 @@ real fresnel_piece_cost(ThetaNode theta, ShapeNode shape, Piece piece, real re, 
 }
 
 // Nodes per digit on a piece because arcs end at a line: the horizon (`ratio` is 2) or theta_r = theta (`ratio` is 1).
-// On this line cos(beta) = c sec(alpha) / ratio. Fresnel's coefficients have a branch point at a complex cos(beta) = b,
-// so the sum over the azimuths is singular at the complex slope with sec(alpha) = ratio * b / c.
+// On this line cos(beta) = c sec(alpha) / ratio. At the complex slope with sec(alpha) = ratio * b / c it is equal to b,
+// the branch point of Fresnel's coefficients. So the sum over the azimuths is singular at this slope.
 real line_piece_cost(ThetaNode theta, ShapeNode shape, IndexNode index, Piece piece, real ratio) {
   real stretch = ratio / max(theta.c, real(1e-12));
   real2 sec = real2(stretch * index.branch_re, stretch * index.branch_im);
@@ -132,8 +132,8 @@ real line_piece_cost(ThetaNode theta, ShapeNode shape, IndexNode index, Piece pi
   return piece_cost(piece, x.im, x.re - real(0.5) * kPi);
 }
 
-// Nodes of a piece that ends at the cusp of smith masking, if q is just above 3/2. G falls steeply at the cusp, as if G
-// had a pole beyond the cusp, at the distance (tan(theta) + pi (2q - 3) / m) / 2 on the slope axis.
+// Number of nodes for a piece that ends at the cusp of smith masking, if q is just above 3/2. G falls steeply there, as
+// if it had a pole beyond the cusp, at the distance (tan(theta) + pi (2q - 3) / m) / 2 from the cusp on the slope axis.
 real diverging_nodes(ThetaNode theta, ShapeNode shape, Piece piece) {
   real t = theta.s / (real(1.0) + theta.c);
   real cusp = asinh_real(t / shape.scale);
@@ -145,8 +145,8 @@ real diverging_nodes(ThetaNode theta, ShapeNode shape, Piece piece) {
 }
 
 // The number of nodes of a piece. The nearest singularity of the integrand decides how many nodes a digit costs. The
-// density is singular at the slope t = i m, and factors 1 + t^2 are 0 at t = i. Other singularities are in Fresnel's
-// coefficients and at the far ends of neighbouring pieces. Piece::fall and each end with a square root need more nodes.
+// density is singular at the slope t = i m, and factors 1 + t^2 are 0 at t = i. Fresnel's coefficients and the far ends
+// of neighbouring pieces have singularities, too. A steep density (Piece::fall) and square roots need further nodes.
 real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, bool has_split_line, Piece piece) {
   real cost = piece_cost(piece, real_part_of_asinh(real(1.0) / shape.scale), real(0.5) * kPi);
   if (kDistribution == DOLP_CAUCHY) {
@@ -161,11 +161,11 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
   cost = max(cost, choose(piece.root_before < piece.start, before, real(0.0)));
   real after = piece_cost(piece, piece.root_after, real(0.0));
   cost = max(cost, choose(piece.root_after > piece.start + piece.extent, after, real(0.0)));
-  // The map y = v^2 (3 - 2v) removes the roots at v = 0 and 1, but not those at v = 3/2 (y = 0) and v = -1/2 (y = 1).
+  // The map y = v^2 (3 - 2v) removes the roots at v = 0 and 1. At v = 3/2 (y = 0) and v = -1/2 (y = 1) roots remain.
   bool has_two_roots = piece.root_at_a && piece.root_at_b;
   cost = max(cost, choose(has_two_roots, nodes_per_digit(acosh_above_1(real(1.0))), real(0.0)));
   real roots = (piece.root_at_a ? real(1.0) : real(0.0)) + (piece.root_at_b ? real(1.0) : real(0.0));
-  // The Gaussian falls mostly where X is within 1 of the upper end of the piece. So a long piece needs more nodes.
+  // A Gaussian falls mostly in the last unit of X (struct Piece). On a long piece this is only the share 1 / extent.
   real steepest = (kDistribution == DOLP_GAUSSIAN) ? max(piece.extent, real(1.0)) : real(1.0);
   real resolved = min(piece.fall, piece.digits * kLn10) * steepest;
   // If many digits are required, weaker singularities and poles of higher order cost further nodes.
@@ -189,7 +189,7 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
 real arc_cost(Arc arc, Singularity at) {
   real re = abs(at.re - arc.origin) / arc.span;
   real im = at.im / arc.span;
-  re = choose((at.re - arc.origin) * arc.extent < real(0.0), -re, re);  // < 0 if arc.origin is between `at` and the arc
+  re = choose((at.re - arc.origin) * arc.extent < real(0.0), -re, re);  // < 0 beyond arc.origin, outside the arc
   real2 y = choose(arc.section == kSectionHalf, real2(re * re - im * im, real(2.0) * re * im), real2(re, im));
   y = choose(arc.section == kSectionCluster, sqrt_upper(re, im), y);
   real mu = acosh_above_1(gap_beside_unit(y.x, y.y));
@@ -208,8 +208,8 @@ real bounce_cost(ThetaNode theta, IndexNode index, real2 facet, Arc arc) {
   return max(arc_cost(arc, pole), arc_cost(arc, branch));
 }
 
-// Nodes per digit on an arc with one end at the critical line, where total reflection begins. Its rule is a Gauss rule
-// in sqrt(tau / T) (quadrature.glsl). This variable is 0 at the line, and R_p has a pole at the distance v from 0.
+// Nodes per digit on an arc with one end at the critical line, where total reflection begins. The arc has a Gauss rule
+// in the variable sqrt(tau / T) of quadrature.glsl, which is 0 at this end. R_p has a pole at the distance v from 0.
 real critical_cost(ThetaNode theta, IndexNode index, real t, Arc arc) {
   real sec = sqrt(real(1.0) + t * t);
   real2 end = choose(arc.extent < real(0.0), arc.from, arc.to);
@@ -226,7 +226,7 @@ real fresnel_cost(RuleNode rule, ThetaNode theta, IndexNode index, real t, Arc a
   real2 turn = real2(t * r, r);
   real cost = bounce_cost(theta, index, turn, arc);
   if (kIsMultiple) {
-    // Take all bounces of the ray whose azimuth is the middle of the arc.
+    // The most costly bounce decides. The ray at the middle azimuth of the arc stands for all rays of the arc.
     real2 step = multiply(turn, turn);
     real2 facet = turn;
     real2 middle = arc.from + arc.to;
@@ -263,9 +263,9 @@ real masking_cost(ThetaNode theta, ShapeNode shape, real t, Arc arc, int zone) {
   return cost;
 }
 
-// Nodes of an arc because smith masking has a cusp at theta_r = 0, where Lambda behaves like |theta_r|^(2q - 2). Only
-// the facet with t = tan(theta/2) and phi = 0 reflects to theta_r = 0. At another slope t the cusp lies at an imaginary
-// azimuth i y, with cosh(y) = 1 + `rise`. The gaussian Lambda is negligible for theta_r < `zenith`, so y is larger.
+// Number of nodes for the cusp of smith masking at theta_r = 0, where Lambda behaves like |theta_r|^(2q - 2). Only the
+// facet with t = tan(theta/2) and phi = 0 reflects to theta_r = 0. At another slope t the cusp lies at an imaginary
+// azimuth i y, with cosh(y) = 1 + `rise`. For the gaussian y is larger: Lambda is negligible for theta_r < `zenith`.
 real cusp_nodes(ThetaNode theta, ShapeNode shape, real t, real digits, Arc arc) {
   if (kMasking != DOLP_MASKING_SMITH) return real(0.0);
   real away = t - theta.s / (real(1.0) + theta.c);
@@ -280,7 +280,7 @@ real cusp_nodes(ThetaNode theta, ShapeNode shape, real t, real digits, Arc arc) 
   return choose(shape.cusp_digits < real(-100.0), real(0.0), nodes);
 }
 
-// Clusters nodes at the beginning of the arc if the arc begins a zone and the masking has a singularity there.
+// Clusters nodes at the beginning of the arc if it begins at a split line at which the masking is singular.
 Arc masked_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_line, real t, real digits, Arc arc,
                int zone, bool is_first) {
   bool has_root = is_first && has_split_line;
@@ -321,15 +321,15 @@ Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, Arc arc,
   return arc;
 }
 
-// Nodes because G has the term of essential_nodes() at the line b = pi/2 (single_lines()), where the arc begins.
+// Number of nodes for an arc that begins at the line b = pi/2 of arcs.glsl. There G has the term of essential_nodes().
 real line_nodes(ShapeNode shape, bool has_split_line, real digits, int zone) {
   if (kMasking != DOLP_MASKING_INTEGRAL || kDistribution != DOLP_GAUSSIAN) return real(0.0);
   bool is_line = has_split_line && zone == 2;
   return choose(is_line, essential_nodes(shape, digits), real(0.0));
 }
 
-// Nodes because of a square root that absorption smooths (critical_arc()). In the variable v of place_on_arc(), the
-// integrand is singular at (0.76 +- 0.57 i) / a. This changes the integral only by a share of about resolution^(3/2).
+// Number of nodes for a square root that absorption smooths (critical_arc()). In the variable v of place_on_arc(), the
+// integrand is singular at (0.76 +- 0.57 i) / a. Without these nodes the relative error is about resolution^(3/2).
 real resolution_nodes(real digits, real resolution) {
   real wanted = max(digits + real(1.5) * kInverseLn10 * log_unit(resolution), real(0.0));
   real a = asinh_real(real(1.0) / sqrt(resolution));
@@ -340,12 +340,12 @@ real resolution_nodes(real digits, real resolution) {
 // The number of nodes of an arc. An arc from 0 to pi gets at least two: with one node, cos(2 phi) does not average out.
 real arc_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, bool has_split_line, real t, real digits,
                Arc arc, int zone) {
-  real map = nodes_per_digit(asinh_real(real(1.0) / max(abs(arc.extent), real(1e-9))));  // poles of dphi/dtau
+  real map = nodes_per_digit(asinh_real(real(1.0) / max(abs(arc.extent), real(1e-9))));  // dphi/dtau has poles at +- i
   map = choose(arc.section == kSectionHalf, real(0.5) * map, map);
   map = choose(arc.section == kSectionCircle, real(0.0), map);
   real cost = max(max(map, fresnel_cost(rule, theta, index, t, arc)), masking_cost(theta, shape, t, arc, zone));
-  // A rule must resolve cos(phi), cos(2 phi) and cos(3 phi) over the length of the arc. A rule of the section `cluster`
-  // needs half a node more. If place_on_arc() moves the nodes, the rule needs `spread` nodes more.
+  // The longer an arc, the more nodes resolve cos(phi), cos(2 phi) and cos(3 phi). A rule of the section `cluster`
+  // needs half a node more than other rules. If place_on_arc() moves the nodes, the rule needs `spread` nodes more.
   real base = rule.phi_nodes * arc.span + choose(arc.section == kSectionCluster, real(1.0), real(0.5));
   if (kTotalReflection) {
     real spread = real(0.5) * asinh_real(real(1.0) / sqrt(arc.resolution));

@@ -21,9 +21,9 @@ struct Integral {
 };
 
 struct Goal {
-  double relative = 1e-9;        ///< allowed error of an integral, in units of a scale such as the integral itself
+  double relative = 1e-9;        ///< allowed error of an integral, divided by a scale such as the integral itself
   std::size_t max_panels = 400;  ///< at this number of panels the quadrature stops and returns the error reached
-  int subdivisions = 1;          ///< number of panels between two break points at the start
+  int subdivisions = 1;          ///< initial number of panels between two neighbouring break points
 };
 
 /// The ends of the first panels: both ends of the interval, and all break points between them.

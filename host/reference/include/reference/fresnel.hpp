@@ -19,11 +19,11 @@ struct FresnelCoefficients {
 FresnelCoefficients fresnel(const FacetOptics& optics, double cos_beta);
 
 /// Reflection amplitudes of a medium under films. Source: Born and Wolf, Principles of Optics, section 1.6.2.
-/// Equation: a layer of index N has q = sqrt(N^2 - sin^2(beta)) and the admittance y, which is q for s and q / N^2 for
-/// p. The tangential fields begin as (E, H) = (1, y) in the medium. Each film, from the lowest to the highest,
-/// multiplies (E, H) by [cos(d), -i sin(d) / y; -i y sin(d), cos(d)], where d = 2 pi q thickness, thickness in
-/// wavelengths. A factor e^(i d) keeps thick absorbing films finite, and cancels in r. Above the films r = (y_0 E - H)
-/// / (y_0 E + H), where y_0 = cos(beta) is the admittance of the air.
+/// Equation: a layer of index N has q = sqrt(N^2 - sin^2(beta)). Its admittance y is q for s, q / N^2 for p. The
+/// tangential fields (E, H) are (1, y) in the medium. From the lowest film to the highest, each film multiplies them by
+/// [cos(d), -i sin(d) / y; -i y sin(d), cos(d)], where d = 2 pi q thickness, with the thickness in wavelengths. Above
+/// the films r = (y_0 E - H) / (y_0 E + H), where y_0 = cos(beta) is the admittance of air. The code also multiplies
+/// E and H by e^(i d) at each film, so that they stay finite in thick absorbing films. This factor cancels in r.
 template <class Number, class Real>
 Amplitudes<Number> stack_amplitudes(const FacetOptics& optics, const Real& cos_beta, const Real& sin2_beta) {
   using std::exp;

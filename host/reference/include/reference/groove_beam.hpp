@@ -1,6 +1,6 @@
 // Follows a beam in a symmetric V-groove from facet to facet. Light that leaves the groove is not followed further.
-// Axes: u across the groove, v along it, z upward, from the middle of the aperture. Both facets have length 1 and meet
-// at the apex, u = 0 and z = -sin(alpha). The rim of facet A is at u = -cos(alpha), the rim of B at u = cos(alpha).
+// Axes: u across the groove, v along it, z upward. The origin is the middle of the aperture. The facets have length 1
+// and meet at the apex, u = 0 and z = -sin(alpha). The rim of A is at u = -cos(alpha), the rim of B at u = cos(alpha).
 #pragma once
 
 #include <algorithm>
@@ -17,9 +17,9 @@ struct Groove {
 
 enum class Facet { kA, kB };
 
-/// A beam of parallel rays: all rays through the aperture that meet facet `first` first. The beam covers a stretch of
-/// the facet, of length flux / cos(beta). The end of the stretch that is nearer to the apex is the edge of the beam;
-/// the edge is followed as a ray. Rays that miss the next facet leave the groove above its rim.
+/// A beam of parallel rays: all rays through the aperture that meet the facet `first` before the other facet. The beam
+/// covers a stretch of the facet, of length flux / cos(beta). The end of the stretch that is nearer to the apex is the
+/// edge of the beam; the edge is followed as a ray. Rays that miss the next facet leave the groove above its rim.
 template <class Real>
 class GrooveBeam {
  public:
@@ -42,7 +42,7 @@ class GrooveBeam {
   const Vector<Real>& direction() const { return k_; }
   Vector<Real> normal() const { return {-side_ * groove_.sin_alpha, Real(0), groove_.cos_alpha}; }
 
-  /// Reflects the beam into `k_out`, toward the other facet. Returns the flux that misses that facet and leaves.
+  /// Reflects the beam into `k_out`, toward the other facet. Returns the flux that misses the other facet and leaves.
   Real reflect(const Vector<Real>& k_out) {
     const Real before = flux_;
     k_ = k_out;
@@ -52,7 +52,7 @@ class GrooveBeam {
   }
 
  private:
-  // Follows the edge of the beam to the facet on `side_`. Returns the flux of a beam between that edge and the rim.
+  // Follows the edge of the beam to the facet on `side_`. Returns the flux of a beam that covers it from rim to edge.
   Real land() {
     const Vector<Real> n = normal();
     const Real cos_beta = -dot(k_, n);

@@ -12,8 +12,8 @@ namespace dolp::reference {
 
 /// Accuracy of the quadratures. Two computations with different settings have nearly independent errors.
 struct Refinement {
-  double relative_tolerance = 1e-9;  ///< error of r_i, albedo and absorbed part; the error of r_q is relative to r_i
-  int subdivisions = 1;              ///< number of panels between two break points at the start
+  double relative_tolerance = 1e-9;  ///< of r_i, the albedo and the absorbed part; the error of r_q is relative to r_i
+  int subdivisions = 1;              ///< initial number of panels between two neighbouring break points
 };
 
 /// A function of the zenith of the reflected ray, and the zeniths at which the function has kinks.
@@ -22,7 +22,7 @@ struct SkyFunction {
   std::vector<double> corners_deg;
 };
 
-/// Functions of cos(beta) with values in [-1, 1]. Each replaces both (R_s + R_p) / 2 and (R_s - R_p) / (2 sin^2(beta)).
+/// Functions of cos(beta) within [-1, 1]. In integrals each replaces (R_s + R_p) / 2 and (R_s - R_p) / (2 sin^2(beta)).
 inline constexpr std::size_t kCurves = 24;
 using Curves = std::function<std::array<double, kCurves>(double cos_beta)>;
 
@@ -30,8 +30,8 @@ Zenith zenith_from_deg(double theta_deg);
 
 /// The moments of a rough surface (sigma > 0) with k_s = 1. If `sky` is given, Moments::columns contains r_i and r_q
 /// with the function `sky` as a factor of the integrand.
-/// Equation: r = cos(theta) int f cos(theta_r) sin(theta_r) dtheta_r dDelta_phi, eqs. (7), (15), (16) of Wang, Li, Wang
-/// 2025. The outer integral is over theta_r, the inner integral over delta = pi - Delta_phi.
+/// Equation: r = cos(theta) int f cos(theta_r) sin(theta_r) dtheta_r dDelta_phi with the pBRDF f, eqs. (7), (15), (16)
+/// of Wang, Li, Wang 2025. The outer integral is over theta_r, the inner integral over delta = pi - Delta_phi.
 /// Domain: theta in [0, 90] degrees. At 90 degrees the moments are 0 with v-cavity and smith masking. With other
 /// maskings they are infinite for the cauchy with q <= 3/2, else finite.
 Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_deg, const FacetOptics& constants,
@@ -49,7 +49,7 @@ Moments mirror_moments(double theta_deg, const FacetOptics& constants);
 /// facet that the light meets first; P is the density of slopes. w_k is the flux that leaves a groove after k bounces,
 /// divided by half the groove's width. |E_k|^2 is the intensity after k bounces, averaged over s and p light.
 /// Domain: theta in [0, 90] degrees; at 90 degrees all moments are 0, which is the limit.
-/// Accuracy: the returned errors. For metals with many steep grooves they exceed `refinement`: 1e-8 to 1e-4 of r_i.
+/// Accuracy: the returned errors. For many steep grooves of metal they exceed `refinement` and are 1e-8 to 1e-4 of r_i.
 Moments groove_moments(const Slopes& slopes, double theta_deg, const FacetOptics& constants,
                        const Refinement& refinement, const SkyFunction* sky = nullptr);
 

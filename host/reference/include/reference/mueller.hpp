@@ -10,7 +10,7 @@ using ReferenceMueller = std::array<std::array<double, 4>, 4>;
 
 /// The specular pBRDF f_s times cos(theta_i) cos(theta_r), without the factor k_s. Units: sr^-1. The Jones matrix is
 /// computed in quadruple precision from the s and p vectors of the beams and of the facet.
-/// Equation: (4), (7), (15) of Wang, Li, Wang 2025. For Scattering::kMultiple it returns reference_all_bounces().
+/// Equation: (4), (7), (15) of Wang, Li, Wang 2025. For Scattering::kMultiple the result is reference_all_bounces().
 /// Conventions: Delta_phi = 180 degrees is the specular side. A beam along k has s = k x z and p = k x s; at zenith 0,
 /// s is the limit at the azimuth of the beam. Q = I_s - I_p, U = 2 Re(E_s* E_p), V = 2 Im(E_s* E_p).
 /// Domain: zeniths in [0, 90] degrees, but not both 90; sigma > 0. Accuracy: 1e-12 of element m00.
@@ -20,9 +20,9 @@ ReferenceMueller reference_scattering(const Surface& surface, const FacetOptics&
 /// The pBRDF f^(k) of light that bounces k = `bounces` times in V-grooves, times cos(theta_i) cos(theta_r).
 /// Equation: D(alpha) sin(alpha) F_k M / (2 k |h|), summed over two kinds of grooves.
 /// - h is the horizontal part of omega_i + omega_r.
-/// - u is the horizontal unit vector across the groove. One kind of grooves has u along h, one kind has u against h.
+/// - u is the horizontal unit vector across the groove. In one kind of grooves u is along h, in the other against h.
 /// - psi_i and psi_r are the angles of omega_i and omega_r from z toward u, in the plane across the groove.
-/// - alpha is the tilt of the facets: 2 k (90 degrees - alpha) = 180 degrees - psi_i - psi_r, with + psi_r for even k.
+/// - alpha is the tilt of the facets: 2 k (90 degrees - alpha) = 180 degrees - psi_i + (-1)^k psi_r.
 /// - F_k is the flux of a beam that leaves a groove after k bounces, for facets of length 1.
 /// - M is the Mueller matrix of the k bounces, from electric vectors that are followed through the bounces.
 /// Domain: masking v-cavity. NaN in the mirror direction, where h = 0.

@@ -11,7 +11,7 @@ namespace dolp {
 struct ReferenceOptions {
   /// Tolerance of each integral, relative to the integral. For r_q it is relative to r_i.
   double relative_tolerance = 1e-9;
-  /// Number of panels between two break points of a quadrature at the start. Another number gives other nodes.
+  /// Initial number of panels between two neighbouring break points of a quadrature. Another number gives other nodes.
   int subdivisions = 1;
 };
 

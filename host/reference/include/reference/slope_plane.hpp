@@ -38,7 +38,7 @@ inline Vector<double> toward_view(const SlopePoint& point, const Zenith& view) {
   return {view.sin * point.sin_chi, -view.sin * point.cos_chi, view.cos};
 }
 
-/// Electric vectors of an s and a p wave of amplitude 1 along k. s = k x z / |k x z|, a limit at theta = 0. p = k x s.
+/// Electric vectors of two waves of amplitude 1 along k: s = k x z / |k x z| and p = k x s. At theta = 0, s is a limit.
 struct UnitLight {
   Electric from_s;
   Electric from_p;
@@ -77,10 +77,10 @@ class SpecialAngles {
 /// Maps a slope to a number. Slopes on different sides of a bend of the integrand have different numbers.
 using Regime = std::function<std::uint64_t(const SlopePoint&)>;
 
-/// A RegimeScan computes the regime at values of chi with a dozen equal steps, and at these further values.
+/// A RegimeScan computes the regime at a dozen equal steps of chi. ScanSteps adds further values of chi.
 struct ScanSteps {
-  /// If not 0: steps of gamma / per_gamma in psi. gamma is the half-angle of the groove. psi is the zenith of the view,
-  /// projected onto the plane across the groove.
+  /// Let psi be the zenith of the view, projected onto the plane across the groove, and gamma the half-angle of the
+  /// groove. If per_gamma is not 0, values of chi are added at equal steps of psi, of about gamma / per_gamma.
   double per_gamma = 0.0;
   int halvings = 0;  ///< number of values toward chi = 0, each half as large as the previous one
 };
@@ -90,9 +90,9 @@ class RegimeScan {
  public:
   RegimeScan(const Zenith& view, double theta_rad, const ScanSteps& steps, Regime regime)
       : view_(view), theta_rad_(theta_rad), steps_(steps), regime_(std::move(regime)) {}
-  /// Break points of the integral over chi: bends, unless there are too many. For grazing views also small chi.
+  /// Break points of the integral over chi: bends, unless there are too many. For grazing views also some small chi.
   std::vector<double> chi_breaks(double t) const;
-  /// Break points of the integral over t, up to `end`: bends at chi = 0 or pi/2. For grazing views also small t.
+  /// Break points of the integral over t, up to `end`: bends at chi = 0 or pi/2. For grazing views also some small t.
   std::vector<double> t_breaks(double width, double end) const;
 
  private:
@@ -108,14 +108,14 @@ struct SlopeTask {
   std::function<Values<N>(const Values<N>&)> scales;  ///< computes the scale of each integral, see Goal::relative
   double steepest;                                    ///< upper end of the integral over t
   double bends_end;                                   ///< the integral over t is split at bends up to this t
-  /// The allowed error of the integral over chi is larger by the factor thin_weight / density_at(v) if this exceeds 1.
+  /// If density_at(v) < thin_weight, the integral over chi may have an error thin_weight / density_at(v) times larger.
   double thin_weight = 0.0;
   std::function<double()> work = [] { return 0.0; };  ///< work done so far, in any unit
   double most_work = 1.0;                             ///< after this much work no integral is refined
 };
 
-/// Integrals of N functions: int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} dchi, with the slope density P. Component
-/// N + k of the result is the error of inner integral k, integrated over t. `expected`: rough values of the integrals.
+/// Integrals of N functions f_k: int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} f_k dchi, with the slope density P. In
+/// component N + k of the result, the error of the integral over chi replaces this integral. `expected`: rough results.
 template <std::size_t N>
 Integral<2 * N> integrate_slopes_of(const SlopeTask<N>& task, const Slopes& slopes, const RegimeScan& scan,
                                     const Refinement& refinement, const Values<N>& expected) {

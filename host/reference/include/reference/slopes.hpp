@@ -26,10 +26,10 @@ class Slopes {
 
   double quantile(double share) const;
 
-  /// Contribution of slopes above t to the mean slope. Domain: cauchy q > 3/2; t >= 1e8 m(), where P is a power law.
+  /// What slopes above t add to the mean slope. Domain: cauchy q > 3/2; t >= 1e8 m(), where the density is a power law.
   double length_above(double t) const;
 
-  /// Integrals over slopes use the variable v, with t = at(v) = width() sinh(v). density_at(v) is 2 pi P t dt/dv.
+  /// Integrals over slopes use the variable v, with t = at(v) = width() sinh(v). density_at(v) is the density of v.
   double at(double v) const { return width_ * std::sinh(v); }
   double coordinate_of(double t) const { return std::asinh(t / width_); }
   double density_at(double v) const;
@@ -58,10 +58,10 @@ struct Zenith {
 /// Lambda of Smith's height-correlated masking, in closed form. Domain: cos(zenith) > 0; cauchy q > 3/2.
 double smith_lambda(const Slopes& slopes, const Zenith& zenith);
 
-/// G_1 of the masking `integral` for a facet of tilt alpha. Accuracy: `tolerance`, absolute.
-/// Equation: G_1 = P(gamma < a) + int p (1 + cos(theta + gamma)/cos(theta - alpha)) dt, for gamma from a to b, where
-/// a = pi/2 - theta and b = min(pi/2, pi - 2 theta + alpha). t = tan(gamma) is a slope in one vertical plane, p is the
-/// density of these slopes, and P is a share of them. Source: Wang, Li, Wang 2025, eqs. (9)-(12).
+/// G_1 of the masking `integral` for a facet of tilt alpha, toward the zenith theta. Accuracy: `tolerance`, absolute.
+/// Equation: t = tan(gamma) is a slope in one vertical plane, and p is the density of these slopes. G_1 is the share of
+/// slopes with gamma < a, plus int p (1 + cos(theta + gamma)/cos(theta - alpha)) dt for gamma from a to b. Here
+/// a = pi/2 - theta and b = min(pi/2, pi - 2 theta + alpha). Source: Wang, Li, Wang 2025, eqs. (9)-(12).
 class IntegralMasking {
  public:
   IntegralMasking(const Slopes& slopes, const Zenith& zenith, double tolerance);
@@ -72,7 +72,7 @@ class IntegralMasking {
   Zenith zenith_;
   double tolerance_;
   double slope_a_;      ///< tan(a), see the equation
-  double share_below_;  ///< P(gamma < a)
+  double share_below_;  ///< share of slopes with gamma < a
 };
 
 class Attenuation {
@@ -82,7 +82,7 @@ class Attenuation {
 
  private:
   Masking masking_;
-  double v_cavity_;  ///< (cos a + cos b) min(cos a, cos b); G is v_cavity_ / cos^2(beta), but at most 1
+  double v_cavity_;  ///< (cos a + cos b) min(cos a, cos b) for the zeniths a, b; G = min(1, v_cavity_ / cos^2(beta))
   double smith_ = 1.0;
   std::optional<IntegralMasking> integral_;
 };

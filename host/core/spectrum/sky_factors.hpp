@@ -32,7 +32,7 @@ class SkySampler {
 /// SpectralSample::sky. Null if the sky is uniform.
 std::shared_ptr<const SkyBasis> sky_basis(const SceneModel& scene, const std::vector<SceneVariant>& variants);
 
-/// Weights for each sample of `rule`: their sum over the functions of `basis` is the sky. Empty without basis or sky.
+/// Weights for each sample of `rule`: `basis`, summed with them, approximates the sky. Empty without basis or sky.
 std::vector<SkyWeights> sky_weights(const SpectralRule& rule, const SkyBasis* basis);
 
 }  // namespace dolp

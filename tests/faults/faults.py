@@ -28,13 +28,13 @@ KINDS = of_memory.KINDS + of_devices.KINDS + of_files.KINDS + of_signals.KINDS
 
 
 def ending(status):
-    return f"status {status}" if status >= 0 else "ended by the signal"
+    return f"status {status}" if status >= 0 else "ended by a signal"
 
 
 def markdown(results):
     lines = ["| fault | number of tries | how many tries ended with which exit status |", "|---|---|---|"]
     for row in results["kinds"]:
-        ends = ", ".join(f"{count} {what}" for what, count in row["ends"].items())
+        ends = ", ".join(f"{count:,} × {what}" for what, count in row["ends"].items())
         lines.append(f"| {row['fault']} | {row['tries']:,} | {ends} |")
     return "\n".join(lines)
 

@@ -11,6 +11,8 @@
 namespace dolp::explore {
 namespace {
 
+using namespace explore_test;
+
 TEST(Scale, WithLogAndTicks_BeginAboveZero_AndAreRound) {
   EXPECT_EQ((Scale{0.0, 90.0}.with_log(true)), (Scale{0.5, 90.0, true}));
   EXPECT_EQ((Scale{2.0, 50.0}.with_log(true)), (Scale{2.0, 50.0, true}));
@@ -138,15 +140,6 @@ TEST(HeatMap, Axes_FollowTheScene) {
   EXPECT_EQ(session.map().x().scale, (Scale{2.0, 12.5}));
 }
 
-}  // namespace
-}  // namespace dolp::explore
-
-namespace {
-
-using namespace dolp;
-using namespace dolp::explore;
-using namespace dolp::explore_test;
-
 class Axes : public Window {
  protected:
   void double_click(ImVec2 at) {
@@ -224,7 +217,7 @@ TEST_F(Axes, DragOfASlider_GivesCoarseCurves_AndHoldsZenithsAndColours_WhichCanB
     move_to(area.at(part, 0.5F));
     settle();
     EXPECT_TRUE(session().is_dragged());
-    EXPECT_EQ(session().curve().points().size(), explore::Curve::kCoarseCount);
+    EXPECT_EQ(session().curve().points().size(), Curve::kCoarseCount);
     EXPECT_TRUE(curve_name(session()).ends_with(", coarse"));
     EXPECT_EQ(app_->curve_view().x(), zeniths);
     EXPECT_EQ(map.colours(), colours);
@@ -239,3 +232,4 @@ TEST_F(Axes, DragOfASlider_GivesCoarseCurves_AndHoldsZenithsAndColours_WhichCanB
 }
 
 }  // namespace
+}  // namespace dolp::explore

@@ -11,6 +11,8 @@
 namespace dolp::explore {
 namespace {
 
+using namespace explore_test;
+
 TEST(NearestMinimum, IsNearestByTheCoordinatesOfTheRanges) {
   Fit fit{{}, {}, true, paint().scene()};
   fit.minima = {{{1.5, 2.37}, 4.0}, {{1.5, 0.22}, 5.0}, {{9.0, 0.22}, 80.0}};
@@ -81,15 +83,6 @@ TEST(FitText, Interval_HasItsEnds) {
   EXPECT_EQ(interval_text({.low = 1.25}), "1.25 to open");
   EXPECT_EQ(interval_text({.low = 0.1, .high = 3.0, .pieces = {{0.1, 0.2}, {2.0, 3.0}}}), "0.1 to 3");
 }
-
-}  // namespace
-}  // namespace dolp::explore
-
-namespace {
-
-using namespace dolp;
-using namespace dolp::explore;
-using namespace dolp::explore_test;
 
 class FitWindow : public Window {
  protected:
@@ -176,3 +169,4 @@ TEST_F(FitWindow, CancelClicked_EndsTheFitAndLeavesTheScene) {
 }
 
 }  // namespace
+}  // namespace dolp::explore

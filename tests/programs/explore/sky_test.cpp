@@ -10,6 +10,8 @@
 namespace dolp::explore {
 namespace {
 
+using namespace explore_test;
+
 constexpr SkyPair kDusk{231.5, 279.0};
 
 TEST(SkyPair, OnlyFilesOfTwoRows_AreRead) {
@@ -33,15 +35,6 @@ TEST(SkyPair, SceneOfTheWindow_HasTheResultsOfItsCsv) {
   driver.session.undo();
   EXPECT_EQ(driver.session.scene().number("surroundings.temperature_K"), 240.0);
 }
-
-}  // namespace
-}  // namespace dolp::explore
-
-namespace {
-
-using namespace dolp;
-using namespace dolp::explore;
-using namespace dolp::explore_test;
 
 class Skies : public Window {
  protected:
@@ -101,3 +94,4 @@ TEST_F(Skies, List_OffersUniformAndBuiltInSkies_AndTheFileOfTheSceneAsOpened) {
 }
 
 }  // namespace
+}  // namespace dolp::explore

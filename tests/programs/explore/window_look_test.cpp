@@ -94,6 +94,7 @@ TEST_F(WindowLook, LeastSize_ShowsOneThingAtATime) {
   resize("1280", "800");
   EXPECT_GT(plot().width(), 400.0F);
   EXPECT_LT(plot().max.x, app_->control_area("panel map").min.x);
+  EXPECT_NO_THROW(resize("200", "150"));
 }
 
 TEST_F(WindowLook, Note_WaitsForTheMouseToRest_AndLeavesTheNextValueInSight) {

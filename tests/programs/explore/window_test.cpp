@@ -136,25 +136,6 @@ TEST_F(Window, CurveAndTable_ByShortcut_EqualThoseOfTheCommands) {
   EXPECT_EQ(dolp({"verify", "scene_table.nc"}).status, 0);
 }
 
-TEST_F(Window, Resized_DrawsAtTheNewSize) {
-  for (const auto& [width, height] : {std::pair{900, 700}, std::pair{1300, 850}, std::pair{200, 150}}) {
-    xdotool({"windowsize", "--sync", window_, std::to_string(width), std::to_string(height)});
-    frames(2 * kFrames);
-    app_->save_picture(at("picture.png").string());
-    frames();
-    // In a PNG file width and height are at bytes 16 and 20.
-    const std::string png = content("picture.png");
-    ASSERT_GT(png.size(), 24U);
-    const auto number = [&](std::size_t first) {
-      std::uint32_t value = 0;
-      for (std::size_t i = first; i < first + 4; ++i) value = 256 * value + static_cast<unsigned char>(png[i]);
-      return value;
-    };
-    EXPECT_EQ(number(16), static_cast<std::uint32_t>(width));
-    EXPECT_EQ(number(20), static_cast<std::uint32_t>(height));
-  }
-}
-
 TEST_F(Window, List_OpensAndClosesOnTheScreenWithoutTheMouseMoving) {
   const Area area = app_->control_area("surface.masking");
   move_to(area.at(0.5F, 0.5F));

@@ -58,7 +58,7 @@
 #define DOLP_TASK_ROOT_BEFORE_START 13u // bit: square root at the start of the preceding piece
 #define DOLP_TASK_ROOT_AFTER_END 14u // bit: square root at the end of the next piece
 #define DOLP_TASK_SPLIT_LINE 15u     // bit: pieces or arcs are split at the kink of smith or `integral` masking
-#define DOLP_TASK_AZIMUTHS_SHIFT 16u // bits 16 to 31: largest number of azimuth nodes on an arc; bounds the loops
+#define DOLP_TASK_AZIMUTHS_SHIFT 16u // bits 16 to 31: at most this many azimuth nodes on an arc; limits the loops
 
 // ---- Sizes ---------------------------------------------------------------------------------------------------------
 #ifndef DOLP_WIDTH
@@ -98,12 +98,12 @@ struct RuleNode {
   real t_fall;            // slope axis: nodes per factor e by which the share of steeper facets falls within a piece
   real phi_nodes;         // azimuth: nodes per radian of an arc, in addition to the nodes that the digits require
   real phi_digits;        // azimuth: a fitted constant, added to the required digits
-  real cluster_stretch;   // smith masking: nodes cluster at the cusp of G if it needs more nodes per digit than this
-  real split_bounces;     // V-grooves: azimuths are split where the number of bounces changes, if it is at most this
+  real cluster_stretch;   // smith masking: nodes cluster at a cusp of G that costs more nodes per digit than this
+  real split_bounces;     // V-grooves: at most this many lines where the number of bounces changes split the azimuths
   real dimmest;           // V-grooves: a ray is followed until less than this share of its light is left
   real cluster_below_q;   // masking `integral`: if q is below this, nodes cluster at the azimuth where G has a kink
-  real response_scale;    // responses, see chebyshev_at(): 1 / c0. They resolve the finest detail at cos(beta) < c0
-  real response_norm;     // responses, see chebyshev_at() in physics/columns.glsl: 2 / asinh(1 / c0)
+  real response_scale;    // 1 / c0. The Chebyshev polynomials of responses resolve the finest detail at cos(beta) < c0
+  real response_norm;     // 2 / asinh(1 / c0), for the same polynomials (chebyshev_at() in physics/columns.glsl)
 };
 
 // One direction theta, and the pieces of the slope axis t = tan(alpha) on which the integrand is smooth. The pieces may
@@ -111,8 +111,7 @@ struct RuleNode {
 struct ThetaNode {
   real c;                         // cos(theta)
   real s;                         // sin(theta)
-  // Piece k lies between the slopes end[k] and end[k + 1]. Unused elements repeat the last end.
-  real end[DOLP_MAX_PIECES + 1];
+  real end[DOLP_MAX_PIECES + 1];  // piece k goes from slope end[k] to end[k + 1]; unused elements repeat the last end
 };
 
 // A slope at which slopes.comp sums over the azimuths (host/compute/evaluate/kernel/slope_samples.hpp).
@@ -121,7 +120,7 @@ struct SlopeNode {
   real digits;         // digits that the sum over the azimuths needs
   real theta;          // position of the direction among the ThetaNodes
   real index;          // position of the index among the IndexNodes
-  real most_azimuths;  // largest number of azimuth nodes on an arc
+  real most_azimuths;  // at most this many azimuth nodes on an arc, a range of azimuths with a smooth integrand
   real is_coarse;      // 1 if the slope belongs to the coarser rule, else 0
 };
 
@@ -131,9 +130,9 @@ struct ShapeNode {
   real two_q_minus_3;  // 2q - 3, stored because a float q does not resolve it near 3/2; smith needs q > 3/2
   real marginal_norm;  // p(0), with the density p of the in-plane slopes
   real scale;          // the slope t is mapped to X with t = scale sinh(X)
-  real cut;            // slopes above this one are left out
+  real cut;            // facets with a larger slope are left out
   real table_scale;    // the variable of the masking table is v = 1 + tau / table_scale, where tau is a slope
-  real cusp_digits;    // smith: log10 of the relative error of rules that are not split at Lambda's cusp, theta_r = 0
+  real cusp_digits;    // smith: log10 of the relative error if Lambda's cusp, theta_r = 0, does not split the integral
 };
 
 struct IndexNode {
@@ -199,13 +198,13 @@ struct MomentsNode {
   real r_q;
   real albedo;
   real deficit;
-  real behind;               // slope_sums() subtracts it to get `deficit`. Error bounds need it: digits are lost
+  real behind;               // slope_sums() subtracts it to get `deficit`, which loses digits. So error bounds need it
   real many;                 // part of r_i from grooves with more bounces than DOLP_MOST_BOUNCES
   real direct_i;             // direct emission
   real direct_q;
-  real reflected_difference; // difference between the two rules: of r_i or of r_q, whichever is larger
+  real reflected_difference; // larger of the differences in r_i and in r_q between the two rules
   real albedo_difference;
   real deficit_difference;
-  real direct_difference;    // difference between the two rules: of direct_i or of direct_q, whichever is larger
+  real direct_difference;    // larger of the differences in direct_i and in direct_q between the two rules
   real evaluations;
 };

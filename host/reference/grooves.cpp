@@ -26,8 +26,8 @@ constexpr double kDark = 1e-24;  // light of lower intensity is not followed
 constexpr int kMostFollowed = 2000;
 constexpr double kSteepest = 1e15;
 constexpr double kSteeper = 1.5;
-// The integral over slopes ends at a largest slope. Steeper grooves may reflect more, as their light bounces more often
-// or less often. The program assumes that they reflect at most kTailRoom times as much as a groove of this slope.
+// The integral over slopes ends at a largest slope. Steeper grooves may reflect more, because their light bounces
+// another number of times. The program assumes: they reflect at most kTailRoom times as much as a groove of this slope.
 constexpr double kTailRoom = 2.0;
 constexpr double kTailShare = 0.01;     // share of the tolerance for the light of grooves beyond the largest slope
 constexpr double kStepsPerGamma = 3.0;  // ScanSteps::per_gamma

@@ -14,7 +14,7 @@ Slopes::Slopes(Distribution distribution, double sigma, double q)
     : distribution_(distribution), m_(std::numbers::sqrt2 * sigma), q_(q), width_(m_), in_plane_norm_(inv_sqrtpi / m_) {
   if (is_gaussian()) return;
   width_ = m_ / std::sqrt(std::max(1.0, q_));
-  // Gamma(q - 1/2) / Gamma(q - 1), which neither overflows nor cancels at large q.
+  // Boost computes Gamma(q - 1/2) / Gamma(q - 1) without overflow, and without losing digits at large q.
   in_plane_norm_ *= boost::math::tgamma_delta_ratio(q_ - 0.5, -0.5);
 }
 

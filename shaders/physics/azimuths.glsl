@@ -144,8 +144,8 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
   return sums;
 }
 
-// Sums over all facets of a slope. A facet whose reflected ray goes below the horizon adds its projection e to the
-// deficit (facet.glsl); e is negative if the facet faces away from theta. With all bounces every ray leaves the groove.
+// Sums over all facets of slope t. With single scattering, the deficit (light that does not leave the surface) includes
+// the projection e of each facet that reflects below the horizon, even if e < 0. With all bounces every ray leaves.
 AzimuthSums slope_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope,
                        Columns columns[DOLP_WIDTH]) {
   SplitLines lines = split_lines(rule, theta, index, slope.t, slope.has_split_line, slope.digits);

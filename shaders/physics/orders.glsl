@@ -9,7 +9,7 @@ CONST real kInverseLn10 = real(0.43429448190325182765);
 // If Arc::resolution is above this, the arc does not cluster its nodes at the azimuth where total reflection begins.
 CONST real kWideResolution = real(0.1);
 CONST real kSharpResolution = real(1e-6);  // a smaller Arc::resolution counts as 0
-CONST real kMoreDigits = real(0.3);  // slope axis: a digit beyond kPlainDigits counts as 1 + kMoreDigits
+CONST real kMoreDigits = real(0.3);  // slope axis: a digit beyond kPlainDigits costs 1 + kMoreDigits times the nodes
 CONST real kPlainDigits = real(7.0);
 CONST real kLeastWeight = real(1e-20);  // replaces the weights that are 0 at 90 degrees
 
@@ -101,8 +101,8 @@ real piece_cost(Piece piece, real re, real im) {
   return nodes_per_digit(acosh_above_1(gap_beside_unit(y.x, y.y)));
 }
 
-// Number of nodes for a term like exp(-1/(m x)^2) of the integrand, where x is the distance from an end of the piece or
-// arc. The term is at most about exp(-1/m^2), so it does not change the first kInverseLn10 / m^2 digits.
+// Number of nodes for a term of the integrand like exp(-1/(m x)^2), where x (0 to 1) is the distance from an end of the
+// piece or arc. The term is at most about exp(-1/m^2) = 10^-d, with d = kInverseLn10 / m^2. It leaves d digits intact.
 real essential_nodes(ShapeNode shape, real digits) {
   real wanted = max(digits - kInverseLn10 / (shape.m * shape.m), real(0.0));
   return real(0.25) * wanted * wanted;

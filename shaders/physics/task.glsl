@@ -48,8 +48,8 @@ struct Piece {
   real extent;  // in X
   bool root_at_a;
   bool root_at_b;
-  real root_before;       // X of a distant square root at the start of the preceding piece; X at a if there is none
-  real root_after;        // X of a distant square root at the end of the next piece; X at b if there is none
+  real root_before;       // X at a, or at the start of the preceding piece if a square root lies there, far from a
+  real root_after;        // X at b, or at the end of the next piece if a square root lies there, far from b
   real mass[DOLP_WIDTH];  // share of the facets on the piece, for each entry of a row
   real fall;              // ln(share of facets steeper than a / share of facets steeper than b), the largest of a row
   real digits;            // digits that the most demanding entry of a row requires

@@ -315,13 +315,13 @@ TEST_F(Resume, OverADamagedPartialFile_GivesTheSameBits) {
     return bytes.replace(offset, 64, std::string(64, 'x'));
   };
   const std::vector<std::pair<std::string, std::string>> damaged = {
-      {"", progress},                      // removed
+      {"", progress},                      // t.nc.partial is removed
       {values.substr(0, 1000), progress},  // cut within the values of the first part
       {values.substr(0, 5'000'000), progress},
       {content("one.nc") + values, progress},                 // the finished table stands before the values
-      {overwritten(values, 400'000), progress},               // 64 bytes in the first part overwritten
-      {values, overwritten(progress, 30)},                    // line that identifies the table overwritten
-      {values, overwritten(progress, progress.size() - 80)},  // line of the last finished part overwritten
+      {overwritten(values, 400'000), progress},               // 64 bytes in the first part are overwritten
+      {values, overwritten(progress, 30)},                    // the line that identifies the table is overwritten
+      {values, overwritten(progress, progress.size() - 80)},  // the line of the last finished part is overwritten
       {values, progress.substr(0, progress.size() - 3)},
       {values, ""}};
   for (std::size_t i = 0; i < damaged.size(); ++i) {

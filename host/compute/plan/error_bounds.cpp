@@ -49,7 +49,7 @@ double share_beyond(Distribution distribution, const kernel::ShapeNode& shape, d
   return steeper_share(distribution, {shape.m / std::numbers::sqrt2, shape.q_minus_1 + 1.0}, slope);
 }
 
-// Upper bound of cos(theta) times the albedo of facets steeper than ShapeNode::cut, which the kernel leaves out.
+// Upper bound of what facets steeper than ShapeNode::cut, which the kernel omits, add to cos(theta) times the albedo.
 double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::ShapeNode& shape) {
   const double reached = std::min(shape.cut, theta.end[DOLP_MAX_PIECES]);
   const double tail = share_beyond(data.distribution, shape, reached);
@@ -114,9 +114,8 @@ double steep_reflectance(const KernelData& data, const kernel::IndexNode& index,
   return left_after(theta, index, std::max(std::min(pi / 3.0, elevation) * slope - 1.0, 0.0), 1.0);
 }
 
-// Bound of the error in grooves with more than DOLP_MOST_BOUNCES bounces, where the kernel treats several bounces as
-// one. `reflected` is the light that the kernel computes for these grooves. If it is at most
-// `least`, it is itself the bound of its error.
+// Bound of the error in grooves with more than DOLP_MOST_BOUNCES bounces, where the kernel treats several as one. The
+// kernel computes the light `reflected` for these grooves. If it is at most `least`, this light is itself the bound.
 double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::IndexNode& index,
                           const kernel::ShapeNode& shape, double reflected, double least) {
   const auto beyond = [&](double bounces, double most) {
@@ -137,8 +136,8 @@ double pair_factor(const KernelData& data, const kernel::IndexNode& index) {
   return index.critical_cos > 0.0 ? kCriticalFactor * smooth : smooth;
 }
 
-// Error of a function of a sky: from its table, from corners (kinks) at which the azimuths are not split, and from
-// rounding. Near the zenith, rounding is large because 1 - cos(theta_r) loses digits.
+// Error of a function of a sky. It comes from the table of the function, from corners (kinks) at which the azimuths are
+// not split, and from rounding. Near the zenith, rounding is large because 1 - cos(theta_r) loses digits.
 double sky_error(const KernelData& data, std::size_t function, double unit_roundoff) {
   return data.sky.error[function] + kUnsplitBends * data.sky.bends[function] + kSkyRoundings * unit_roundoff +
          data.sky.steepness[function] * std::sqrt(kSkyCosineRoundings * unit_roundoff);
@@ -150,8 +149,8 @@ double response_rounding(std::size_t degree, double unit_roundoff) {
 }
 
 struct Shares {
-  double cut = 0.0;            ///< bound of the albedo of facets steeper than ShapeNode::cut
-  double reflected_cut = 0.0;  ///< bound of the light that these facets reflect
+  double cut = 0.0;            ///< bound of what facets steeper than ShapeNode::cut add to Moments::albedo
+  double reflected_cut = 0.0;  ///< bound of what these facets add to Moments::r_i
   double grooves = 0.0;        ///< error of r_i and deficit in grooves, from many bounces, rounding and omitted light
   double masking = 0.0;        ///< relative error of G
   double rounding = 0.0;       ///< relative rounding error

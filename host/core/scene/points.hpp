@@ -33,7 +33,7 @@ struct Points {
   AxisArray<Column> coordinates;
   /// The different names of materials and bands in the file. The columns of these axes hold positions in these lists.
   AxisLabels labels;
-  /// Columns such as "surface.coating.1.thickness_um". The key is the layer (0 for coating.1) and n, k or thickness.
+  /// Columns such as "surface.coating.1.thickness_um". Map key: the layer (0 for coating.1), and n, k or thickness.
   std::map<std::pair<std::size_t, FilmValue::Part>, Column> films;
   bool has_winds = false;                          ///< true if the points have winds instead of sigmas
   Column theta_i_deg, theta_r_deg, delta_phi_deg;  ///< only for kGeometries, which have no theta_deg and wavelength_um

@@ -60,7 +60,7 @@ bool is_effect_table(std::string_view table);
 /// True for "surface.coating" and for its layers, such as "surface.coating.2".
 bool is_coating(std::string_view key);
 
-/// True if the setting `none` removes this key or table. For other keys `none` may be a value, and `{}` removes them.
+/// True if KEY=none removes this key or table. A word or text may have the value `none`, so only KEY={} removes it.
 bool is_removed_by_none(std::string_view key);
 
 void add_effect(SceneValues& scene, std::string_view table);

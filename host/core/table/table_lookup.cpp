@@ -20,7 +20,7 @@ constexpr auto kTheta = static_cast<std::size_t>(Axis::kTheta);
 constexpr auto kQ = static_cast<std::size_t>(Axis::kQ);
 // How many values an interpolation reads on each axis. On the first two axes, which have labels, it always reads one.
 constexpr std::array<std::size_t, kAxisCount> kWindow = {2, 2, 4, 4, 4, 4, 6, 6, 6};
-constexpr std::size_t kMostRows = std::size_t{4} * 4 * 4 * 4 * 6 * 6;  // most rows that an interpolation reads
+constexpr std::size_t kMostRows = std::size_t{4} * 4 * 4 * 4 * 6 * 6;  // limit of Rows::rows; a row has all values of q
 constexpr int kMostShift = 3;            // most values by which the read window moves away from unknown entries
 constexpr std::size_t kLeastValues = 4;  // an axis with fewer values gives no reliable error estimate
 // These five constants are tuned on 581,000 bistatic lookups. A failure is a lookup whose error exceeds the stated

@@ -23,7 +23,8 @@ class TableOutput {
     std::vector<TableBox> parts = {};  ///< the parts that write() gets, in this order; empty: any parts in any order
     std::string identity = {};         ///< names and values that must be equal in a resumed run; empty: not resumable
     bool is_resumed = false;           ///< continues PATH.partial if this file exists
-    Progress progress = {};            ///< called with done = 0 while finished parts are read; false cancels the run
+    /// Called with done = 0 for each finished part that a resumed run reads. If it returns false, the run is cancelled.
+    Progress progress = {};
   };
   /// If `is_resumed`, reuses the finished parts of an earlier run, up to the first part that is missing or changed.
   /// Errors: errors of check_output_path; InputError if the partial file has another identity or is in use by another

@@ -13,10 +13,10 @@ namespace dolp {
 /// A variable of a response table. The table has weights at local angles of incidence beta. Let R_s and R_p be the
 /// reflectances of a facet at beta, R = (R_s + R_p) / 2 and D = (R_s - R_p) / 2. For a surface with the specular weight
 /// k_s = 1 and no diffuse part, rho_I = sum over beta of response_i * R, and rho_Q = sum over beta of response_q * D.
-/// The error of these sums is at most response_error times a factor of the material, plus a second term. The factor is
-/// 0.7 to 1.3 for bare materials, and larger with total reflection (host/programs/cli/README.md). The second term is
-/// there because R and D are known only at the angles beta, and polynomials stand for them between these angles. It is
-/// at most the largest difference between R or D and its polynomial, times the albedo. For emission: times 1.
+/// Emissivities of direct emission: sum over beta of emission_i * (1 - R) for I, and of -emission_q * D for Q. Errors
+/// of rho: at most F * response_error + albedo * P; errors of the emissivities: at most F * response_error + P. F
+/// depends on the material: 0.7 to 1.3 if it is bare, more with total reflection (host/programs/cli/README.md). Between
+/// the angles beta, polynomials replace R and D. P is the largest difference between R or D and its polynomial.
 enum class ResponseVariable : std::uint8_t { kResponseI, kResponseQ, kEmissionI, kEmissionQ, kResponseError };
 inline constexpr std::size_t kResponseVariableCount = static_cast<std::size_t>(ResponseVariable::kResponseError) + 1;
 

@@ -61,7 +61,7 @@ class GrowthMap {
   Eigen::Vector2d position(const GridNode& node) const {
     return result_.valley_points.front().where.at(pair_) + steps_ * Eigen::Vector2d(node.first, node.second);
   }
-  /// True for nodes in the range of both parameters or about one step outside. beside() moves outside nodes to a bound.
+  /// True if a node is at most about one step outside the ranges of the parameters. beside() moves it into the ranges.
   bool is_near_range(const GridNode& node) const {
     const Eigen::Vector2d at = position(node);
     return (steps_.inverse() * (at - at.cwiseMax(0.0).cwiseMin(1.0))).norm() < 1.5;

@@ -55,7 +55,7 @@ class Side {
   }
 
   void add(Minimum found) {
-    // If the objective is below the best minimum by more than this share of the scale, there is a lower minimum.
+    // A point is a lower minimum if it is below the best objective by more than this times ProfileOptions::scale.
     constexpr double kLowerMinimum = 0.01;
     if (found.objective < least_ - kLowerMinimum * options_->scale) {
       lower_ = std::move(found);

@@ -16,8 +16,8 @@ struct MuellerPoint {
 };
 
 /// The directions, slope distribution and index of each point. Values that a point lacks come from the scene. Errors:
-/// InputError if check_surface() refuses a point, or if the scene has measured reflectances. A scene with a band is an
-/// InputError if it has a coating, or if its material depends on the wavelength and the points lack column n or k.
+/// InputError if check_surface() refuses a point, if the scene has measured reflectances, if it has a band and a
+/// coating, or if it has a band and a material that depends on the wavelength while the points lack column n or k.
 std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points& points);
 
 /// The precision for a run. kAuto becomes float if float meets the tolerance or double is missing, otherwise double.

@@ -39,7 +39,7 @@ struct ErrorCheck {
   double error = 0.0;      ///< distance between the result and its reference
   double estimate = 0.0;   ///< error bound that the result states; infinite if it states none
   double reference = 0.0;  ///< bound of the error of the reference, in the unit of `error`
-  /// (error - reference) / estimate. If error <= reference, the result may be exact. Then min(1, error / estimate).
+  /// (error - reference) / estimate, or min(1, error / estimate) if error <= reference: the result may then be exact.
   double ratio() const;
   bool is_within_estimate() const { return ratio() <= 1.0; }
   bool is_above(double tolerance) const { return error > tolerance + reference; }
@@ -60,9 +60,9 @@ struct CaseOutcome {
 /// A scene for stored cases: the surface only emits, at 300 K and 10.6 um. So DOLP = |rho_Q| / (1 - rho_I).
 SceneValues emission_scene(Distribution distribution, Masking masking, double tolerance);
 
-/// Evaluates all cases and compares each with its reference, in the order of `cases`. At 90 degrees rho is infinite. So
-/// only DOLP is compared there; its reference is |r_q / r_i|. Domain: cases at 90 degrees have masking `none` or
-/// `integral` and finite reference moments. Errors: errors of evaluate_scene.
+/// Evaluates all cases and compares each with its reference, in the order of `cases`. At 90 degrees rho is infinite,
+/// but the moments r_i and r_q are finite. So there the function compares only DOLP, with |r_q / r_i|. Domain: a case
+/// at 90 degrees has masking `none` or `integral`, and finite reference moments. Errors: errors of evaluate_scene.
 std::vector<CaseOutcome> qualify(const std::vector<StoredCase>& cases, ModelEvaluator& evaluator,
                                  const Accuracy& accuracy, const Progress& progress);
 

@@ -115,7 +115,7 @@ class Peak {
   std::string key_;
   Scene scene_;
   std::vector<Point> curve_;
-  std::vector<double> theta_deg_;  ///< zeniths of the search; empty if no point of the curve is good
+  std::vector<double> theta_deg_;  ///< zeniths at which to search the peak; empty if no point of the curve is good
   std::optional<PeakAnswer> answer_;
   std::vector<WithoutEffect> without_;
 };

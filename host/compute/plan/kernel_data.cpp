@@ -120,8 +120,8 @@ void add_direction(KernelData& data, const MomentsRequest& request, double theta
   data.pieces.push_back(pieces);
 }
 
-// The slope at which the integral ends. Steeper facets are less than `share` of all facets and contribute less than
-// `share` of the mean slope, unless the integral ends at kLargestCut, the limit for Cauchy slopes.
+// The slope at which the integral ends. Steeper facets are less than `share` of all facets. They contribute at most
+// about 6 times `share` of the mean slope, unless the integral ends at kLargestCut, the limit for Cauchy slopes.
 double slope_cut(const MomentsRequest& request, const SlopeShape& shape, double share) {
   const double m = slope_width(shape);
   if (request.distribution == Distribution::kGaussian) return m * std::sqrt(1.0 - std::log(share));

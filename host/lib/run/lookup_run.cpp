@@ -112,7 +112,7 @@ void check_index(const TableLookup& lookup, const SceneValues& scene, const Poin
 
 constexpr std::size_t kLines = 3;        // number of examined lines of entries per axis; along a line, only it varies
 constexpr std::size_t kParts = 4;        // kParts + 1 cells (see lookup_forecast) of an axis are examined
-constexpr std::size_t kStretch = 8;      // values computed around a cell: lookups read six, and one more for the error
+constexpr std::size_t kStretch = 8;      // values computed around a cell: a lookup reads six, and one on each side
 constexpr std::size_t kLeastValues = 4;  // smallest number of values for which a lookup states an error
 // A lookup reads six values along theta, sigma and q, and four along each other axis. kOrderOf...: in dense grids, the
 // stated error is proportional to this power of the spacing of the values. kWeightsOf...: in the middle of a cell, the

@@ -139,13 +139,13 @@ void set_error(FitParameter& fitted, const FitRange& range, double deviation, bo
   }
 }
 
-FitInterval interval_of(const FitRange& parameter, const std::vector<Stretch>& stretches) {
+FitInterval interval_of(const FitRange& parameter, const std::vector<CoordinateInterval>& intervals) {
   FitInterval interval;
-  interval.is_empty = stretches.empty();
-  for (const Stretch& stretch : stretches) {
+  interval.is_empty = intervals.empty();
+  for (const CoordinateInterval& piece : intervals) {
     std::optional<double> low, high;
-    if (stretch.low > kAtBound) low = parameter.at(stretch.low);
-    if (stretch.high < 1.0 - kAtBound) high = parameter.at(stretch.high);
+    if (piece.low > kAtBound) low = parameter.at(piece.low);
+    if (piece.high < 1.0 - kAtBound) high = parameter.at(piece.high);
     interval.pieces.emplace_back(low, high);
   }
   if (interval.is_empty) return interval;
@@ -258,9 +258,9 @@ class Fit {
     for (std::size_t j = 0; j < result_.parameters.size(); ++j) {
       FitParameter& parameter = result_.parameters[j];
       (is_scaled ? parameter.scaled_68.emplace() : parameter.interval_68) =
-          interval_of(model_.parameters()[j], profiles->stretches[j][0]);
+          interval_of(model_.parameters()[j], profiles->intervals[j][0]);
       (is_scaled ? parameter.scaled_95.emplace() : parameter.interval_95) =
-          interval_of(model_.parameters()[j], profiles->stretches[j][1]);
+          interval_of(model_.parameters()[j], profiles->intervals[j][1]);
     }
     if (!is_scaled) std::ranges::copy(profiles->points, std::back_inserter(result_.valley_points));
     return true;
@@ -275,7 +275,8 @@ class Fit {
       if (candidate.objective < options.from + options.rises[1] * scale) near.push_back(candidate);
     }
     if (near.empty())
-      return Profiles{.stretches = std::vector<std::array<std::vector<Stretch>, 2>>(result_.parameters.size())};
+      return Profiles{.intervals =
+                          std::vector<std::array<std::vector<CoordinateInterval>, 2>>(result_.parameters.size())};
     Profiles profiles = profiles_of(profile_, near, options);
     if (may_restart && profiles.lower && take(*profiles.lower)) return std::nullopt;
     return profiles;

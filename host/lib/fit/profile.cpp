@@ -156,13 +156,13 @@ class Side {
   std::optional<Minimum> lower_;
 };
 
-void merge(std::vector<Stretch>& all, Stretch stretch) {
-  std::erase_if(all, [&](const Stretch& other) {
-    if (other.high < stretch.low || stretch.high < other.low) return false;
-    stretch = {std::min(stretch.low, other.low), std::max(stretch.high, other.high)};
+void merge(std::vector<CoordinateInterval>& all, CoordinateInterval added) {
+  std::erase_if(all, [&](const CoordinateInterval& other) {
+    if (other.high < added.low || added.high < other.low) return false;
+    added = {std::min(added.low, other.low), std::max(added.high, other.high)};
     return true;
   });
-  all.insert(std::ranges::find_if(all, [&](const Stretch& other) { return other.low > stretch.low; }), stretch);
+  all.insert(std::ranges::find_if(all, [&](const CoordinateInterval& other) { return other.low > added.low; }), added);
 }
 
 /// An end of an interval. A search for other branches may still move it.
@@ -180,7 +180,7 @@ class Profiler {
       : residuals_(residuals), options_(options), least_(minima.front().objective) {
     const double secant_below = objective_at(kTrustedShare * options.rises[0]);
     descent_ = {options.loss, options.scale, descent_.most_steps, kProfileGain, secant_below};
-    result_.stretches.resize(residuals.model().parameters().size());
+    result_.intervals.resize(residuals.model().parameters().size());
     for (const Minimum& minimum : minima) {
       for (Eigen::Index j = 0; j < minimum.where.at.size(); ++j) {
         const double at = minimum.where.at[j];
@@ -228,7 +228,7 @@ class Profiler {
       }
       for (std::size_t rise = 0; rise < options_.rises.size(); ++rise) {
         if (!sides_[i].end(rise)) continue;
-        merge(result_.stretches[sides_[i].parameter()][rise], {*sides_[i].end(rise), *sides_[i + 1].end(rise)});
+        merge(result_.intervals[sides_[i].parameter()][rise], {*sides_[i].end(rise), *sides_[i + 1].end(rise)});
       }
     }
   }
@@ -236,9 +236,9 @@ class Profiler {
   /// The ends beyond which no search for other branches was made yet. Ends at a bound of the range are left out.
   std::vector<ProfileEnd> new_ends() {
     std::vector<ProfileEnd> ends;
-    for (std::size_t j = 0; j < result_.stretches.size(); ++j) {
+    for (std::size_t j = 0; j < result_.intervals.size(); ++j) {
       for (std::size_t rise = 0; rise < options_.rises.size(); ++rise) {
-        const std::vector<Stretch>& all = result_.stretches[j][rise];
+        const std::vector<CoordinateInterval>& all = result_.intervals[j][rise];
         const auto parameter = static_cast<Eigen::Index>(j);
         if (all.empty()) continue;  // the interval is empty: all minima lie above the rise
         for (const ProfileEnd& end :
@@ -285,8 +285,8 @@ class Profiler {
   /// straight path leads from it, see is_straight(). Such points are on the same branch. If a side has points beyond
   /// `end`, and the growth at the lowest of them is clearly below the rise, another descent begins there.
   std::vector<Neighbour> ways_beyond(const ProfileEnd& end) const {
-    if (result_.stretches.size() == 1) return {};  // the profile of a single parameter has no other branch
-    const std::vector<Stretch>& all = result_.stretches[static_cast<std::size_t>(end.parameter)][end.rise];
+    if (result_.intervals.size() == 1) return {};  // the profile of a single parameter has no other branch
+    const std::vector<CoordinateInterval>& all = result_.intervals[static_cast<std::size_t>(end.parameter)][end.rise];
     const double width = all.back().high - all.front().low;
     const double beyond = std::clamp(end.at + end.direction * kBeyond * width, 0.0, 1.0);
     const auto distance = [&](const Minimum& candidate) {

@@ -28,7 +28,7 @@ struct SearchOptions {
 std::vector<Minimum> find_minima(Residuals& coarse, Residuals& fine, const SearchOptions& options);
 
 /// An interval of a coordinate (0 to 1 over the parameter's range) that the data do not exclude.
-struct Stretch {
+struct CoordinateInterval {
   double low = 0.0;
   double high = 1.0;
 };
@@ -44,7 +44,7 @@ struct ProfileOptions {
 struct Profiles {
   /// For each parameter and each of ProfileOptions::rises: the intervals in which the growth is below the rise. The
   /// growth is minimised over all other parameters. The intervals are disjoint and ascending.
-  std::vector<std::array<std::vector<Stretch>, 2>> stretches;
+  std::vector<std::array<std::vector<CoordinateInterval>, 2>> intervals;
   std::vector<Minimum> points = {};  ///< computed points of the profiles
   /// A point with an objective below the best minimum, if the profiles found one. Then the search missed a minimum.
   std::optional<Minimum> lower = {};

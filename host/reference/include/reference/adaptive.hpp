@@ -76,7 +76,7 @@ Integral<N> kronrod_panel(const Integrand& integrand, double low, double high) {
 }
 
 /// Maps s in [0, 1] to an interval. An integrand with a square root or a 3/2 power at an end becomes smooth in s.
-struct Stretch {
+struct SmoothMap {
   double low;
   double high;
   double at(double s) const {
@@ -86,23 +86,23 @@ struct Stretch {
   double derivative(double s) const { return 6.0 * (high - low) * s * (1.0 - s); }
 };
 
-/// The part of a Stretch from s = `low` to s = `high`, and its integral.
+/// The part of a SmoothMap from s = `low` to s = `high`, and its integral.
 template <std::size_t N>
 struct Panel {
-  Stretch stretch;
+  SmoothMap map;
   double low;
   double high;
   Integral<N> integral;
 };
 
 template <std::size_t N, class Integrand>
-Panel<N> panel_of(const Integrand& integrand, const Stretch& stretch, double low, double high) {
+Panel<N> panel_of(const Integrand& integrand, const SmoothMap& map, double low, double high) {
   const auto in_s = [&](double s) {
-    Values<N> values = integrand(stretch.at(s));
-    for (double& value : values) value *= stretch.derivative(s);
+    Values<N> values = integrand(map.at(s));
+    for (double& value : values) value *= map.derivative(s);
     return values;
   };
-  return {stretch, low, high, kronrod_panel<N>(in_s, low, high)};
+  return {map, low, high, kronrod_panel<N>(in_s, low, high)};
 }
 
 template <std::size_t N>
@@ -133,11 +133,11 @@ Integral<N> integrate(const Integrand& integrand, const Breaks& breaks, const Go
   const std::vector<double> points = breaks.sorted();
   std::vector<Panel<N>> panels;
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    const Stretch stretch{points[i], points[i + 1]};
+    const SmoothMap map{points[i], points[i + 1]};
     for (int j = 0; j < goal.subdivisions; ++j) {
       const double low = static_cast<double>(j) / goal.subdivisions;
       const double high = static_cast<double>(j + 1) / goal.subdivisions;
-      panels.push_back(panel_of<N>(integrand, stretch, low, high));
+      panels.push_back(panel_of<N>(integrand, map, low, high));
     }
   }
   while (panels.size() < goal.max_panels) {
@@ -150,8 +150,8 @@ Integral<N> integrate(const Integrand& integrand, const Breaks& breaks, const Go
     const Panel<N> whole = *worst;
     const double middle = 0.5 * (whole.low + whole.high);
     if (middle <= whole.low || middle >= whole.high) break;
-    *worst = panel_of<N>(integrand, whole.stretch, whole.low, middle);
-    panels.push_back(panel_of<N>(integrand, whole.stretch, middle, whole.high));
+    *worst = panel_of<N>(integrand, whole.map, whole.low, middle);
+    panels.push_back(panel_of<N>(integrand, whole.map, middle, whole.high));
   }
   return sum_of(panels);
 }

@@ -18,7 +18,7 @@ struct Groove {
 enum class Facet { kA, kB };
 
 /// A beam of parallel rays: all rays through the aperture that meet the facet `first` before the other facet. The beam
-/// covers a stretch of the facet, of length flux / cos(beta). The end of the stretch that is nearer to the apex is the
+/// covers a part of the facet, of length flux / cos(beta). The end of this part that is nearer to the apex is the
 /// edge of the beam; the edge is followed as a ray. Rays that miss the next facet leave the groove above its rim.
 template <class Real>
 class GrooveBeam {

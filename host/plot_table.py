@@ -60,7 +60,7 @@ def text_of(dataset, name):
 
 
 def scene_part(dataset, part):
-    """The keys of one TOML table of the scene, such as surface, changed by the overrides. Empty if it is not TOML."""
+    """Keys of the TOML table `part` of the scene, with the overrides. Empty if the text of the scene is not TOML."""
     try:
         keys = tomllib.loads(text_of(dataset, "scene")).get(part, {})
         for line in text_of(dataset, "scene_overrides").splitlines():

@@ -39,7 +39,8 @@ Axes grid_of(std::size_t entries) {
   return grid;
 }
 
-/// The stainless steel of the paper (see shaders/physics/README.md), with emission and no other radiation.
+/// The stainless steel of the paper, with emission and no other radiation. The paper gives this n and k = 0
+/// (host/scenes/stainless_steel.toml).
 SceneValues emitting(const Axes& grid) {
   SceneValues scene;
   scene.surface.material.constant = {1.508, 0.0};

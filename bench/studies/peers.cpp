@@ -74,8 +74,8 @@ const std::vector<Target> kTargets = {
     {"native float build, same cores and entries", {"native-float"}, {"integral", "smith"}, 0.9, "ratio"}};
 constexpr double kTargetTolerance = 1e-4;
 
-/// The request whose time is measured. For a batched method, it requests the largest nested grid that is expected to
-/// take at most effort.grid_s. For any other method, it requests the entries of the sample.
+/// The request whose time is measured. A batched method gets the largest grid of NestedGrid (grids.hpp) that it is
+/// expected to finish within effort.grid_s. Any other method gets the entries of the sample.
 PeerBatch timed_batch(const Method& method, Solver& solver, const PeerSample& sample, double setting,
                       const Effort& effort) {
   if (!method.is_batched) return whole_sample(sample);

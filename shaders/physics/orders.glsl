@@ -1,7 +1,7 @@
 // Chooses the number of nodes of each Gauss rule, over a piece of the slope axis or an arc of azimuths.
 // Map the piece or arc to [0, 1], and let y0 be the singularity of the integrand, in the complex plane, that is nearest
 // to [0, 1]. A rule of n nodes has an error of about e^(-2 n mu), with cosh(mu) = |y0| + |y0 - 1| (Trefethen 2013,
-// chapter 19). So each decimal digit costs ln(10) / (2 mu) nodes. RuleNode adds fitted numbers of nodes and digits.
+// chapter 19). So each decimal digit of accuracy costs ln(10) / (2 mu) nodes. Fitted constants: struct RuleNode.
 
 CONST real kHalfLn10 = real(1.15129254649702284);
 CONST real kLn10 = real(2.30258509299404568402);
@@ -184,8 +184,8 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
 
 // ---- Azimuth -------------------------------------------------------------------------------------------------------
 
-// Nodes per digit on an arc because of a singularity at the azimuth `at`. A rule of section `half` (quadrature.glsl)
-// converges like a Gauss rule in the variable y = abscissa^2, a rule of section `cluster` in y = sqrt(abscissa).
+// Nodes per digit on an arc if the integrand is singular at the azimuth `at`. Let z = (azimuth - origin) / span. A rule
+// of section `half` (quadrature.glsl) converges like a Gauss rule in y = z^2, and of section `cluster`, in y = sqrt(z).
 real arc_cost(Arc arc, Singularity at) {
   real re = abs(at.re - arc.origin) / arc.span;
   real im = at.im / arc.span;
@@ -312,7 +312,7 @@ Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, Arc arc,
   bool is_narrow = resolution <= kWideResolution;
   arc.is_critical = is_beside && is_narrow;
   arc = with_root(arc, at_end, arc.is_critical);
-  // Rounding displaces the critical line slightly, so the resolution of a sharp root is not exactly 0.
+  // Without absorption, w^2 is 0 at this end. But rounding may change it slightly, so a tiny resolution counts as 0.
   bool is_smoothed = resolution > kSharpResolution;
   bool is_felt = digits + real(1.5) * kInverseLn10 * log_unit(resolution) > real(0.0);
   bool is_resolved = is_smoothed && is_felt;
@@ -328,8 +328,8 @@ real line_nodes(ShapeNode shape, bool has_split_line, real digits, int zone) {
   return choose(is_line, essential_nodes(shape, digits), real(0.0));
 }
 
-// Number of nodes for a square root that absorption smooths (critical_arc()). In the variable v of place_on_arc(), the
-// integrand is singular at (0.76 +- 0.57 i) / a. Without these nodes the relative error is about resolution^(3/2).
+// Number of nodes for the root w of critical_arc(), which absorption smooths. With a = asinh(1 / sqrt(resolution)) the
+// integrand is singular at v = (0.76 +- 0.57 i) / a (v: place_on_arc()). If ignored: relative error resolution^1.5.
 real resolution_nodes(real digits, real resolution) {
   real wanted = max(digits + real(1.5) * kInverseLn10 * log_unit(resolution), real(0.0));
   real a = asinh_real(real(1.0) / sqrt(resolution));

@@ -10,7 +10,7 @@ from attempt import CPU, DONE, LARGE, LIBRARY, MEMORY
 
 
 def agree(ours, theirs):
-    """True if two results of `eval` differ by at most the sum of their error bounds. Different kernels cause this."""
+    """True if two results of `eval` differ by at most the sum of their error bounds, as results of two kernels may."""
     rows, others = (list(csv.DictReader(text.decode().splitlines())) for text in (ours, theirs))
     if len(rows) != len(others):
         return False

@@ -39,7 +39,7 @@ inline constexpr double kDimmest = 1e-10;
 
 // ---- Slopes (breakpoints.cpp, kernel_data.cpp)
 
-inline constexpr double kCutShare = 0.01;  // slopes are left out if the error is about this share of the tolerance
+inline constexpr double kCutShare = 0.01;  // leaving out the steepest slopes costs about this share of the tolerance
 /// A slope s of kPlainBreakpoints (breakpoints.cpp) is a breakpoint if the largest slope exceeds kLongWay * s.
 inline constexpr double kLongWay = 300.0;
 /// Limits of ShapeNode::table_scale, the scale of the slopes in a masking table. It is about the width m of the slope

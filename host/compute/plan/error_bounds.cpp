@@ -114,7 +114,7 @@ double steep_reflectance(const KernelData& data, const kernel::IndexNode& index,
   return left_after(theta, index, std::max(std::min(pi / 3.0, elevation) * slope - 1.0, 0.0), 1.0);
 }
 
-// Bound of the error in grooves with more than DOLP_MOST_BOUNCES bounces, where the kernel treats several as one. The
+// Bound of the error in grooves with more than DOLP_MOST_BOUNCES bounces, where the kernel merges bounces into one. The
 // kernel computes the light `reflected` for these grooves. If it is at most `least`, this light is itself the bound.
 double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta, const kernel::IndexNode& index,
                           const kernel::ShapeNode& shape, double reflected, double least) {
@@ -151,7 +151,7 @@ double response_rounding(std::size_t degree, double unit_roundoff) {
 struct Shares {
   double cut = 0.0;            ///< bound of what facets steeper than ShapeNode::cut add to Moments::albedo
   double reflected_cut = 0.0;  ///< bound of what these facets add to Moments::r_i
-  double grooves = 0.0;        ///< error of r_i and deficit in grooves, from many bounces, rounding and omitted light
+  double grooves = 0.0;        ///< bound of the errors of r_i and deficit: merged bounces, rounding, omitted light
   double masking = 0.0;        ///< relative error of G
   double rounding = 0.0;       ///< relative rounding error
   double least = 0.0;          ///< least error bound of a sum, relative to the sum

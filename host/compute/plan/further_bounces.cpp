@@ -72,7 +72,7 @@ class Facet {
 };
 
 Eigen::Matrix4d mueller(const Jones& j) {
-  const Complex ss = j(0, 0), sp = j(0, 1), ps = j(1, 0), pp = j(1, 1);  // first letter: field after; second: before
+  const Complex ss = j(0, 0), sp = j(0, 1), ps = j(1, 0), pp = j(1, 1);  // sp: incident field p, reflected field s
   const double a = std::norm(ss), b = std::norm(sp), c = std::norm(ps), d = std::norm(pp);
   const Complex first = std::conj(ss) * sp, second = std::conj(ps) * pp;
   const Complex of_s = std::conj(ss) * ps, of_p = std::conj(sp) * pp;

@@ -56,7 +56,8 @@ void add_cell(ReflectanceCurve& curve, const FacetOptics& optics, double start, 
   }
 }
 
-/// Complex cos(beta) of a pole. At Re(pole), a function with this pole has the steepest slope of R_s and R_p.
+/// A pole over cos(beta) that models the steepest part of R_s or R_p. Its real part is where this part lies. Its
+/// imaginary part, at most 1, is the width of this part: half the range of the reflectance, divided by the slope.
 std::complex<double> steepest_pole(const FacetOptics& optics, std::size_t cells) {
   std::complex<double> pole(0.0, 1.0);
   for (const double SmoothAbsorptance::*part : {&SmoothAbsorptance::s, &SmoothAbsorptance::p}) {

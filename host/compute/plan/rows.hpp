@@ -10,7 +10,7 @@
 
 namespace dolp {
 
-/// Most entries in a kernel row. Kernels exist for rows of one entry and of this many entries.
+/// Largest number of entries in a kernel row. Kernels exist for rows of one entry and for rows of this many entries.
 inline constexpr std::uint32_t kRowWidth = DOLP_ROW_WIDTH;
 
 /// Shapes that share the Gauss nodes of a kernel row: equal sigma, ascending q. For points, a chunk is one shape.

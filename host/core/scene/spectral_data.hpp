@@ -34,8 +34,8 @@ struct SpectralRow {
   std::size_t line;
 };
 
-/// Appends `rows`, sorted by wavelength. Skips repeated rows and wavelengths outside kWavelengthUmRange. `named`: name
-/// and range of the values. Errors: InputError with file and line if a value is out of range or a wavelength has two.
+/// Sorts `rows` by wavelength and appends them. Skips repeated rows and wavelengths outside kWavelengthUmRange.
+/// `named`: name and range. Errors: InputError with file and line if values are out of range or differ at a wavelength.
 void append_rows(SpectralTable& table, std::vector<SpectralRow> rows, const NamedValue& named, const std::string& file);
 
 /// A row of a CSV that has values over an angle from 0 to 90 degrees and, in some files, over wavelength.

@@ -30,10 +30,10 @@ constexpr double kExponentScale_umK = 14388.0;
 constexpr double kLargestPlanckExponent = 750.0;
 constexpr double kPieceRelativeError = 1e-12;  // relative error of a sum over pieces
 
-// The band is cut into segments at the rows of the optical tables and, with films, at fringe_ends(). A segment gets at
-// most kMostNodes Gauss nodes, and fewer if their nodes_error(..., kSmallestPart) is at most kNodesRelativeError.
+// The band is cut into segments at the rows of the optical tables and, with films, at fringe_ends(). A segment gets the
+// fewest Gauss nodes, at most kMostNodes, with nodes_error() <= kNodesRelativeError (films: see smooth_segment()).
 constexpr double kNodesRelativeError = 1e-10;
-constexpr double kSmallestPart = 1e-4;
+constexpr double kSmallestPart = 1e-4;  // argument `least` of nodes_error()
 constexpr int kMostNodes = 24;
 // A probe is an angle of incidence on the smooth surface. The nodes of a segment are tested at probes. Some probes are
 // fixed. The other probes are critical angles of total reflection, at wavelengths that kCriticalShares places in the

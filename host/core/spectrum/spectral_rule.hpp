@@ -17,7 +17,7 @@ struct KeptEffects {
   bool path_radiance = true;  ///< radiance of the path; the transmittance is always kept, and cancels in DOLP
   bool diffuse = true;
   bool further_bounces = true;  ///< bounces in V-grooves after the first one
-  bool moments = true;  ///< integrals over facets for the specular part of rho, at theta or the bistatic view zenith
+  bool moments = true;  ///< specular part of rho (integrals over facets): at theta, in bistatic mode at the view zenith
   friend bool operator==(const KeptEffects&, const KeptEffects&) = default;
 };
 

@@ -132,8 +132,8 @@ struct BuiltInMaterial {
   std::string source;
 };
 DOLP_EXPORT std::vector<BuiltInMaterial> materials();
-/// The built-in material with this name. A part of the name, in whole words, is enough if only one material has it.
-/// Materials whose names begin with the part come first. Ignores case. Errors: InputError if none or several remain.
+/// The built-in material with this name. Whole words are enough if only one name begins with them or, if no name begins
+/// with them, only one name contains them. Ignores case. Errors: InputError if no material or several materials fit.
 DOLP_EXPORT BuiltInMaterial material(const std::string& name);
 
 /// Results at points, in the order of the points: computed, or interpolated in a table.

@@ -10,7 +10,7 @@ enum class EffectState : std::uint8_t {
   kAbsent,     ///< the scene does not have the effect
   kKept,       ///< computed
   kDropped,    ///< the run leaves the effect out, because a bound shows that the result hardly changes
-  kNotNeeded,  ///< a choice of the model that no kept effect uses, for example the masking if there is no specular part
+  kNotNeeded,  ///< no kept effect uses this choice of the model, for example the masking without a specular part
 };
 
 constexpr const char* name_of(EffectState state) {

@@ -59,7 +59,7 @@ struct TableHead {
   std::size_t width_of(ResponseVariable variable) const {
     return description_of(variable).has_beta ? beta_deg.size() : 1;
   }
-  /// Position of an entry in its columns. The arguments are its indices on theta, sigma and q. Its other indices are 0.
+  /// Position, in each column, of the entry with these indices on theta, sigma and q, and index 0 on all other axes.
   std::size_t position(std::size_t theta, std::size_t sigma_index, std::size_t q_index) const {
     return (theta * axes[Axis::kSigma].size() + sigma_index) * axes[Axis::kQ].size() + q_index;
   }

@@ -33,8 +33,8 @@ struct DescentOptions {
   int most_steps = 40;
   /// The descent ends if derivatives predict that the next step lowers the objective by less than least_gain * scale.
   double least_gain = 1e-5;
-  /// If set, Broyden's updates replace computed derivatives as long as they predict the steps well. Where a descent
-  /// ends with an objective above this value, it computes the derivatives.
+  /// If set, Broyden's updates replace computed derivatives as long as the updates predict the steps well. A descent
+  /// that would end with an objective above this value first computes the derivatives again.
   std::optional<double> secant_below = {};
 };
 

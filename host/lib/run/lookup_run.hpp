@@ -30,11 +30,11 @@ struct AxisForecast {
 };
 inline constexpr std::size_t kMostForecastValues = 10'000;
 
-/// A forecast for each axis of the grid that has more than one value and no labels. The CPU computes the table around a
-/// few cells of the axis (intervals between neighbouring values). The error is the largest one that a lookup states in
-/// the middle of a cell. The forecast repeats this with 8, 16, 32, ... values until the error is at most `wanted`. It
-/// misses features narrower than the distance of the cells. Accuracy: with needed_values on each axis, most points meet
-/// the tolerance; with half as many, most miss it (test LookupForecast_TablesOfTheAdvisedDensity_*).
+/// A forecast for each axis of the grid that has several numbers as values. A cell is an interval between neighbouring
+/// values. The CPU computes the table near a few cells of the axis. AxisForecast::error is the largest error estimate
+/// of a lookup in the middles of these cells. The forecast repeats this with 8, 16, 32, ... values until the error is
+/// at most `wanted`. It misses features between these cells. Accuracy: with needed_values on each axis, most points
+/// meet the tolerance; with half as many, most miss it (test LookupForecast_TablesOfTheAdvisedDensity_*).
 std::vector<AxisForecast> lookup_forecast(const SceneValues& scene, const EffectPlan& plan);
 
 }  // namespace dolp

@@ -85,7 +85,7 @@ Weights weights_of(const std::vector<ColumnMoments>& columns, double whole_error
         (m == 0 ? 1.0 : 2.0) / kBetaAngles * nodes().polynomials.row(static_cast<Eigen::Index>(m));
     own.i += sum.i * share;
     own.q += sum.q * share / nodes().sin2;
-    // q_apart may be too small by chance too. So the bound for both i and q is the sum of the bound of i and that of q.
+    // q_apart may be too small, too, and q has no bound like whole_error. So i and q get the sum of both bounds.
     const double of_i = std::abs(sum.i_apart) + sum.relative_error * std::abs(sum.i) + sum.error;
     const double of_q = std::abs(sum.q_apart) + sum.relative_error * std::abs(sum.q) + sum.error;
     own.error += std::ldexp(std::max(of_i, whole_error) + of_q, -static_cast<int>(m));

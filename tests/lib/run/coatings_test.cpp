@@ -1,4 +1,5 @@
-// Films and measured reflectances, alone and in scenes. Closed forms and the reference give the expected values.
+// Tests of films and of measured reflectances, alone and in scenes. The expected values come from closed forms and from
+// the reference implementation (host/reference).
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -32,8 +32,8 @@ double projected(const Scene& scene) {
 }
 
 TEST(ExplorePanels, SlopeDensity_IsNormalised_AndTheOtherOneHasTheSameD0) {
-  constexpr double kRule =
-      1e-6;  // bound of the error of the midpoint rule: twice as many points change the integral by less
+  // Bound of the error of the midpoint rule. With twice as many points the integral changes by less than this bound.
+  constexpr double kRule = 1e-6;
   for (const char* distribution : {"cauchy", "gaussian"}) {
     for (const double sigma : {0.05, 0.3, 1.0}) {
       const Scene scene = paint().scene().with({{"surface.distribution", distribution}, {"surface.sigma", sigma}});

@@ -48,7 +48,7 @@ struct SlopeBatch {
   std::vector<SlopeSamples> samples;
   std::vector<std::size_t> first;  ///< for each of `samples`, the position of its first slope in `slopes`
   std::vector<kernel::SlopeNode> slopes;
-  std::vector<std::uint32_t> in_lockstep;  ///< positions in `slopes`, in groups of kLockstep with equal loop bounds
+  std::vector<std::uint32_t> in_lockstep;  ///< positions in `slopes`: groups of kLockstep slopes with equal loop bounds
 };
 
 struct DispatchCount {

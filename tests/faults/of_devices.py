@@ -69,7 +69,7 @@ def lacking_driver(driver):
 
 
 def broken_driver_file(driver):
-    """a driver's file is missing, empty, cut short or no JSON"""
+    """the JSON file of a Vulkan driver is missing, empty, cut short or not JSON"""
     driver.expect("eval")
     for text in (None, "", "{", '{"file_format_version": "1.0.0"}', "\0\xff", "[]"):
         with tempfile.TemporaryDirectory(dir=FOLDERS) as folder:

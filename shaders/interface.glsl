@@ -34,7 +34,7 @@
 #define DOLP_MASKING_INTEGRAL 2u
 #define DOLP_MASKING_SMITH 3u
 #define DOLP_COLUMNS_SKY 0u           // integrands of r_i and r_q times a function of the sky, see physics/columns.glsl
-#define DOLP_COLUMNS_RESPONSE 1u      // responses: r_i and r_q with polynomials in the place of the reflectances
+#define DOLP_COLUMNS_RESPONSE 1u      // responses: r_i and r_q with polynomials instead of the reflectances
 #define DOLP_COLUMNS_SKY_RESPONSE 2u  // responses, with a function of the sky as a factor of the integrand
 #define DOLP_COLUMNS_DIRECT 3u        // responses of the direct emission
 

@@ -21,7 +21,7 @@ struct Entry {
 };
 Entry entry_of(const MomentsRequest& request, std::size_t position);
 
-/// What one facet contributes to the moments: its masking G, times the elements M00 (`i`) and M01 (`q`) of its Mueller
+/// Contribution of a facet to the moments: its masking G, times the elements M00 (`i`) and M01 (`q`) of its Mueller
 /// matrix M.
 struct Reflected {
   double i = 0.0;
@@ -83,14 +83,14 @@ class DirectSurface {
   double sin_theta_;
   double m_;
   std::unique_ptr<MaskingTails> tails_;
-  /// What the masking needs from the fixed beam: Lambda for `smith`, MaskingTails::height for `integral`.
+  /// A number of the fixed beam that the masking needs: Lambda for `smith`, MaskingTails::height for `integral`.
   double fixed_masking_ = 0.0;
 };
 
 /// Integrand of the moments over the directions (theta_r, delta_phi) of the running beam:
 ///   r = int_0^{pi/2} dtheta_r int_0^pi d(delta_phi) D G M sin(theta_r)/2
 /// D is the density of facet normals, G the masking and M the element M00 or M01. Only azimuths delta_phi from 0 to pi
-/// are integrated: the integrand is twice that of the full circle, because both halves contribute equally.
+/// are integrated: the integrand is doubled, because both halves contribute equally.
 Reflected beam_integrand(const DirectSurface& surface, const RunningBeam& beam, double cos_azimuth);
 
 /// Integrand of the moments over the facets, for the Monte Carlo method:

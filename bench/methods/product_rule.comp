@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Product rule over the directions (theta_r, delta_phi) of the running beam. The other, fixed beam has the zenith angle
-// theta. The integrand is that of beam_integrand() in direct_brdf.hpp. An invocation sums over some zeniths theta_r and
+// theta. It has the integrand of beam_integrand() in direct_brdf.hpp. An invocation sums over some zeniths theta_r and
 // all azimuths delta_phi, for one entry. Density, geometry and rotations use plain formulas. Fresnel reflectances and
 // masking use the code of dolp.
 

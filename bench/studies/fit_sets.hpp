@@ -55,7 +55,7 @@ struct SetOutcome {
   /// if chi^2 at the true values exceeds the minimum by more than 1. For a 95 % interval, this limit is 3.84. The
   /// result is meaningful only if FitSet::model_error is kNone.
   bool is_consistent() const;
-  /// True unless a descent from the true values reaches a chi^2 that is lower than that of the fit by more than 0.01.
+  /// True unless a descent from the true values lowers the chi^2 of the fit by more than 0.01.
   bool is_global() const;
 };
 

@@ -179,7 +179,7 @@ Number along(const RealVector<Number>& a, const std::array<Number, 3>& e) {
   return a[0] * e[0] + a[1] * e[1] + a[2] * e[2];
 }
 
-// What the grooves of one GroovePlane add to reference_bounces(). Light meets facet A first. `Number`: a complex type.
+// The contribution of one GroovePlane to reference_bounces(). Light meets facet A first. `Number`: a complex type.
 template <class Number>
 ReferenceMueller bounces_in_plane(const reference::Slopes& slopes, const FacetOptics& constants, const BeamFrame& in,
                                   const BeamFrame& out, const GroovePlane& plane, int bounces) {

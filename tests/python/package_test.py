@@ -15,20 +15,8 @@ from package_case import TEXT, PackageCase
 
 class Package(PackageCase):
     def test_examples_in_the_documentation_hold(self):
-        names = {"dolp": dolp, "np": np, "tempfile": tempfile, "scene": dolp.Scene(text="""
-[surface]
-n = 1.5
-k = 0.05
-sigma = 0.2
-q = 3.0
-masking = "smith"
-[emission]
-temperature_K = 300.0
-[spectrum]
-wavelength_um = 10.0
-[grid]
-theta_deg = {from = 0, to = 80, count = 5}
-""")}
+        names = {"dolp": dolp, "np": np, "tempfile": tempfile, "scene": dolp.Scene(text=TEXT, overrides={
+            "title": None, "surroundings": None, "grid": None, "grid.theta_deg": {"from": 0, "to": 80, "count": 5}})}
         rooms = [dolp, *(importlib.import_module(f"dolp.{room}") for room in ("_scene", "_runs", "_fit", "_response"))]
         results = [doctest.testmod(room, extraglobs=names) for room in rooms]
         self.assertEqual(sum(failed for failed, _ in results), 0)

@@ -148,7 +148,7 @@ inline bool are_same(const Moments& a, const Moments& b) {
   return a.evaluations == b.evaluations && std::ranges::all_of(kHemisphereMembers, is_same);
 }
 
-/// Expects that each moment of `a` differs from that of `b` by at most a bound: the sum of both stated errors and
+/// Expects that each moment of `a` differs from the moment of `b` by at most a bound: the sum of both stated errors and
 /// `slack`. Returns the largest ratio of a difference to its bound.
 inline double expect_within_bounds(const Moments& a, const Moments& b, const std::string& where, double slack = 0.0) {
   double worst = 0.0;

@@ -65,7 +65,7 @@ class CsvColumns {
 
   /// For a file without a header. Its rows have all columns in the order of `known`.
   explicit CsvColumns(std::vector<CsvColumn> known);
-  /// Reads the first line of a text as a header. Errors: those of CsvColumns, and InputError for a text without lines.
+  /// Reads the first line of a text as a header. Errors: errors of CsvColumns, and InputError for a text without lines.
   static CsvColumns first_of(CsvReader& reader, std::vector<CsvColumn> known,
                              const std::vector<std::string>& ignored = {});
 

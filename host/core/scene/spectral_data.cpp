@@ -44,7 +44,7 @@ bool covers(const SpectralTable& table, const Spectrum& spectrum) {
 constexpr std::size_t kMostAngleRows = 100'000;
 constexpr double kLargestSplitAtNormal = 0.01;
 
-/// Refuses rows whose angles do not ascend from 0 to 90, or differ from those of the first wavelength, `first`.
+/// Refuses rows whose angles do not ascend from 0 to 90, or differ from the angles of `first`, the first wavelength.
 void check_angles(std::span<const AngleRow> rows, std::span<const AngleRow> first, const std::string& angle,
                   const std::string& file) {
   const auto fail = [&](const AngleRow& row, const std::string& what) {

@@ -241,7 +241,7 @@ std::vector<double> probe_cosines(const Surface& surface, double from_um, double
   return cosines;
 }
 
-/// Integrals over wavelength of a spectral factor: alone (`whole`), times 1 - R_s (`s`) and times 1 - R_p (`p`).
+/// Integrals over wavelength of a spectral factor: the factor (`whole`), times 1 - R_s (`s`) and times 1 - R_p (`p`).
 struct ProbeSum {
   double whole = 0.0;
   double s = 0.0;

@@ -45,7 +45,7 @@ inline constexpr std::array<Quantity, kQuantityCount> kAllQuantities = enumerato
 /// Some of the quantities, in the order of the enumeration.
 using Quantities = std::vector<Quantity>;
 
-/// What a quantity needs: rho or moments (integrals over the facets) from the run; emission or a bracket in the scene.
+/// Needs of a quantity: rho or moments (integrals over the facets) from the run; emission or a bracket in the scene.
 enum class QuantityNeeds : std::uint8_t { kNothing, kReflectance, kMoments, kEmission, kBracket };
 
 struct QuantityDescription {

@@ -24,7 +24,7 @@ void add_evaluation(ReportBuilder& report, const EvaluationReport& evaluation, d
 
 /// The report of `dolp plan` for the scene's grid. `device` is the position of a device or a part of its name. If it is
 /// empty, the report is for the best device or, if no device is usable, for the lowest limits that Vulkan allows.
-/// Errors: those of grid_entries; DeviceError if the named device is not usable.
+/// Errors: errors of grid_entries; DeviceError if the named device is not usable.
 ReportBuilder plan_report(const SceneValues& scene, const std::string& device, EffectPlan plan);
 
 std::string grid_text(const Axes& grid);

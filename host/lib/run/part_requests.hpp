@@ -49,7 +49,7 @@ SpectralIndices spectral_indices(const SceneValues& scene, const SceneEntries& e
 std::vector<FacetOptics> with_index(const std::vector<FacetOptics>& samples,
                                     const std::optional<OpticalConstants>& index);
 
-/// What an evaluator must compute for a selection of entries at one refinement level. For a grid, the request for
+/// The requests to an evaluator for a selection of entries at one refinement level. For a grid, the request for
 /// moments has all slope distributions of the part, even unselected ones. The evaluator shares work between slope
 /// distributions, so leaving some out would change the results of the others. For a list of points, points with equal
 /// direction, slope distribution and index share moments.
@@ -88,7 +88,7 @@ class PartRequests {
   const Selection selection_;
   MomentsRequest moments_;
   ScatteringRequest beams_;
-  // For a grid: value i of the part's axis theta is value theta_at_[i] in moments_.theta_deg, and likewise for sigma
+  // For a grid: value i of the part's axis theta is value theta_at_[i] in moments_.theta_deg, and so on for sigma
   // and q. index_set_offset_[i] is the position in moments_.optics of the first index (n, k) of the index set i. An
   // index set has the indices of one variant (such as a band). If the grid has axes n and k, an index set has one value
   // of each, with the films of one variant.

@@ -155,7 +155,7 @@ RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries,
     }
     run.beams += beams;
     if (beams > 0) visit.beams(first.requests.beams());
-    // Table columns (values and status) take memory twice: those of the previous part are still being written.
+    // Table columns (values and status) take memory twice, because the previous part is still being written.
     const std::size_t columns = part.size() * (kQuantityCount * sizeof(double) + sizeof(std::uint32_t));
     largest = std::max(largest, part.size() * sizeof(PointResult) + columns + columns_before +
                                     first.moments.size() * sizeof(Moments) + largest_step +

@@ -108,7 +108,7 @@ Moments mirror_of(const MomentsRequest& request, const Direction& direction, con
 
 bool has_emission(Masking masking) { return keeps_projected_area(masking); }
 
-/// Stores the weights of an entry in `to` if their error bound is smaller than that of the weights in `to`.
+/// Stores the weights of an entry in `to` if they have a smaller error bound than the weights in `to`.
 void take_better(const Moments& reflected, const Moments* direct, double cosine, std::size_t entry,
                  EntryResponses& to) {
   const Weights weights = weights_of(reflected.columns, reflected.albedo_error);

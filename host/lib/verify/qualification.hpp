@@ -51,7 +51,7 @@ struct CaseOutcome {
   ErrorCheck dolp;             ///< absolute error of DOLP
   bool promises_dolp = false;  ///< false if a bit of `status` says that the accuracy of DOLP is unknown
   std::uint32_t status = 0;
-  /// What is wrong: an error above its bound, or a missed tolerance without its status bit. Empty if nothing.
+  /// The fault: an error above its bound, or a missed tolerance without its status bit. Empty if nothing.
   std::string complaint;
   double worst_ratio() const;
   bool misses_tolerance() const { return (status & kAnyToleranceNotMet) != 0; }

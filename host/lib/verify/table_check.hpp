@@ -62,15 +62,14 @@ struct TableSample {
 /// Compares a sample of a table with results of ReferenceEvaluator. integrate_band() integrates them over a band.
 /// A value is wrong if its error exceeds the bound of the table plus the bound of the reference. It is also wrong if
 /// only the table or only the reference has a number, or if rho or DOLP misses the tolerance without a status bit.
-/// Values from closed forms, such as those of a mirror, are not checked independently, because every evaluator takes
+/// Values from closed forms, for example for a mirror, are not checked independently, because every evaluator takes
 /// them from the same code.
 /// Errors: InputError that begins with `name` if the table has nothing to compare or has axes out of range; Cancelled.
 TableCheck check_table(const TableSample& sample, const SceneValues& scene, const std::string& name,
                        const Progress& progress);
 
 /// Compares the weights in a sample of a response table with weights from ReferenceEvaluator. The weights of an entry
-/// are wrong if their response_distance() to the reference exceeds the response_error of the table plus that of the
-/// reference.
+/// are wrong if their response_distance() to the reference exceeds the sum of both response_errors.
 /// Errors: InputError that begins with `name` if the table has no response_error; Cancelled.
 TableCheck check_responses(const TableSample& sample, const SceneValues& scene, const std::string& name,
                            const Progress& progress);

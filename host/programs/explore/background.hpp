@@ -80,7 +80,7 @@ struct Job {
   std::string key;  ///< jobs with the same key have the same content
   Scene scene;
   std::vector<PointList> parts;  ///< lists of points, computed one after the other; more urgent jobs may run in between
-  double tolerance = 0.0;        ///< the job has this tolerance or that of its scene, whichever is larger
+  double tolerance = 0.0;        ///< the job has the larger one of this tolerance and its scene's tolerance
   bool keep_all = false;
   bool wants_effects = false;  ///< the last part of the job then has JobPart::effects and JobPart::csv
   bool is_brief = false;       ///< once begun, the job runs to its end even if it is no longer wanted

@@ -55,7 +55,7 @@ class HeatMap {
  public:
   struct Level {
     std::size_t count;  ///< number of rows, and of columns
-    double tolerance;   ///< the map has this tolerance or that of the scene, whichever is larger
+    double tolerance;   ///< the map has the larger one of this tolerance and the scene's tolerance
     std::size_t batch;  ///< largest number of values of slower() in a JobPart
   };
   // While the user drags a slider, the curve waits for the JobPart that is running. So the parts of level 0 are small.

@@ -8,7 +8,7 @@
 namespace dolp::explore {
 namespace {
 
-/// The scene with the axes of `list` as its grid. A further axis of the scene's grid gets one value, that of its key.
+/// The scene with the axes of `list` as its grid. A further axis of the scene's grid gets the value of its key.
 Scene with_grid(const Scene& scene, const PointList& list) {
   std::vector<Setting> axes;
   for (const auto& [name, values] : list.values) axes.push_back({name, values});

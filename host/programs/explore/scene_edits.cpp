@@ -57,7 +57,7 @@ std::string material_name(const Scene& scene) {
   return name;
 }
 
-/// The numbers and the sky of `scene` that differ from those of `other`: "T 300 K, clear-sky".
+/// The numbers and the sky of `scene` that differ from `other`: "T 300 K, clear-sky".
 std::string different_numbers(const Scene& scene, const Scene& other) {
   std::vector<std::string> words;
   for (const Control& control : controls()) {

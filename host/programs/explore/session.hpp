@@ -160,7 +160,7 @@ class Session {
   bool is_dragged() const { return is_held_ && is_in_gesture_; }  ///< the mouse is down and has changed the scene
   /// True if a curve shows an earlier scene. False during a drag, because then every curve lags behind the slider.
   bool is_outdated(const Curve& curve) const { return curve.is_stale() && !is_dragged(); }
-  /// The effects in the last finished curve. Effect::influence is estimated at one zenith, that of the cursor.
+  /// The effects in the last finished curve. Effect::influence is estimated only at the zenith of the cursor.
   const std::vector<Effect>& effects() const { return effects_; }
   double map_cursor(const MapAxis& axis) const {
     const double value = axis.key.empty() ? state_.theta_deg : scene().number(axis.key).value_or(axis.scale.from);

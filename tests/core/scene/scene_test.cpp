@@ -160,7 +160,7 @@ const std::vector<KeyCase>& key_cases() {
 bool is_wind(const std::string& key) { return key.ends_with(".wind_m_s"); }
 bool is_of_layer(const std::string& key) { return key.starts_with("surface.coating."); }
 
-/// All keys except those of the second and further films, whose names differ only in the number of the film.
+/// All keys except the keys of the second and further films, whose names differ only in the number of the film.
 std::vector<Key> listed_keys() {
   std::vector<Key> keys;
   std::ranges::copy_if(dolp::keys(), std::back_inserter(keys), [](const Key& key) { return key.layer <= 1; });

@@ -1,4 +1,4 @@
-// Tests of films and of measured reflectances, alone and in scenes. The expected values come from closed forms and from
+// Tests of films and of measured reflectances, with and without scenes. Expected values come from closed forms and from
 // the reference implementation (host/reference).
 #include <gtest/gtest.h>
 

@@ -21,7 +21,7 @@ using namespace scene_run_support;
 
 std::string scene_path(const std::string& name) { return DOLP_HOST_DIR "/scenes/" + name + ".toml"; }
 
-/// What the comment of a scene states: DOLP in percent, the polarisation (`side`: s or p), and for each effect the
+/// Statements in the comment of a scene: DOLP in percent, the polarisation (`side`: s or p), and for each effect the
 /// change of DOLP in percentage points without this effect.
 struct Statement {
   std::vector<std::string> overrides;  ///< settings that the comment assumes

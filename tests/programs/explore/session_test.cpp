@@ -43,7 +43,7 @@ TEST(ExploreSession, Results_AreStaleUntilTheSceneIsComputed_AndKeepTheirParamet
   expect_same(session.curve().points(), truth(session.scene(), session.curve().points()));
   EXPECT_LE(session.curve().worst_error(), 1e-3);
   EXPECT_GT(session.curve().worst_error(), 0.0);
-  // The overlay is a second curve with a Gaussian slope distribution if that of the scene is Cauchy, and the reverse.
+  // The overlay is a second curve with a Gaussian slope distribution if the scene has Cauchy slopes, and the reverse.
   // Its sigma gives the same density D(0) of horizontal facets as the sigma of the scene.
   EXPECT_EQ(session.overlay()->scene().word("surface.distribution"), "gaussian");
   EXPECT_DOUBLE_EQ(*session.overlay()->scene().number("surface.sigma"), 0.4 / std::sqrt(2.0));

@@ -69,7 +69,7 @@ struct ProgramOptions : AppOptions {
   std::vector<Setting> settings = {};  ///< changes of the scene in `session_path`, from --set and similar options
 };
 
-/// Shows the window. If `frames` is not 0, prints the durations of the frames. Errors: those of dolp/errors.hpp.
+/// Shows the window. If `frames` is not 0, prints the durations of the frames. Errors: errors of dolp/errors.hpp.
 void run_program(const Scene& scene, const ProgramOptions& options);
 
 }  // namespace dolp::explore

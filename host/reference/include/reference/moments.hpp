@@ -53,7 +53,7 @@ Moments mirror_moments(double theta_deg, const FacetOptics& constants);
 Moments groove_moments(const Slopes& slopes, double theta_deg, const FacetOptics& constants,
                        const Refinement& refinement, const SkyFunction* sky = nullptr);
 
-/// What becomes of the light that enters one groove: fluxes divided by the width of the groove's aperture.
+/// The fate of the light that enters one groove: fluxes divided by the width of the groove's aperture.
 struct GrooveLight {
   double albedo = 0.0;          ///< flux that leaves if the facets absorb nothing
   double reflected = 0.0;       ///< I that leaves if unpolarised light enters

@@ -26,7 +26,7 @@ class Slopes {
 
   double quantile(double share) const;
 
-  /// What slopes above t add to the mean slope. Domain: cauchy q > 3/2; t >= 1e8 m(), where the density is a power law.
+  /// Mean slope due to slopes above t. Domain: cauchy q > 3/2; t >= 1e8 m(), where the density is a power law.
   double length_above(double t) const;
 
   /// Integrals over slopes use the variable v, with t = at(v) = width() sinh(v). density_at(v) is the density of v.

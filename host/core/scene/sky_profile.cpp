@@ -41,8 +41,6 @@ constexpr double kVapour_hPa = 7.85;
 constexpr double kWater_cmK_hPa = 46.5;
 constexpr double kWindowFrom_um = 10.5;
 constexpr double kWindowTo_um = 12.5;
-constexpr double kBandFrom_um = 8.0;
-constexpr double kBandTo_um = 14.0;
 
 // Vertical emissivity of clear air at 8-14 and 10.5-12.5 um. Source: Idso, Water Resources Research 17, 295 (1981).
 double clear_emissivity(double vapour_hPa, double air_K) {
@@ -56,7 +54,7 @@ double window_emissivity(double vapour_hPa, double air_K) {
 double saturated_hPa(double air_K) { return 6.1094 * std::exp(17.625 * (air_K - 273.15) / (air_K - 30.11)); }
 
 double vapour_pressure(const SkyAir& air, double air_K, const std::string& prefix) {
-  if (!air.vapour_cm) return air.temperature_K ? std::min(kVapour_hPa, saturated_hPa(air_K)) : kVapour_hPa;
+  if (!air.vapour_cm) return std::min(kVapour_hPa, saturated_hPa(air_K));
   const double vapour_hPa = *air.vapour_cm * air_K / kWater_cmK_hPa;
   const double most_cm = saturated_hPa(air_K) * kWater_cmK_hPa / air_K;
   if (*air.vapour_cm <= most_cm) return vapour_hPa;
@@ -93,8 +91,8 @@ SkyProfile::Emission SkyProfile::at(double at_um, double at_deg) const {
     const bool is_opaque = at_um >= kOpaqueFrom_um && at_um <= kOpaqueTo_um;
     const double cosine = cos_sin_deg(at_deg).cos;
     double vertical = emissivity;
-    if (at_um >= kBandFrom_um && at_um <= kBandTo_um) vertical = beside_window.value_or(vertical);
-    if (at_um >= kWindowFrom_um && at_um <= kWindowTo_um) vertical = window.value_or(vertical);
+    if (at_um >= kSkyBandFrom_um && at_um <= kSkyBandTo_um) vertical = beside_window;
+    if (at_um >= kWindowFrom_um && at_um <= kWindowTo_um) vertical = window;
     const double passed = is_opaque || cosine <= 0.0 ? 0.0 : std::pow(1.0 - vertical, 1.0 / cosine);
     return {1.0 - passed, air_K, beyond_K, 0.0};
   }
@@ -142,9 +140,8 @@ std::vector<double> SkyProfile::ends_deg() const {
 }
 
 std::vector<double> SkyProfile::breaks_um() const {
-  if (kind == Kind::kLayers && window)
-    return {kOpaqueFrom_um, kOpaqueTo_um, kBandFrom_um, kWindowFrom_um, kWindowTo_um, kBandTo_um};
-  if (kind == Kind::kLayers) return {kOpaqueFrom_um, kOpaqueTo_um};
+  if (kind == Kind::kLayers)
+    return {kOpaqueFrom_um, kOpaqueTo_um, kSkyBandFrom_um, kWindowFrom_um, kWindowTo_um, kSkyBandTo_um};
   return wavelength_um;
 }
 
@@ -175,15 +172,14 @@ std::string SkyProfile::text() const {
 std::uint64_t SkyProfile::hash() const {
   std::uint64_t hash = hashed(kHashStart, static_cast<std::uint64_t>(kind));
   for (const std::vector<double>* list : {&zenith_deg, &wavelength_um, &values}) hash = hashed(hash, std::span(*list));
-  return hashed(hash, std::span<const double>(std::array{air_K, beyond_K, emissivity, window.value_or(0.0)}));
+  return hashed(hash, std::span<const double>(std::array{air_K, beyond_K, emissivity, window}));
 }
 
 const std::vector<BuiltInSky>& built_in_skies() {
   static const std::vector<BuiltInSky> skies = {
       {"clear-sky",
-       "air of the US Standard Atmosphere 1976 at sea level with the emittance of Idso (1981) in the vertical, opaque "
-       "at "
-       "4.17-4.45 um, plane-parallel as in Granqvist and Hjortsberg (1981)"},
+       "air of the US Standard Atmosphere 1976 at sea level, or of vapour_cm and air_temperature_K, with the emittance "
+       "of Idso (1981) in the vertical, opaque at 4.17-4.45 um, plane-parallel as in Granqvist and Hjortsberg (1981)"},
       {"overcast", "a black cloud with its base at 1 km (Martin and Berdahl 1984), behind the same air below it"}};
   return skies;
 }
@@ -201,9 +197,8 @@ std::optional<SkyProfile> built_in_sky(std::string_view name, const SkyAir& air,
   const auto visible = [&](double vertical) { return is_overcast ? 1.0 - std::pow(1.0 - vertical, below) : vertical; };
   const double mean = clear_emissivity(vapour_hPa, sky.air_K);
   sky.emissivity = visible(mean);
-  if (air.is_standard()) return sky;
   const double window = std::min(window_emissivity(vapour_hPa, sky.air_K), mean);
-  const double share = (kWindowTo_um - kWindowFrom_um) / (kBandTo_um - kBandFrom_um);
+  const double share = (kWindowTo_um - kWindowFrom_um) / (kSkyBandTo_um - kSkyBandFrom_um);
   sky.window = visible(window);
   sky.beside_window = visible(std::min((mean - share * window) / (1.0 - share), 1.0));
   return sky;

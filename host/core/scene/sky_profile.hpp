@@ -23,9 +23,9 @@ struct SkyProfile {
   std::vector<double> values;  ///< temperatures in K or radiances in W m-2 sr-1 um-1. Shape: wavelengths x zeniths
   double air_K = 0.0;
   double beyond_K = 0.0;
-  double emissivity = 0.0;            ///< vertical emissivity of the air, except in the opaque band of carbon dioxide
-  std::optional<double> window = {};  ///< vertical emissivity at 10.5-12.5 um; default: `emissivity`
-  std::optional<double> beside_window = {};  ///< vertical emissivity in the rest of 8-14 um; default: `emissivity`
+  double emissivity = 0.0;  ///< vertical emissivity of the air outside 8-14 um, except where carbon dioxide is opaque
+  double window = 0.0;      ///< vertical emissivity at 10.5-12.5 um
+  double beside_window = 0.0;  ///< vertical emissivity in the rest of 8-14 um
 
   /// The radiance of the sky is share * B(first_K) + (1 - share) * B(second_K) + radiance. B is Planck's function.
   struct Emission {
@@ -55,11 +55,14 @@ struct BuiltInSky {
 };
 const std::vector<BuiltInSky>& built_in_skies();
 
-/// Air of a built-in sky. If both values are absent: US Standard Atmosphere 1976, one emissivity for all wavelengths.
+/// The wavelengths at which the emissivity of a built-in sky was measured. Elsewhere it has the same mean.
+inline constexpr double kSkyBandFrom_um = 8.0;
+inline constexpr double kSkyBandTo_um = 14.0;
+
+/// Air of a built-in sky. Absent values are those of the US Standard Atmosphere 1976.
 struct SkyAir {
   std::optional<double> vapour_cm = {};  ///< precipitable water in cm
   std::optional<double> temperature_K = {};
-  bool is_standard() const { return !vapour_cm && !temperature_K; }
 };
 
 /// The built-in sky `name`, or nullopt. Errors: InputError that begins with `prefix` if the air cannot hold the vapour.

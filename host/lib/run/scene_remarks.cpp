@@ -128,6 +128,7 @@ class Remarks {
       check("surroundings.profile", std::ranges::min(profile->values));
     if (!profile) check(surroundings_key(), scene_.surroundings->temperature_K);
     add_hot_sky(profile);
+    add_sky_beyond_data(profile);
   }
 
   void add_files() {
@@ -199,6 +200,19 @@ class Remarks {
     add(surroundings_key(), fmt::format("is hotter than twice the surface, {} K; {}", surface_K,
                                         is_radiance ? "radiance is in W m-2 sr-1 um-1, of which a microflick is 0.01"
                                                     : "are both in kelvins?"));
+  }
+
+  void add_sky_beyond_data(const SkyProfile* profile) {
+    if (!profile || profile->kind != SkyProfile::Kind::kLayers) return;
+    const auto is_beyond = [](const Interval& part) {
+      return part.first < kSkyBandFrom_um || part.second > kSkyBandTo_um;
+    };
+    if (std::ranges::none_of(used_um(scene_), is_beyond)) return;
+    add("surroundings.profile",
+        fmt::format(
+            "is known at {:g}-{:g} um; beyond, the air gets the mean emittance {:.2g} in the vertical, but real "
+            "air is opaque near 6.3 and 15 um and clearer near 4 um",
+            kSkyBandFrom_um, kSkyBandTo_um, profile->emissivity));
   }
 
   const SceneValues& scene_;

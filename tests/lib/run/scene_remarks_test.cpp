@@ -33,6 +33,12 @@ TEST(SceneRemarks, ProbablyMeantOtherwise_IsOneLineThatNamesKeyAndUnit) {
            {{"grid.wavelength_um=[3000, 5000]"}, "is in micrometres; were nanometres meant?"},
            {{"surface.coating=[{n=1.5,thickness_um=1}]", "surface.coating.1.thickness_um=500"},
             "is in micrometres; were nanometres meant?"},
+           {{profile + "clear-sky", "spectrum.wavelength_um=6.3"},
+            "is known at 8-14 um; beyond, the air gets the mean emittance 0.3 in the vertical, but real air is opaque "
+            "near 6.3 and 15 um and clearer near 4 um"},
+           {{profile + "overcast", "spectrum.band_um=[7.5, 13.5]"},
+            "is known at 8-14 um; beyond, the air gets the mean emittance 0.13 in the vertical, but real air is opaque "
+            "near 6.3 and 15 um and clearer near 4 um"},
            {{"geometry.mode=bistatic"}, "without [source] nothing depends on theta, the zenith of the source"},
        }) {
     const std::vector<std::string> remarks = remarks_of(settings);

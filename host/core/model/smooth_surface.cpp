@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/container/small_vector.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -28,13 +27,14 @@ std::complex<double> quotient(std::complex<double> a, std::complex<double> b) {
   return a * std::conj(b) / std::norm(b);
 }
 
-ReflectedAmplitudes interface_amplitudes(const Wave& above, const Wave& below) {
-  const std::complex<double> p_above = below.square * above.q;
-  const std::complex<double> p_below = above.square * below.q;
-  return {quotient(above.q - below.q, above.q + below.q), quotient(p_above - p_below, p_above + p_below)};
-}
-
 using Complex = std::complex<double>;
+
+/// Tangential fields of s or p light at a depth. `flux` / `field` is the admittance q (s) or q / N^2 (p) of the wave
+/// there.
+struct Fields {
+  Complex field;
+  Complex flux;
+};
 
 SmoothAbsorptance bare_absorptance(const OpticalConstants& index, double cosine) {
   // Powers of a tiny N underflow. If n and k are both below kLeast, kLeast replaces n. Results change by up to 4e-75.
@@ -91,18 +91,24 @@ double split_of(const FacetOptics& optics, double cosine, const SmoothAbsorptanc
 
 ReflectedAmplitudes film_amplitudes(const FacetOptics& optics, double cosine) {
   constexpr double kTwoPi = 2.0 * std::numbers::pi;
-  boost::container::small_vector<Wave, 8> waves = {{1.0, cosine}};
-  for (const Film& film : optics.films) waves.push_back(wave_in(film.index, cosine));
-  waves.push_back(wave_in(optics.index, cosine));
-  ReflectedAmplitudes r = interface_amplitudes(waves[waves.size() - 2], waves.back());
+  const Wave medium = wave_in(optics.index, cosine);
+  Fields s{1.0, medium.q};
+  Fields p{1.0, quotient(medium.q, medium.square)};
+  // The characteristic matrix of each film, times 2 exp(i delta), from the inside out. So nothing overflows in thick
+  // films. Amplitudes of single interfaces would be 0 / 0 where two of them cancel, as at grazing incidence on n = 1.
   for (std::size_t j = optics.films.size(); j-- > 0;) {
-    const ReflectedAmplitudes top = interface_amplitudes(waves[j], waves[j + 1]);
-    const std::complex<double> turn =
-        std::exp(std::complex<double>(0.0, 2.0 * kTwoPi * optics.films[j].thickness) * waves[j + 1].q);
-    r = {quotient(top.s + r.s * turn, 1.0 + top.s * r.s * turn),
-         quotient(top.p + r.p * turn, 1.0 + top.p * r.p * turn)};
+    const Wave film = wave_in(optics.films[j].index, cosine);
+    const Complex path(0.0, 2.0 * kTwoPi * optics.films[j].thickness);  // 2 i delta / q
+    const Complex turn = std::exp(path * film.q);
+    const Complex sum = 1.0 + turn;
+    const Complex difference = 1.0 - turn;
+    const Complex over_q = film.q == 0.0 ? -path : quotient(difference, film.q);
+    s = {sum * s.field + over_q * s.flux, film.q * difference * s.field + sum * s.flux};
+    p = {sum * p.field + film.square * over_q * p.flux,
+         quotient(film.q * difference, film.square) * p.field + sum * p.flux};
   }
-  return r;
+  return {quotient(cosine * s.field - s.flux, cosine * s.field + s.flux),
+          quotient(cosine * p.field - p.flux, cosine * p.field + p.flux)};
 }
 
 double fringe_count(const FacetOptics& optics) {

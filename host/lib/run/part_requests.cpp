@@ -28,13 +28,16 @@ Treatment treatment(const SceneValues& scene, const SceneEntry& entry) {
                       entry.shape);
 }
 
-/// Appends the used values to `axis`, in their order. Returns for each used value its position in `axis`.
+constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();  // position of a value without requests
+
+/// Appends the used values to `axis`, in their order. Returns for each value its position in `axis`, or kUnused.
 std::vector<std::uint32_t> compact_used_values(const std::vector<double>& values, const std::vector<char>& is_used,
                                                std::vector<double>& axis) {
-  std::vector<std::uint32_t> positions(values.size(), 0);
+  std::vector<std::uint32_t> positions(values.size(), kUnused);
   for (std::size_t i = 0; i < values.size(); ++i) {
+    if (is_used[i] == 0) continue;
     positions[i] = static_cast<std::uint32_t>(axis.size());
-    if (is_used[i] != 0) axis.push_back(values[i]);
+    axis.push_back(values[i]);
   }
   return positions;
 }
@@ -249,8 +252,10 @@ PartRequests::MomentsSpan PartRequests::moments_of(std::size_t member) const {
           has_one_index ? std::size_t{0} : of_index};
 }
 
-std::size_t PartRequests::direction_of(std::size_t member) const {
-  return theta_at_[selection_.part.axis_positions(selection_.position(member))[Axis::kTheta]];
+std::optional<std::size_t> PartRequests::requested_direction(std::size_t member) const {
+  if (theta_at_.empty()) return std::nullopt;
+  const std::uint32_t at = theta_at_[selection_.part.axis_positions(selection_.position(member))[Axis::kTheta]];
+  return at == kUnused ? std::nullopt : std::optional<std::size_t>(at);
 }
 
 void PartRequests::request_points(const Selection& selection) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -67,8 +68,9 @@ class PartRequests {
     std::size_t stride = 0;
   };
   MomentsSpan moments_of(std::size_t member) const;
-  /// For a grid: the direction whose moments a member uses, as a position in moments().theta_deg.
-  std::size_t direction_of(std::size_t member) const;
+  /// For a grid: the direction whose moments a member uses, as a position in moments().theta_deg. Nullopt if nothing is
+  /// requested for its zenith.
+  std::optional<std::size_t> requested_direction(std::size_t member) const;
   /// The position in beams() of the first beam of a member. A member has one beam per wavelength.
   std::size_t beams_of(std::size_t member) const { return first_beam_[member]; }
 
@@ -88,10 +90,10 @@ class PartRequests {
   const Selection selection_;
   MomentsRequest moments_;
   ScatteringRequest beams_;
-  // For a grid: value i of the part's axis theta is value theta_at_[i] in moments_.theta_deg, and so on for sigma
-  // and q. index_set_offset_[i] is the position in moments_.optics of the first index (n, k) of the index set i. An
-  // index set has the indices of one variant (such as a band). If the grid has axes n and k, an index set has one value
-  // of each, with the films of one variant.
+  // For a grid: value i of the part's axis theta is value theta_at_[i] in moments_.theta_deg, unless nothing is
+  // requested at this zenith, and so on for sigma and q. index_set_offset_[i] is the position in moments_.optics of the
+  // first index (n, k) of the index set i. An index set has the indices of one variant (such as a band). If the grid
+  // has axes n and k, an index set has one value of each, with the films of one variant.
   std::vector<std::uint32_t> theta_at_, sigma_at_, q_at_, index_set_offset_;
   std::vector<MomentsSpan> spans_of_points_;  ///< for points: where the evaluator returns the moments of each point
   std::vector<std::size_t> first_beam_;

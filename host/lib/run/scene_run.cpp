@@ -244,8 +244,10 @@ FirstResults first_results(const RunContext& context, const SceneEntries& part, 
   const MomentsPlan plan(requests.moments());
   first.results = results_of(context, {part}, requests, plan, progress);
   const std::vector<char> saves = plan.saving_directions();
-  for (std::size_t i = 0; !saves.empty() && i < part.size(); i += part.entries_per_direction())
-    first.is_interpolated.push_back(saves[requests.direction_of(i)]);
+  for (std::size_t i = 0; !saves.empty() && i < part.size(); i += part.entries_per_direction()) {
+    const std::optional<std::size_t> direction = requests.requested_direction(i);
+    first.is_interpolated.push_back(direction ? saves[*direction] : char{0});
+  }
   return first;
 }
 

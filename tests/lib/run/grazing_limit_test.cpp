@@ -132,5 +132,32 @@ TEST(GrazingLimit_Quotient, IsWhatTheKernelTendsTo) {
   }
 }
 
+// With q <= 1.5 the grid requests no moments at 90 degrees.
+TEST(GrazingLimit_InAGrid, IsWhatAPointGives) {
+  for (const Masking masking : {Masking::kNone, Masking::kIntegral}) {
+    for (const std::vector<double>& theta_deg : {std::vector{30.0, 90.0}, {90.0, 30.0}, {90.0}}) {
+      SceneValues scene = make_scene(Distribution::kCauchy, masking, kDielectric);
+      scene.grid = axes_of(theta_deg, {0.3}, {1.2, 1.5});
+      CpuEvaluator cpu;
+      const SceneEntries grid = grid_entries(scene);
+      const std::vector<PointResult> table = evaluate_scene(scene, grid, cpu, {});
+      const std::vector<PointResult> points = evaluate_scene(scene, SceneEntries(list_of(grid)), cpu, {});
+      for (std::size_t i = 0; i < table.size(); ++i)
+        EXPECT_EQ(table[i][Quantity::kDolp], points[i][Quantity::kDolp]) << name_of(masking) << " entry " << i;
+    }
+  }
+}
+
+// At grazing incidence the amplitudes of both sides of the film cancel exactly.
+TEST(GrazingLimit_UnderAFilmWithoutThickness, IsThatOfTheMedium) {
+  FacetOptics optics(1.0, 0.0);
+  optics.films = {{{1.5, 0.01}, 0.0}};
+  for (const double q : {1.2, 1.5}) EXPECT_EQ(grazing_limit_moments(optics, q).r_i, 0.0);
+  optics.index = {1.5, 0.1};
+  const Moments bare = grazing_limit_moments(OpticalConstants{1.5, 0.1}, 1.5),
+                covered = grazing_limit_moments(optics, 1.5);
+  EXPECT_NEAR(covered.r_i, bare.r_i, covered.r_i_error + bare.r_i_error);
+}
+
 }  // namespace
 }  // namespace dolp

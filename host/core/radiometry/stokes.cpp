@@ -109,6 +109,7 @@ void add_specular(Stokes& sum, double net, const Moments& moments) {
 
 void add_specular_sky(Stokes& sum, double specular, double rounding, const SkyWeights& weights,
                       const Moments& moments) {
+  if (specular == 0.0) return;  // the moments may lack the columns of the sky
   assert(weights.of.size() == static_cast<Eigen::Index>(moments.columns.size()));
   double error = weights.error * (std::abs(moments.r_i) + moments.r_i_error);
   for (std::size_t k = 0; k < moments.columns.size(); ++k) {
@@ -126,7 +127,7 @@ void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std:
              std::span<const DiffuseSample> diffuse, std::span<const Moments> moments, double cos_theta) {
   const double rounding = kRadianceRounding + rule.relative_error;
   for (std::size_t j = 0; j < weights.size(); ++j) {
-    if (surface.specular > 0.0) add_specular_sky(sum, surface.specular / cos_theta, rounding, weights[j], moments[j]);
+    add_specular_sky(sum, surface.specular / cos_theta, rounding, weights[j], moments[j]);
     const DiffuseLight& rho = diffuse[j].rho;
     const double error = weights[j].error + rounding * std::abs(diffuse[j].beyond_mean);
     sum.i += rho.i * diffuse[j].beyond_mean;

@@ -170,7 +170,10 @@ TableLayout response_layout(const SceneValues& scene) {
         fmt::format("{}: surface.scattering = \"multiple\": must be \"single\" for a response table, because "
                     "the reflectances of several bounces multiply",
                     scene.path_name));
-  TableLayout layout = table_layout(scene, {}, scene.grid);
+  Axes axes;  // responses depend on no other axis
+  for (const Axis axis : {Axis::kTheta, Axis::kSigma, Axis::kQ}) axes[axis] = scene.grid[axis];
+  TableLayout layout = table_layout(scene, {}, axes);
+  layout.head.labels = {};
   layout.head.index_n = layout.head.index_k = {};
   layout.head.beta_deg = nodes().beta_deg;
   layout.head.attributes.push_back({"c0", kResponseC0});

@@ -131,6 +131,19 @@ TEST(Responses, OfADenseGrid_AreThoseOfEntriesByThemselves) {
   }
 }
 
+TEST(Responses, AxesThatTheyDoNotDependOn_AreNotInTheTable) {
+  for (const char* axis : {"temperature_K = [280, 300]", "n = [1.3, 1.5]", "wavelength_um = [9, 10]",
+                           "material = [\"iron\", \"PET\"]", "band_um = [[3, 5], [8, 12]]"}) {
+    const bool has_index = std::string_view(axis).starts_with("material") || axis[0] == 'n';
+    const bool has_spectrum = axis[0] == 'w' || axis[0] == 'b';
+    const SceneValues scene = parse_scene(
+        std::string("[surface]\nsigma = 0.2\n") + (has_index ? "" : "n = 1.5\n") + "[emission]\ntemperature_K = 300\n" +
+            (has_spectrum ? "" : "[spectrum]\nwavelength_um = 10\n") + "[grid]\ntheta_deg = [0, 60]\n" + axis + '\n',
+        "", {});
+    EXPECT_EQ(response_layout(scene).head.size(), 2U) << axis;
+  }
+}
+
 TEST(Responses, OfAMirror_GiveFresnelsReflectances) {
   constexpr double kInterpolation = 1e-8;  // error of the polynomials of degree 23 that replace the reflectances
   CpuEvaluator evaluator;

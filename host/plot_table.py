@@ -4,8 +4,9 @@
 Usage: plot_table.py TABLE.nc OUT.png [--q Q] [--wavelength UM] [--temperature K] [--n N] [--k K] [--material NAME] [--band FROM-TO]
        plot_table.py TABLE.nc OUT.png --rank THETA ...   ranks the materials of a table by DOLP at this zenith
 Of each axis except theta and sigma the picture shows one value. An option such as --q Q chooses the value nearest to Q.
-Without an option the picture shows the first material or band, and of other axes the value nearest to the scene's value
-(the middle value if it has none). One curve has the scene's sigma. In a table of wind speeds, wind replaces sigma.
+Without an option the picture shows the first band, and of other axes the value nearest to the scene's value (the middle
+value if it has none). One curve has the scene's sigma. In a table of wind speeds, wind replaces sigma. If a table has
+several materials and you choose none, each curve shows one material, with the scene's sigma.
 Entries with nonzero status are faint or hatched. Needs python3-netcdf4, python3-numpy and python3-matplotlib.
 Exit status: 0 done, 2 usage or a file that is not such a table, 4 the picture could not be written.
 """
@@ -31,6 +32,7 @@ import picture_file  # noqa: E402
 COLOURS = "viridis"
 MOST_CURVES = 6
 CONTOURS_PERCENT = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50)
+FAR_BEYOND = 2  # a curve that rises to more than FAR_BEYOND times the scale, at its end, leaves the axis
 SHOWN_SHARE_PERCENT = 97  # share of the entries that fit on the DOLP scale; a few much larger values may not fit
 FEW_ANGLES = 25  # a curve of at most this many zeniths has a dot at each entry
 # Least number of values of theta and of sigma for a map. A smaller map would suggest structure that the table lacks.
@@ -43,12 +45,15 @@ STATUS_MEANINGS = {
     8: r"$I \leq 0$",
     32: "single scattering is not enough",
 }
+QUOTES = "'\""  # of a text in TOML
 RHO_TOLERANCE_NOT_MET = 16
+MODEL_INACCURATE = 32  # the numbers are right for the model
 
 
 # The picture shows one value of each of these numeric axes. The texts are the symbols of the axes.
 SYMBOLS = {"q": "q", "wavelength": "λ", "temperature": "T", "n": "n", "k": "k"}
 NAMED = ("material", "band")  # axes whose values are names; the picture shows one of the names
+DEFAULTS = {"material": "one curve for each", "band": "the first"}
 UNITS = {"wavelength": " µm", "temperature": " K", "band": " µm"}
 KEYS = {"temperature": ("emission", "temperature_K"), "q": ("surface", "q"), "wavelength": ("spectrum", "wavelength_um"), "n": ("surface", "n"), "k": ("surface", "k"),
         "sigma": ("surface", "sigma"), "wind_m_s": ("surface", "wind_m_s")}  # the scene's key for each axis
@@ -88,11 +93,16 @@ def index_in_scene(dataset, axis):
 
 
 def title_of(dataset):
-    """The scene's title and spectrum. If the table has a wind axis, the wind speed is removed from the title."""
+    """The scene's title without its spectrum. If the table has a wind axis, the wind speed is removed, too."""
     title = re.sub(r"[, ]*[\d.]+( *[-–] *[\d.]+)? *[uµ]m$", "", text_of(dataset, "title"))
-    if "wind_m_s" in dataset.variables:
-        title = re.sub(r"[, ]*wind [\d.]+ m/s", "", title)
-    return ", ".join(part for part in (title, spectrum_of(dataset)) if part)
+    return re.sub(r"[, ]*wind [\d.]+ m/s", "", title) if "wind_m_s" in dataset.variables else title
+
+
+def changes_of(dataset):
+    """The settings that changed the scene after its title was written, as text. The picture shows the others itself."""
+    changed = dict(line.split("=", 1) for line in text_of(dataset, "scene_overrides").splitlines() if "=" in line)
+    return ", ".join(f"{key} = {value.strip(QUOTES)}" for key, value in changed.items()
+                     if key != "title" and not key.startswith(("grid.", "spectrum.", "accuracy.")))
 
 
 class NotATable(Exception):
@@ -140,8 +150,10 @@ class Slice:
         rows, columns = np.argsort(theta), np.argsort(sigma)
         self.theta, self.sigma = theta[rows], sigma[columns]
         self.column_in_scene = int(np.flatnonzero(columns == index_in_scene(dataset, roughness))[0])
+        self.material = str(dataset["material"][at["material"]]) if "material" in at else None
         self.place = ", ".join(f"{dataset[axis][i]}{UNITS.get(axis, '')}" if axis in NAMED else
-                               f"{SYMBOLS[axis]} = {dataset[axis][i]:g}{UNITS.get(axis, '')}" for axis, i in at.items())
+                               f"{SYMBOLS[axis]} = {dataset[axis][i]:g}{UNITS.get(axis, '')}"
+                               for axis, i in at.items() if axis != "material")
 
         def values(name, fill):
             data = np.ma.filled(dataset[name][place], fill)
@@ -156,7 +168,7 @@ class Slice:
         self.bracket = [100.0 * values(name, np.nan) for name in ("dolp_low", "dolp_high")] if has_bracket else None
         errors = values("error_estimate", np.nan) if "error_estimate" in dataset.variables else None
         self.worst_error = self._worst(errors) if errors is not None else None
-        self.title = title_of(dataset)
+        self.title, self.spectrum, self.changes = title_of(dataset), spectrum_of(dataset), changes_of(dataset)
         is_bistatic = "stokes_i" in dataset.variables and "sr-1" in dataset["stokes_i"].units
         self.zenith = ("zenith of the source" if is_bistatic else "zenith angle") + r" $\theta$ (degree)"
         self.is_map = min(self.theta.size, self.sigma.size) >= FEWEST_OF_MAP
@@ -164,13 +176,20 @@ class Slice:
     def name_of(self, sigma):
         return f"wind {sigma:.3g} m/s" if self.has_winds else f"$\\sigma$ = {sigma:.3g}"
 
+    def heading(self, subject=None):
+        """The title of a picture. `subject`: what the picture shows instead of the material of the scene."""
+        title = f"{subject} in “{self.title}”" if subject and self.title else subject or self.title
+        first = ", ".join(part for part in (title, self.spectrum) if part)
+        return first + (f"\nwith {self.changes}" if self.changes else "")
+
     def _worst(self, errors):
         promised = errors[((self.status & (1 | 4 | 8)) == 0) & np.isfinite(errors)]
         return promised.max() if promised.size else None
 
-    def largest(self):
-        """Upper end of the DOLP scale. SHOWN_SHARE_PERCENT of the entries with status 0 lie below it."""
-        trusted = self.dolp[(self.status == 0) & np.isfinite(self.dolp)]
+    def largest(self, allowed=0):
+        """Upper end of the DOLP scale. SHOWN_SHARE_PERCENT of the entries lie below it that have no status bits other
+        than `allowed`."""
+        trusted = self.dolp[((self.status & ~allowed) == 0) & np.isfinite(self.dolp)]
         shown = trusted if trusted.size else self.dolp[np.isfinite(self.dolp)]
         return max(np.percentile(shown, SHOWN_SHARE_PERCENT), SMALLEST_SPAN_PERCENT) if shown.size else 1.0
 
@@ -205,11 +224,17 @@ def drawn_columns(table):
     return chosen
 
 
-def draw_curves(axes, table):
-    chosen = drawn_columns(table)
-    colours = matplotlib.colormaps[COLOURS](np.linspace(0.0, 0.88, chosen.size))
-    highest = [table.largest()]
-    for colour, j in zip(colours, chosen):
+def curves_of(table):
+    """The curves of a table: for each drawn sigma the table, the position of sigma, and the name of the curve."""
+    return [(table, j, table.name_of(table.sigma[j])) for j in drawn_columns(table)]
+
+
+def draw_curves(axes, curves):
+    """`curves`: tuples of a table, the position of its sigma, and a name."""
+    colours = matplotlib.colormaps[COLOURS](np.linspace(0.0, 0.88, len(curves)))
+    scale = max(table.largest(MODEL_INACCURATE) for table, _, _ in curves)
+    highest = [scale]
+    for colour, (table, j, name) in zip(colours, curves):
         good = np.where(table.status[:, j] == 0, table.dolp[:, j], np.nan)
         style = {"color": colour, "marker": "o" if table.theta.size <= FEW_ANGLES else None, "markersize": 3.5}
         axes.plot(table.theta, table.dolp[:, j], alpha=0.35, linewidth=1.2, linestyle="--", **style)
@@ -217,17 +242,20 @@ def draw_curves(axes, table):
             low, high = (end[:, j] for end in table.bracket)
             axes.fill_between(table.theta, low, high, color=colour, alpha=0.12, linewidth=0.0)
             highest += list(high[np.isfinite(high)])
-        highest.append(highest_peak(good))
-        axes.plot(table.theta, good, linewidth=1.8, label=table.name_of(table.sigma[j]), **style)
+        right = table.dolp[(table.status[:, j] & ~MODEL_INACCURATE) == 0, j]
+        end = np.nanmax(right, initial=0.0)
+        highest.append(end if end < FAR_BEYOND * scale else highest_peak(good))
+        axes.plot(table.theta, good, linewidth=1.8, label=name, **style)
     axes.set_ylim(0.0, 1.08 * max(highest))
     axes.set_ylabel("DOLP (%)")
     axes.grid(alpha=0.25, linewidth=0.6)
     handles, _ = axes.get_legend_handles_labels()
-    if table.bracket:
+    has_bracket = any(table.bracket for table, _, _ in curves)
+    if has_bracket:
         handles.append(Patch(color="0.4", alpha=0.25, linewidth=0.0, label="all bounces lie between"))
-    if np.any(table.status[:, chosen]):
+    if any(np.any(table.status[:, j]) for table, j, _ in curves):
         handles.append(Line2D([], [], color="0.4", alpha=0.6, linestyle="--", linewidth=1.2, label="status $\\neq$ 0"))
-    axes.legend(handles=handles, frameon=False, fontsize=9, loc="upper left" if table.bracket else "best")
+    axes.legend(handles=handles, frameon=False, fontsize=9, loc="upper left" if has_bracket else "best")
 
 
 def draw_flags(axes, table):
@@ -270,20 +298,49 @@ def draw_map(figure, axes, table):
 
 
 def draw(table, path):
+    """Draws curves and, if theta and sigma have many values, a map."""
+    width = 11.5 if table.is_map else 7.0
+    figure, panels = new_figure(width, 1 + table.is_map)
+    draw_curves(panels[0], curves_of(table))
+    if table.is_map:
+        draw_map(figure, panels[1], table)
+    finish(figure, panels, table, table.heading(table.material), table.caption())
+    picture_file.save(figure, path)
+
+
+def draw_materials(tables, path):
+    """Draws a curve for each of the first MOST_CURVES materials. `tables`: the slice of each material."""
+    names = list(tables)[:MOST_CURVES]
+    first = tables[names[0]]
+    figure, panels = new_figure(7.0, 1)
+    draw_curves(panels[0], [(tables[name], tables[name].column_in_scene, name) for name in names])
+    some = f"The first {len(names)} of " if len(names) < len(tables) else ""
+    advice = "--material NAME draws one of them, --rank THETA ranks all"
+    finish(figure, panels, first, first.heading(f"{some}{len(tables)} materials"),
+           f"{first.name_of(first.sigma[first.column_in_scene])}, {first.place}; {advice}")
+    picture_file.save(figure, path)
+
+
+def new_figure(width, count):
     plt.rcParams.update({"font.size": 10.5, "hatch.linewidth": 0.6})
     plt.rcParams.update({"axes.spines.top": False, "axes.spines.right": False})
-    width = 11.5 if table.is_map else 7.0
-    figure, panels = plt.subplots(1, 1 + table.is_map, figsize=(width, 4.8), dpi=150, layout="constrained", squeeze=False)
-    draw_curves(panels[0, 0], table)
-    if table.is_map:
-        draw_map(figure, panels[0, 1], table)
-    for axes in panels.flat:
+    figure, panels = plt.subplots(1, count, figsize=(width, 4.8), dpi=150, layout="constrained", squeeze=False)
+    return figure, panels[0]
+
+
+def finish(figure, panels, table, heading, caption):
+    for axes in panels:
         axes.set_xlabel(table.zenith)
         if table.theta.size > 1:
             axes.set_xlim(table.theta[0], table.theta[-1])
-    figure.suptitle(table.title, fontsize=13)
-    figure.supxlabel(textwrap.fill(table.caption(), int(14 * width)), fontsize=9, color="0.3")
-    picture_file.save(figure, path)
+    set_heading(figure, heading)
+    figure.supxlabel(textwrap.fill(caption, int(14 * figure.get_figwidth())), fontsize=9, color="0.3")
+
+
+def set_heading(figure, heading):
+    """Sets the title. Breaks its lines where they would be wider than the figure."""
+    lines = [textwrap.fill(line, int(9 * figure.get_figwidth())) for line in heading.split("\n")]
+    figure.suptitle("\n".join(lines), fontsize=12)
 
 
 def draw_ranking(tables, theta, path):
@@ -305,14 +362,14 @@ def draw_ranking(tables, theta, path):
         axes.barh(names[:1], [0.0], color="0.5", alpha=0.4, label=r"status $\neq$ 0")
     if axes.get_legend_handles_labels()[0]:
         axes.legend(frameon=False, fontsize=9, loc="lower right")
-    place = ", ".join(part for part in first.place.split(", ") if part not in tables)
-    axes.set_xlabel(f"DOLP (%) at {first.theta[row]:g}° with {first.name_of(first.sigma[first.column_in_scene])}, {place}")
+    axes.set_xlabel(f"DOLP (%) at {first.theta[row]:g}° with {first.name_of(first.sigma[first.column_in_scene])}, "
+                    f"{first.place}")
     axes.set_xlim(left=0.0)
     axes.margins(y=0.01)
     axes.tick_params(axis="y", labelsize=8.5)
     axes.grid(axis="x", alpha=0.25, linewidth=0.6)
     axes.spines[["top", "right"]].set_visible(False)
-    figure.suptitle(first.title, fontsize=12)
+    set_heading(figure, first.heading(f"{len(names)} materials"))
     picture_file.save(figure, path)
 
 
@@ -331,7 +388,7 @@ def main():
     for axis, symbol in SYMBOLS.items():
         parser.add_argument(f"--{axis}", type=finite, help=f"draw the {symbol} nearest to it; default: the middle one")
     for axis in NAMED:
-        parser.add_argument(f"--{axis}", help=f"draw this {axis}; default: the first")
+        parser.add_argument(f"--{axis}", help=f"draw this {axis}; default: {DEFAULTS[axis]}")
     parser.add_argument("--rank", type=finite, metavar="THETA", help="rank the materials at this zenith")
     arguments = parser.parse_args()
     wanted = {axis: getattr(arguments, axis) for axis in (*SYMBOLS, *NAMED)}
@@ -340,16 +397,19 @@ def main():
             table = Slice(dataset, wanted)
             if arguments.rank is not None and "material" not in table.at:
                 raise NotATable("has no axis of materials to rank; give grid.material in the scene")
-            names = [str(name) for name in dataset["material"][:]] if arguments.rank is not None else []
-            ranked = {name: Slice(dataset, {**wanted, "material": name}) for name in names}
+            has_choice = arguments.rank is None and arguments.material is not None
+            names = [] if has_choice or "material" not in table.at else [str(name) for name in dataset["material"][:]]
+            materials = {name: Slice(dataset, {**wanted, "material": name}) for name in names}
     except (OSError, NotATable) as error:
         print(f"{arguments.table}: {error}", file=sys.stderr)
         return 2
     for text in table.replaced:
         print(f"{arguments.table}: {text}", file=sys.stderr)
     try:
-        if ranked:
-            draw_ranking(ranked, arguments.rank, arguments.picture)
+        if arguments.rank is not None:
+            draw_ranking(materials, arguments.rank, arguments.picture)
+        elif len(materials) > 1:
+            draw_materials(materials, arguments.picture)
         else:
             draw(table, arguments.picture)
     except OSError as error:

@@ -43,7 +43,10 @@ def results(program, settings, sigma):
             sys.exit(run.returncode)
         rows = csv.DictReader(line for line in out.read_text().splitlines() if not line.startswith("#"))
         columns = [{name: float(value or "nan") for name, value in row.items()} for row in rows]
-    return {name: np.array([row[name] for row in columns]) for name in columns[0]}
+    table = {name: np.array([row[name] for row in columns]) for name in columns[0]}
+    # Where I is NaN, at 90 degrees, Q/I is a limit far from the neighbouring values; not drawn.
+    table["q_over_i"][np.isnan(table["stokes_i"])] = np.nan
+    return table
 
 
 def sky_exitance(program, sky, band):

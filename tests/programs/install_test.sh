@@ -26,9 +26,14 @@ grep -q '^\.SS dolp table' "$prefix/share/man/man1/dolp.1" || fail "the manual p
 for section in DESCRIPTION FILES ENVIRONMENT "SEE ALSO"; do
   grep -q "^\.SH $section" "$prefix/share/man/man1/dolp.1" || fail "the manual page lacks $section"
 done
-grep -oP '\]\(\K[^)#]+' "$prefix/share/doc/dolp/README.md" | grep -v '^https:' | sort -u | while read -r link; do
-  [[ -e $prefix/share/doc/dolp/$link ]] || fail "README.md links to $link, which is not installed"
-done
+# Prints "PAGE: LINK" for each link of the manuals to a file that is not installed.
+find "$prefix/share/doc/dolp" -name '*.md' | sort | while read -r page; do
+  { sed '/^```/,/^```/d' "$page" | grep -oP '\]\(\K[^)#\s]+' || true; } | while read -r link; do
+    [[ $link =~ ^[a-z]+: || -e $(dirname "$page")/$link ]] || echo "${page#"$prefix"/}: $link"
+  done
+done > dead_links
+[[ $(find "$prefix/share/doc/dolp" -name '*.md' | wc -l) -ge 14 ]] || fail "manuals are missing"
+[[ ! -s dead_links ]] || fail "$(wc -l < dead_links) links lead to files that are not installed: $(head -3 dead_links)"
 pages=$prefix/share
 words=$(PATH=$prefix/bin:$PATH bash -c 'source "$1"; COMP_WORDS=(dolp tab); COMP_CWORD=1; _dolp; echo "${COMPREPLY[*]}"
                  COMP_WORDS=(dolp eval --evaluator c); COMP_CWORD=3; _dolp; echo "${COMPREPLY[*]}"

@@ -3,7 +3,8 @@
 
 Usage: manual_test.py BUILD [TEST...]    BUILD is the folder that has dolp; ctest runs each test separately
 The test runs the blocks ```sh and ```python of FILES_WITH_COMMANDS unchanged and in order. It skips blocks that
-contain a key of NOT_RUN. The blocks of a file run in a new folder with host, bench and what quickstart.sh builds.
+contain a key of NOT_RUN. The blocks of a file run in a new folder with host, bench and what quickstart.sh builds. If a
+block ```text follows a block directly, it is what the block prints, where "…" stands for any text.
 """
 import csv
 import functools
@@ -27,11 +28,12 @@ NOT_RUN = {
     "quickstart.sh": "builds the program",
     "tests/run.sh": "runs this test",
     "dolp explore": "needs a display; explore_window_test covers it",
-    "export PATH": "has no effect beyond its own shell; the test sets PATH likewise",
+    "export PATH": "has no effect beyond its own shell; the test sets PATH and PYTHONPATH likewise",
 }
 
-# Is appended to the Python code of README.md. Prints rho_i and rho_q of all entries in one line. Then prints for each
-# entry a line with the three arrays that the GLSL function of README.md takes. RHO_IN_CPP reads these lines.
+# Is appended to the Python code of RESPONSE_MANUAL. Prints rho_i and rho_q of all entries in one line. Then prints for
+# each entry a line with the three arrays that the GLSL function of RESPONSE_MANUAL takes. RHO_IN_CPP reads these lines.
+RESPONSE_MANUAL = "host/programs/cli/README.md"
 PRINT_RHO = """
 print(*np.stack([rho_i, rho_q], axis=-1).ravel())
 for w, v in zip(table.response_i.values.reshape(-1, 24), table.response_q.values.reshape(-1, 24)):
@@ -51,7 +53,7 @@ int main() {{
 }}
 """
 
-RUN_BLOCK = re.compile(r"^```(sh|python)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+RUN_BLOCK = re.compile(r"^```(sh|python)\n(.*?)^```$(?:\n```text\n(.*?)^```$)?", re.MULTILINE | re.DOTALL)
 SHELLS = {"sh": ("bash", "-eu", "-c"), "python": ("/usr/bin/python3", "-c")}
 ANY_BLOCK = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
 COMMAND = re.compile(r"^ *(build/release/)?dolp (table|response|eval|mueller|plan|verify|lookup|fit|materials|devices|explore)\b", re.MULTILINE)
@@ -102,10 +104,10 @@ class Manual(unittest.TestCase):
             if not is_program or entry.name in built:
                 (folder / BUILD / entry.name).symlink_to(entry)
         environment = dict(os.environ, PATH=f"{folder / BUILD}:{os.environ['PATH']}", PYTHONDONTWRITEBYTECODE="1",
-                           MPLBACKEND="Agg")
+                           PYTHONPATH=str(folder / BUILD / "python"), MPLBACKEND="Agg")
         blocks = blocks_of(name)
         self.assertTrue(blocks, f"{name} has no command")
-        for shell, block in blocks:
+        for shell, block, printed in blocks:
             if any(text in block for text in NOT_RUN):
                 continue
             with self.subTest(file=name, block=block):
@@ -113,11 +115,13 @@ class Manual(unittest.TestCase):
                                       stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                       timeout=BLOCK_TIMEOUT_S)
                 self.assertEqual(done.returncode, 0, done.stdout)
+                if printed:
+                    self.assertRegex(done.stdout, "^" + re.escape(printed).replace("…", ".*") + "$")
 
     def test_response_functions_give_what_tables_hold(self):
-        """README.md has Python and GLSL code that computes rho_i and rho_q from a response table."""
-        text = (ROOT / "README.md").read_text(encoding="utf-8")
-        python, = [block for _, block in RUN_BLOCK.findall(text) if "response.nc" in block and "import" in block]
+        """RESPONSE_MANUAL has Python and GLSL code that computes rho_i and rho_q from a response table."""
+        text = (ROOT / RESPONSE_MANUAL).read_text(encoding="utf-8")
+        python, = [block for _, block, _ in RUN_BLOCK.findall(text) if "response.nc" in block and "import" in block]
         glsl, = re.findall(r"^```glsl\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
         self.assertLessEqual(glsl.count("\n"), 10)
         with tempfile.TemporaryDirectory() as folder:
@@ -163,7 +167,7 @@ class Manual(unittest.TestCase):
                 self.assertIsNone(found, f"{name}: a command outside of a block marked ```sh: {found}")
 
     def test_reasons_are_needed(self):
-        blocks = [block for name in FILES_WITH_COMMANDS for _, block in blocks_of(name)]
+        blocks = [block for name in FILES_WITH_COMMANDS for _, block, _ in blocks_of(name)]
         for part in NOT_RUN:
             self.assertTrue(any(part in block for block in blocks), f"no block contains {part}")
 

@@ -1,23 +1,26 @@
 #!/usr/bin/env python3
 """Tests the pictures of tables and fits."""
+import os
 import pathlib
 import sys
 import unittest
+import unittest.mock
 
+import netCDF4
 import numpy as np
 
 import dolp
 from package_case import PackageCase
 
+HOST = pathlib.Path(__file__).resolve().parents[2] / "host"
+sys.path[:0] = [str(HOST), str(HOST / "tools")]
+import plot_fit  # noqa: E402  (its path has to be known first)
+import plot_skies  # noqa: E402
+import plot_table  # noqa: E402
+
 
 class Pictures(PackageCase):
     def test_pictures_show_what_the_table_has(self):
-        host = pathlib.Path(__file__).resolve().parents[2] / "host"
-        sys.path[:0] = [str(host), str(host / "tools")]
-        import netCDF4
-        import plot_fit
-        import plot_table
-        del sys.path[:2]
         self.assertLessEqual(set(plot_fit.SYMBOLS), {*dolp.keys()})
         for wavelengths, spectrum, title in ((None, [3, 5], "Plate, 3–5 µm"), (None, [9, 9], "Plate, 9 µm"), (8, [9, 9], "Plate")):
             report = {"title": "Plate, 8-14 um", "points": [{"wavelength_um": wavelengths}], "spectrum_um": spectrum}
@@ -35,15 +38,18 @@ class Pictures(PackageCase):
                 ({"spectrum.band_um": [3, 5], "grid.sigma": [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]}, 2, "zenith angle",
                  "painted plate, 3–5 µm", "0.6"),
                 ({"geometry.mode": "bistatic", "source.irradiance": 1, "grid.sigma": 0.2}, 1, "zenith of the source",
-                 "painted plate, 10 µm", "0.2"),
-                ({**sea, "grid.wind_m_s": winds, "emission.bracket": True}, 2, "zenith angle", "Sea, 10 µm", "14 m/s")):
+                 "painted plate, 10 µm\nwith geometry.mode = bistatic, source.irradiance = 1", "0.2"),
+                ({**sea, "grid.wind_m_s": winds, "emission.bracket": True}, 2, "zenith angle",
+                 "Sea, 10 µm\nwith surface.distribution = gaussian, surface.masking = smith, emission.bracket = true",
+                 "14 m/s")):
             dolp.write_table(self.scene.with_({"grid.theta_deg": theta, **changes}), self.folder / "t.nc", evaluator="cpu")
             with netCDF4.Dataset(self.folder / "t.nc") as dataset:
                 table = plot_table.Slice(dataset, dict.fromkeys(plot_table.SYMBOLS))
             plot_table.draw(table, self.folder / "t.png")
             figure = plot_table.plt.gcf()
             drawn = [axes for axes in figure.axes if axes.get_xlabel()]
-            self.assertEqual((len(drawn), table.title), (panels, title))
+            self.assertEqual((len(drawn), table.heading()), (panels, title))
+            self.assertEqual(figure.texts[0].get_text().split(), title.split())
             for axes in drawn:
                 self.assertIn(zenith, axes.get_xlabel())
             self.assertIn(legend, " ".join(text.get_text() for text in drawn[0].get_legend().texts))
@@ -70,6 +76,30 @@ class Pictures(PackageCase):
             plot_table.draw(table, self.folder / "t.png")
             self.assertGreater(plot_table.plt.gcf().axes[0].get_ylim()[1], peak)
             plot_table.plt.close()
+
+    def test_pictures_of_materials_name_what_they_show(self):
+        """A picture of several materials has one curve for each, the titles name them, and no curve leaves the axis."""
+        table = self.folder / "t.nc"
+        dolp.write_table(self.scene, table, evaluator="cpu", sigma=0.2, q=3,
+                         theta_deg=np.linspace(0, 85, 18), material=["gold (Ordal)", "iron", "PET"])
+        scene = "in “painted plate”, 10 µm"
+        for options, title, names in (([], f"3 materials {scene}", ["gold (Ordal)", "iron", "PET"]),
+                                      (["--material", "gold"], f"gold (Ordal) {scene}", ["$\\sigma$ = 0.2"]),
+                                      (["--rank", "60"], f"3 materials {scene}", [])):
+            with unittest.mock.patch("sys.argv", ["plot_table.py", str(table), str(self.folder / "t.png"), *options]):
+                self.assertEqual(plot_table.main(), 0)
+            axes = plot_table.plt.gcf().axes[0]
+            self.assertEqual(plot_table.plt.gcf().texts[0].get_text(), title)
+            curves = [line for line in axes.lines if line.get_label() in names]
+            self.assertEqual([line.get_label() for line in curves], names)
+            for line in axes.lines:
+                self.assertLess(np.nanmax(line.get_ydata()), axes.get_ylim()[1])
+            plot_table.plt.close()
+
+    def test_pictures_of_skies_end_before_a_limit_that_jumps(self):
+        """With a diffuse part, I has no value at 90 degrees. The pictures of skies do not show Q/I there."""
+        table = plot_skies.results(os.environ["DOLP_PROGRAM"], ["grid.theta_deg=[60, 89, 90]"], 0.15)
+        self.assertEqual([*np.isnan(table["q_over_i"])], [False, False, True])
 
 
 if __name__ == "__main__":

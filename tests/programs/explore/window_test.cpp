@@ -269,7 +269,7 @@ TEST_F(ExploreCommand, FramesAndScreenshot_WriteAPictureAndTheTimes_AlsoOfASessi
   EXPECT_GT(content("shot.png").size(), 50'000U);
   EXPECT_EQ(dolp({"explore", "--frames", "1"}).status, 0);
   EXPECT_EQ(Scene::from_text(std::string(embedded_night_paint_toml())).title(),
-            "Night: paint under a clear sky, 8-14 um");
+            "Night: paint under a uniform cold sky, 8-14 um");
   expect_refused(dolp({"explore", "session.toml", "--frames", "1", "--set", "surface.sigma=-1"}), "surface.sigma");
   put("session.toml", "dolp_session = 1\n");
   expect_refused(dolp({"explore", "session.toml", "--frames", "1"}), "session.toml: scene.file is missing");

@@ -186,12 +186,13 @@ def alike(report):
 
 
 def title_of(report):
-    """Title of the picture: the scene's title, and the scene's wavelengths unless the data have their own."""
+    """Title of the picture: the scene's title, the settings that changed the scene, and its wavelengths unless the data
+    have their own."""
     title = re.sub(r"[, ]*[\d.]+( *[-–] *[\d.]+)? *[uµ]m$", "", report["title"])
     if all(point["wavelength_um"] is None for point in report["points"]):
         ends = dict.fromkeys(f"{end:g}" for end in report["spectrum_um"])
         title = ", ".join(part for part in (title, "–".join(ends) + " µm") if part)
-    return title or "fit"
+    return (title or "fit") + (f"\nwith {report['changed']}" if report.get("changed") else "")
 
 
 def draw(report, suffix):

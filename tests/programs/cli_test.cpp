@@ -249,6 +249,15 @@ TEST_F(CommandLine, Json_EachEvaluator_HasTheContractsKeys) {
   }
 }
 
+TEST_F(CommandLine, Report_SettingsOfTheCall_StandBelowTheTitle) {
+  const Outcome outcome = dolp({"table", "scene.toml", "-o", "t.nc", "--evaluator", "cpu", "--set",
+                                "spectrum.wavelength_um=9", "--set", "grid.theta_deg=[30]", "--tolerance", "1e-3"});
+  EXPECT_NE(outcome.out.find("\n  changed    spectrum.wavelength_um=9\n"), std::string::npos) << outcome.out;
+  EXPECT_EQ(report({"plan", "scene.toml", "--set", "surface.n=2", "--set", "surface.k=1"})["changed"],
+            "surface.n=2, surface.k=1");
+  EXPECT_EQ(report({"plan", "scene.toml", "--set", "grid.theta_deg=[30]"})["changed"], "");
+}
+
 // Two emission models differ in the light that meets a second facet. In the model 1 - rho, all this light counts as
 // emitted. In direct emission, none of it does. For a rough metal the DOLP of the two models differs much. The summary
 // must report this difference.

@@ -25,6 +25,7 @@ class Pictures(PackageCase):
         for wavelengths, spectrum, title in ((None, [3, 5], "Plate, 3–5 µm"), (None, [9, 9], "Plate, 9 µm"), (8, [9, 9], "Plate")):
             report = {"title": "Plate, 8-14 um", "points": [{"wavelength_um": wavelengths}], "spectrum_um": spectrum}
             self.assertEqual(plot_fit.title_of(report), title)
+            self.assertEqual(plot_fit.title_of({**report, "changed": "surface.k=1"}), f"{title}\nwith surface.k=1")
         self.assertEqual(plot_fit.alike({"alike": [["a=1"], ["a=2"]],
                                          "ranges": [{"key": "surface.n", "models": 3, "interval_95": [1.36, None]}]}),
                          "\n2 models cannot be told apart; 95 % ranges over 3 models of ΔAIC up to 4:   n 1.36 to open")

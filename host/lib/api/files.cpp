@@ -101,7 +101,7 @@ Report Evaluator::write_table(const Scene& scene, const std::filesystem::path& p
     check_output_path(job.path);
     if (!shard.is_none() && is_there(values, job)) {
       ReportBuilder report;
-      report.line("{}", key("title", values.title));
+      add_title(report, values);
       report.row("kept", "{}: the whole shard is there already", key("output", job.path.string()));
       return public_report(report, true, job.path);
     }
@@ -153,7 +153,7 @@ Report Evaluator::write_mueller(const Scene& scene, const std::filesystem::path&
     const bool lacks_double = is_float && !evaluator->has_double();
     const auto nans = std::ranges::count_if(results, [](const MuellerMatrix& f) { return std::isnan(f[0]); });
     ReportBuilder report;
-    report.line("{}", key("title", values.title));
+    add_title(report, values);
     report.row("entries", "{} geometries", key("entries", results.size()));
     add_evaluation(report, evaluator->report(), seconds_since(start));
     report.row("error", "<= {:g} of m00; tolerance {:g}", key("worst_error_estimate", accuracy),

@@ -289,7 +289,7 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
     });
 
     ReportBuilder report;
-    report.line("{}", key("title", values.title));
+    add_title(report, values);
     if (best.result) {
       report.row("data", "{} measured values of {} file{}", key("observations", best.model->observation_count()),
                  data.size(), data.size() == 1 ? "" : "s");

@@ -278,7 +278,7 @@ ReportBuilder::Json effects_json(const std::vector<Effect>& effects, const Effec
 ReportBuilder plan_report(const SceneValues& scene, const std::string& device, EffectPlan effects) {
   const PlannedRun plan = planned_run(scene, device, std::move(effects));
   ReportBuilder report(kLabelWidth);
-  report.line("{}", key("title", scene.title));
+  add_title(report, scene);
   report.row("scene", "{}, {} = {} entries, spectral samples: {}", name_of(scene.geometry.mode), grid_text(scene.grid),
              key("entries", plan.run.entries), key("spectral_samples", plan.run.spectral_samples));
   report.line("");

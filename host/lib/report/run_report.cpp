@@ -85,11 +85,22 @@ void add_status(ReportBuilder& report, const RunSummary& summary) {
 
 }  // namespace
 
+void add_title(ReportBuilder& report, const SceneValues& scene) {
+  std::string changed;
+  for (const Setting& setting : scene.settings) {
+    const bool has_own_line =
+        setting.key == "title" || setting.key.starts_with("grid.") || setting.key.starts_with("accuracy.");
+    if (!has_own_line) changed += (changed.empty() ? "" : ", ") + setting.text();
+  }
+  report.line("{}", key("title", scene.title));
+  report.row_if(!changed.empty(), "changed", "{}", key("changed", changed));
+}
+
 ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, const std::optional<ScatteringGap>& gap,
                          const std::string& shape, const std::string& path) {
   const RunSummary& summary = run.summary;
   ReportBuilder report;
-  report.line("{}", key("title", scene.title));
+  add_title(report, scene);
   report.row("entries", "{}", key("shape", shape));
   report.value("entries", summary.entries);
   add_effects(report, run);

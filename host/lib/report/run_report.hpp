@@ -20,6 +20,9 @@ inline constexpr const char* kModelInaccurateText =
 ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, const std::optional<ScatteringGap>& gap,
                          const std::string& shape, const std::string& path);
 
+/// Adds the title of the scene, and the settings that a call gave and that the title may contradict.
+void add_title(ReportBuilder& report, const SceneValues& scene);
+
 void add_evaluation(ReportBuilder& report, const EvaluationReport& evaluation, double wall_s);
 
 /// The report of `dolp plan` for the scene's grid. `device` is the position of a device or a part of its name. If it is

@@ -98,7 +98,7 @@ def title_of(dataset):
     return re.sub(r"[, ]*wind [\d.]+ m/s", "", title) if "wind_m_s" in dataset.variables else title
 
 
-def changes_of(dataset):
+def scene_changes(dataset):
     """The settings that changed the scene after its title was written, as text. The picture shows the others itself."""
     changed = dict(line.split("=", 1) for line in text_of(dataset, "scene_overrides").splitlines() if "=" in line)
     return ", ".join(f"{key} = {value.strip(QUOTES)}" for key, value in changed.items()
@@ -168,7 +168,7 @@ class Slice:
         self.bracket = [100.0 * values(name, np.nan) for name in ("dolp_low", "dolp_high")] if has_bracket else None
         errors = values("error_estimate", np.nan) if "error_estimate" in dataset.variables else None
         self.worst_error = self._worst(errors) if errors is not None else None
-        self.title, self.spectrum, self.changes = title_of(dataset), spectrum_of(dataset), changes_of(dataset)
+        self.title, self.spectrum, self.changes = title_of(dataset), spectrum_of(dataset), scene_changes(dataset)
         is_bistatic = "stokes_i" in dataset.variables and "sr-1" in dataset["stokes_i"].units
         self.zenith = ("zenith of the source" if is_bistatic else "zenith angle") + r" $\theta$ (degree)"
         self.is_map = min(self.theta.size, self.sigma.size) >= FEWEST_OF_MAP
@@ -224,7 +224,7 @@ def drawn_columns(table):
     return chosen
 
 
-def curves_of(table):
+def table_curves(table):
     """The curves of a table: for each drawn sigma the table, the position of sigma, and the name of the curve."""
     return [(table, j, table.name_of(table.sigma[j])) for j in drawn_columns(table)]
 
@@ -301,7 +301,7 @@ def draw(table, path):
     """Draws curves and, if theta and sigma have many values, a map."""
     width = 11.5 if table.is_map else 7.0
     figure, panels = new_figure(width, 1 + table.is_map)
-    draw_curves(panels[0], curves_of(table))
+    draw_curves(panels[0], table_curves(table))
     if table.is_map:
         draw_map(figure, panels[1], table)
     finish(figure, panels, table, table.heading(table.material), table.caption())

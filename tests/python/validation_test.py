@@ -80,7 +80,7 @@ def columns(name):
     return {key: np.array([row[key] if key in TEXTS else float(row[key]) for row in rows]) for key in rows[0]}
 
 
-def points_of(file, *names):
+def selected(file, *names):
     return {name: file[name] for name in names}
 
 
@@ -98,7 +98,7 @@ def s_and_p(result):
 def mishchenko_travis(model):
     file = columns("mishchenko_travis.csv")
     sigma = np.sqrt((0.003 + 0.00512 * file["wind_m_s"]) / 2)
-    beams = points_of(file, "theta_i_deg", "theta_r_deg", "delta_phi_deg")
+    beams = selected(file, "theta_i_deg", "theta_r_deg", "delta_phi_deg")
     f = model.mueller(GAUSSIAN, sigma=sigma, n=file["n"], k=0, **beams)
     f = f * np.cos(np.radians(file["theta_i_deg"]))[:, None, None]
     found = np.array([f[:, 0, 0], f[:, 0, 1], f[:, 2, 2]])
@@ -109,7 +109,7 @@ def mishchenko_travis(model):
 
 def masuda(model):
     file = columns("masuda_1988.csv")
-    points = points_of(file, "theta_deg", "sigma", "n", "k")
+    points = selected(file, "theta_deg", "sigma", "n", "k")
     found = model.evaluate({**GAUSSIAN, "emission.model": "direct"}, **points).emissivity
     yield Row("Masuda et al. 1988", "emissivity of seas, direct emission", found, file["emissivity"], FIVE_DIGITS)
 
@@ -122,7 +122,7 @@ def scatmech(model):
         for distribution in ("gaussian", "cauchy"):
             chosen = (file["distribution"] == distribution) & (file["masking"] == masking)
             part = {name: values[chosen] for name, values in file.items()}
-            points = points_of(part, "theta_i_deg", "theta_r_deg", "delta_phi_deg", "sigma", "q", "n", "k")
+            points = selected(part, "theta_i_deg", "theta_r_deg", "delta_phi_deg", "sigma", "q", "n", "k")
             settings = {"surface.masking": masking, "surface.distribution": distribution}
             found.append(model.mueller(settings, **points).reshape(-1, 16) / part["m00"][:, None])
             expected.append(np.stack([part[name] / part["m00"] for name in names], axis=-1))
@@ -132,7 +132,7 @@ def scatmech(model):
 
 def gaussian_sea(model):
     file = columns("gaussian_sea_monte_carlo.csv")
-    points = {**points_of(file, "theta_deg", "wind_m_s"), "n": 1.1786, "k": 0.07232}
+    points = {**selected(file, "theta_deg", "wind_m_s"), "n": 1.1786, "k": 0.07232}
     direct = model.evaluate({**GAUSSIAN, "emission.model": "direct", "emission.bracket": True}, **points)
     single = model.evaluate(GAUSSIAN, **points)
     grooves = model.evaluate({**GAUSSIAN, "surface.masking": "v-cavity", "surface.scattering": "multiple"}, **points)

@@ -124,12 +124,20 @@ TEST_F(CommandLine, TemporaryFolderMissing_IsNamed) {
 
 TEST_F(CommandLine, InputThatWasProbablyMeantOtherwise_IsOneWarningAndGoesOn) {
   put("n.csv", "wavelength_um,n\n8,1.5\n12,1.6\n");
+  put("minus.csv", "wavelength_um,n,k\n8,1.5,-0.1\n12,1.5,-0.1\n");
+  put("nan.csv", "wavelength_um,n,k\n8,1.5,0.1\n12,1.5,0.1\n13,1.5,nan\n");
+  put("unit.dat", "# wavelength n k\n8 1.5 0.1\n12 1.5 0.1\n");
   put("radians.csv", "theta_deg,dolp\n0.5,0.01\n1.2,0.1\n");
   put("nm.csv", "theta_deg,wavelength_um\n60,8000\n");
   for (const auto& [line, warning] :
        {std::pair("plan scene.toml --set emission.temperature_K=25", "--set emission.temperature_K=25: 25 K is cold"),
         {"table scene.toml -o t.csv --evaluator cpu --set surface.material_file=n.csv",
          "=n.csv: the file has no k, so that k = 0"},
+        {"plan scene.toml --set surface.material_file=minus.csv",
+         "=minus.csv: k is negative in the file, which gives N = n - ik; it is taken as positive"},
+        {"plan scene.toml --set surface.material_file=nan.csv", "=nan.csv: rows with NaN are left out: 1 at 13 um"},
+        {"plan scene.toml --set surface.material_file=unit.dat",
+         "=unit.dat: the file gives no unit of the wavelength; it is taken in um"},
         {"plan scene.toml --set geometry.mode=bistatic", "=bistatic: without [source] nothing depends on theta"},
         {"eval scene.toml --points nm.csv -o o.csv --evaluator cpu --quiet",
          "nm.csv:1: wavelength_um is in micrometres"},

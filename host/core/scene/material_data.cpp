@@ -83,22 +83,29 @@ const Material* match_name(std::string_view name) {
   return beginning.size() == 1 ? beginning.front() : nullptr;
 }
 
-std::string name_hint(std::string_view name) {
-  std::vector<std::string> alike;
-  for (const Material* material : materials_with(trim(name))) alike.push_back(material->name);
+/// The materials whose names share a word with `name`, begin like it, or are misspelt in it.
+std::vector<std::string> similar_names(std::string_view name) {
+  std::vector<std::string> similar;
+  const auto add = [&](const std::string& found) {
+    if (std::ranges::find(similar, found) == similar.end()) similar.push_back(found);
+  };
+  const auto add_with = [&](std::string_view words) {
+    for (const Material* material : materials_with(words)) add(material->name);
+  };
+  add_with(name);
   for (const Material& material : built_in_materials()) {
-    const bool begins_alike = !trim(name).empty() && lower_case(material.name).starts_with(lower_case(trim(name)));
-    if (begins_alike && std::ranges::find(alike, material.name) == alike.end()) alike.push_back(material.name);
+    if (!name.empty() && lower_case(material.name).starts_with(lower_case(name))) add(material.name);
   }
-  if (!alike.empty()) return join(alike);
+  if (!similar.empty()) return similar;
+  for (const std::string_view word : split(name, ' ')) add_with(trim(word));
+  if (!similar.empty() || name.empty()) return similar;
   std::vector<std::string> words;
   for (const Material& material : built_in_materials()) {
     words.push_back(material.name);
     for (const std::string_view word : split(material.name, ' ')) words.emplace_back(word);
   }
-  const std::string nearest = nearest_name(name, words);
-  for (const Material* material : materials_with(nearest)) alike.push_back(material->name);
-  return join(alike);
+  if (const std::optional<std::string> near = near_name(name, words)) add_with(*near);
+  return similar;
 }
 
 }  // namespace
@@ -114,11 +121,18 @@ Material find_material(std::string_view name, const Spectrum& spectrum, const st
 
 const Material& named_material(std::string_view name, const std::string& prefix) {
   if (const Material* material = match_name(name)) return *material;
+  const std::vector<std::string> similar = similar_names(trim(name));
   if (const std::size_t count = materials_with(trim(name)).size(); count > 1) {
-    throw InputError(fmt::format("{}names {} materials: {}", prefix, count, name_hint(name)));
+    throw InputError(fmt::format("{}names {} materials: {}", prefix, count, join(similar)));
+  }
+  if (similar.empty()) {
+    throw InputError(
+        fmt::format("{}is not one of the {} built-in materials, which dolp materials lists; give its n and "
+                    "k as numbers, or as a file by material_file",
+                    prefix, built_in_materials().size()));
   }
   throw InputError(fmt::format("{}unknown material; the nearest of the {} known: {}", prefix,
-                               built_in_materials().size(), name_hint(name)));
+                               built_in_materials().size(), join(similar)));
 }
 
 OpticalConstants Material::at(double wavelength_um) const {
@@ -168,10 +182,16 @@ Spectrum known_range(const Material& material) {
 
 void check_covers(const Material& material, const Spectrum& spectrum, const std::string& prefix) {
   const Spectrum known = known_range(material);
-  if (known.min_um <= spectrum.min_um && spectrum.max_um <= known.max_um) return;
-  throw InputError(fmt::format("{}n and k of \"{}\" are known at {}, and the spectrum is {}", prefix, material.name,
-                               wavelength_text(known.min_um, known.max_um),
-                               wavelength_text(spectrum.min_um, spectrum.max_um)));
+  if (spectrum.min_um < known.min_um || known.max_um < spectrum.max_um) {
+    throw InputError(fmt::format("{}n and k of \"{}\" are known at {}, and the spectrum is {}", prefix, material.name,
+                                 wavelength_text(known.min_um, known.max_um),
+                                 wavelength_text(spectrum.min_um, spectrum.max_um)));
+  }
+  for (const double unknown_um : material.unknown_um) {
+    if (unknown_um < spectrum.min_um || spectrum.max_um < unknown_um) continue;
+    throw InputError(fmt::format("{}\"{}\" has NaN at {} um; delete this row to interpolate across it", prefix,
+                                 material.name, unknown_um));
+  }
 }
 
 void check_formula(const Material& material, const Spectrum& spectrum, const std::string& prefix) {

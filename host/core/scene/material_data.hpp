@@ -20,8 +20,11 @@ Material find_material(std::string_view name, const Spectrum& spectrum, const st
 
 /// Reads a user's file of n and k, linear between the rows. Returns fit_to_spectrum() of the material in the file.
 /// - A .yml or .yaml file is a "full database record" of refractiveindex.info: tables of n and k, or a formula for n.
-/// - Any other file is a CSV of one or more tables. Columns of a table: `wavelength_um` (or `wl`), and n, k or both.
-/// If the file has no k, k is 0. A k from -1e-5 to 0 is noise and counts as 0.
+/// - Any other file has one or more tables below lines of names, with the separators and comments of kDataFile.
+///   Columns: a wavelength, wavenumber or energy (see CsvColumns), and n, k or both; or eps_1 and eps_2.
+/// - An .lnk file of optool may lack the names wavelength_um, n and k, and may begin with its number of rows.
+/// If the file has no k, k is 0. A k from -1e-5 to 0 is noise and counts as 0. If all k are negative, the file gives
+/// n - ik. Rows with NaN are left out.
 /// Errors: InputError with file and line. If the file cannot be opened, the message begins with `prefix`.
 Material read_material_file(const std::string& path, const Spectrum& spectrum, const std::string& prefix);
 
@@ -32,7 +35,8 @@ void append_index(Material& material, double wavelength_um, std::optional<double
 /// The range of wavelengths in which a tabulated material has both n and k.
 Spectrum known_range(const Material& material);
 
-/// Refuses a tabulated material that lacks n or k in a part of the spectrum. The message begins with `prefix`.
+/// Refuses a tabulated material that lacks n or k in a part of the spectrum, or has NaN there. The message begins with
+/// `prefix`.
 void check_covers(const Material& material, const Spectrum& spectrum, const std::string& prefix);
 
 /// Refuses a material whose formula gives an n out of range, for example near a pole. Checks 1001 points of a band.

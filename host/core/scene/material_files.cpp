@@ -3,74 +3,186 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
 #include <cstddef>
 #include <dolp/errors.hpp>
+#include <limits>
 #include <optional>
+#include <ranges>
 #include <utility>
 
 #include <dolp/number_range.hpp>
 #include "base/text.hpp"
-#include "scene/csv.hpp"
+#include "scene/csv_columns.hpp"
 #include "scene/material_data.hpp"
 #include "scene/spectral_data.hpp"
 
 namespace dolp {
 namespace {
 
-// The longest record of refractiveindex.info has 2.6 MB. Reading 4 MiB takes up to 2 s and 0.7 GB of memory.
-constexpr std::size_t kMostRecordBytes = 4U << 20U;
+// A record may have this many bytes beside its rows of numbers. YAML of 4 MiB with many nodes takes 1 GB of memory;
+// rows of numbers take hardly more than their own bytes.
+constexpr std::size_t kMostYamlBytes = 4U << 20U;
 constexpr int kRangeSteps = 1000;  // steps of the search for wavelengths at which a formula gives an allowed n
 // Noise may make a measured k slightly negative. A k below -kKNoise is an error or has the opposite sign convention.
 constexpr double kKNoise = 1e-5;
-constexpr NumberRange kNoisyKRange{-kKNoise, kKRange.max};
+constexpr NumberRange kSignedKRange{-kKRange.max, kKRange.max};
+constexpr NumberRange kAnyRange{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+constexpr const char* kWavelengthColumn = "wavelength_um";
 
-/// Collects the rows of n and k in one table of a file, in any order, and appends them to the material.
+/// Collects the rows of n and k in the tables of a file, in any order, and appends them to the material.
 class IndexRows {
  public:
   explicit IndexRows(Material& material) : material_(material) {}
 
   void add(const CsvReader& row, const CsvColumns& columns) {
-    const double wavelength_um = columns.number(row, "wavelength_um").value();
+    const double wavelength_um = columns.number(row, kWavelengthColumn).value();
     if (!kWavelengthUmRange.contains(wavelength_um)) return;
-    if (const std::optional<double> n = columns.number(row, "n")) n_.push_back({wavelength_um, *n, row.line_number()});
-    if (const std::optional<double> k = columns.number(row, "k")) {
-      material_.least_k = std::min(material_.least_k, *k);
-      k_.push_back({wavelength_um, std::max(*k, 0.0), row.line_number()});
+    for (const char* name : {"n", "k", "eps_1", "eps_2"}) {
+      if (columns.is_nan(row, name)) return material_.unknown_um.push_back(wavelength_um);
     }
+    const auto value = [&](const char* name) { return columns.number(row, name); };
+    std::optional<double> n = value("n"), k = value("k");
+    if (const std::optional<double> eps_1 = value("eps_1")) {
+      const std::complex<double> index = std::sqrt(std::complex<double>(*eps_1, value("eps_2").value()));
+      if (!kNRange.contains(index.real()))
+        row.fail(fmt::format("eps_1 = {} and eps_2 = {}: n = {}; must be in {}", *eps_1, value("eps_2").value(),
+                             index.real(), kNRange.text()));
+      n = index.real();
+      k = index.imag();
+    }
+    if (n) n_.push_back({wavelength_um, *n, row.line_number()});
+    if (k) k_.push_back({wavelength_um, *k, row.line_number()});
   }
 
   void end_table() {
     append_rows(material_.n, std::exchange(n_, {}), {"n", 0.0, kNRange}, material_.source);
-    append_rows(material_.k, std::exchange(k_, {}), {"k", 0.0, kKRange}, material_.source);
+    k_tables_.push_back(std::exchange(k_, {}));
+  }
+
+  /// Appends the rows of k. Their sign follows from all of them.
+  void end_file() {
+    double least_k = 0.0, most_k = 0.0;
+    for (const SpectralRow& row : k_tables_ | std::views::join) {
+      least_k = std::min(least_k, row.value);
+      most_k = std::max(most_k, row.value);
+    }
+    material_.is_conjugate = least_k < -kKNoise && most_k <= kKNoise;
+    if (!material_.is_conjugate) material_.least_k = least_k;
+    for (std::vector<SpectralRow>& rows : k_tables_) {
+      for (SpectralRow& row : rows) row.value = allowed_k(row);
+      append_rows(material_.k, std::move(rows), {"k", 0.0, kKRange}, material_.source);
+    }
   }
 
  private:
+  double allowed_k(const SpectralRow& row) const {
+    if (material_.is_conjugate) return std::max(-row.value, 0.0);
+    if (row.value >= -kKNoise) return std::max(row.value, 0.0);
+    throw InputError(fmt::format("{}:{}: k = {}: out of range; must be a number in {}, or negative in all rows",
+                                 material_.source, row.line, row.value, NumberRange{-kKNoise, kKRange.max}.text()));
+  }
+
   Material& material_;
   std::vector<SpectralRow> n_, k_;
+  std::vector<std::vector<SpectralRow>> k_tables_;
 };
 
-std::vector<CsvColumn> index_columns(bool has_n = true, bool has_k = true) {
-  std::vector<CsvColumn> columns = {{"wavelength_um", kPositiveRange, true, "wl"}};
-  if (has_n) columns.push_back({"n", kNRange});
-  if (has_k) columns.push_back({"k", kNoisyKRange});
+std::vector<CsvColumn> record_columns(const std::vector<std::string>& names) {
+  std::vector<CsvColumn> columns = {{kWavelengthColumn, kPositiveRange, true}};
+  for (const std::string& name : names) columns.push_back({name, name == "n" ? kNRange : kSignedKRange});
   return columns;
+}
+
+/// The columns of a file that is no YAML record. `other_wavelength`: a second name of the wavelength.
+std::vector<CsvColumn> index_columns(const std::string& other_wavelength = {}) {
+  const std::string if_twice =
+      "if the file has several materials, copy the columns of one of them into a file of its own";
+  return {{kWavelengthColumn, kPositiveRange, true, other_wavelength},
+          {"n", kNRange, false, {}, {}, if_twice},
+          {"k", kSignedKRange, false, {}, {}, if_twice},
+          {"eps_1", kAnyRange, false, "eps1", {}, if_twice},
+          {"eps_2", kAnyRange, false, "eps2", {}, if_twice}};
 }
 
 bool is_record_text(std::string_view text) { return text.starts_with("DATA:") || text.find("\nDATA:") != text.npos; }
 
-void parse_csv(Material& material, IndexRows& rows, std::string_view text) {
-  if (is_record_text(text)) throw InputError(material.source + ":1: is a YAML record; the name must end in .yml");
+bool is_lnk(const Material& material) { return lower_case(material.source).ends_with(".lnk"); }
+
+constexpr const char* kReflectanceHint =
+    "; if the file has a reflectance: a diffuse reflectance goes in surface.diffuse, one number from 0 to 1";
+
+/// True if a file may be a spectrum of a reflectance library: ECOSTRESS, USGS, MODTRAN.
+bool has_word_of_reflectances(std::string_view text) {
+  constexpr std::size_t kHeadBytes = 4096;
+  const std::string head = lower_case(text.substr(0, kHeadBytes));
+  return std::ranges::any_of(std::array{"reflectance", "albedo", "splib"},
+                             [&](const char* word) { return head.find(word) != std::string::npos; });
+}
+
+/// The columns of a table that begins with numbers. A comment may name them, even without the unit of the wavelength.
+/// Those of optool's .lnk files need no names.
+CsvColumns unnamed_columns(Material& material, CsvReader& row) {
+  row.stay();
+  if (const std::optional<CsvColumns> columns = CsvColumns::in_comments(row, index_columns())) return *columns;
+  if (const std::optional<CsvColumns> columns = CsvColumns::in_comments(row, index_columns("wavelength"))) {
+    material.has_guessed_unit = true;
+    return *columns;
+  }
+  if (is_lnk(material)) return CsvColumns(record_columns({"n", "k"}));
+  const bool has_few = row.cells().size() < 3;
+  row.fail(
+      fmt::format("the columns must be named first, in a line such as \"wavelength_um n k\"; other names are "
+                  "wavelength_nm, wavenumber_cm, energy_eV, and eps_1 eps_2{}",
+                  has_few ? kReflectanceHint : ""));
+}
+
+/// The columns of the table that begins at the reader's line.
+CsvColumns index_header(Material& material, CsvReader& row) {
+  CsvColumns columns =
+      row.has_only_numbers() ? unnamed_columns(material, row) : CsvColumns::header_at(row, index_columns());
+  if (columns.has("eps_1") != columns.has("eps_2")) row.fail("eps_1 and eps_2 must be given together");
+  if (columns.has("eps_1") && (columns.has("n") || columns.has("k"))) {
+    row.fail("eps_1 and eps_2 cannot be combined with n and k");
+  }
+  return columns;
+}
+
+/// Reads tables that each begin with names. In a .lnk file the first row of two numbers is the number of rows, and a
+/// density.
+void read_tables(Material& material, IndexRows& rows, CsvReader& row) {
   std::optional<CsvColumns> columns;
-  for (CsvReader row(text, material.source); row.next();) {
+  std::optional<double> announced;
+  double count = 0.0;
+  while (row.next()) {
     const bool has_values = std::ranges::any_of(row.cells(), [](std::string_view cell) { return !cell.empty(); });
-    if (!columns || (has_values && !row.has_numbers())) {
+    const bool may_announce = count == 0.0 && !announced && is_lnk(material);
+    if (may_announce && row.has_only_numbers() && row.cells().size() == 2) {
+      announced = row.number(0, "number of rows");
+    } else if (!columns || (has_values && !row.has_numbers())) {
       rows.end_table();
-      columns.emplace(row, index_columns());
+      columns = index_header(material, row);
     } else {
       rows.add(row, *columns);
+      ++count;
     }
   }
   rows.end_table();
+  if (announced && *announced > count) row.fail(fmt::format("ends after {} of {} rows", count, *announced));
+}
+
+void parse_csv(Material& material, IndexRows& rows, std::string_view text) {
+  if (is_record_text(text)) throw InputError(material.source + ":1: is a YAML record; the name must end in .yml");
+  CsvReader row(text, material.source, kDataFile);
+  try {
+    read_tables(material, rows, row);
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    if (!has_word_of_reflectances(text) || what.ends_with(kReflectanceHint)) throw;
+    throw InputError(what + kReflectanceHint);
+  }
 }
 
 std::string where(const Material& material, const YAML::Mark& mark) {
@@ -172,7 +284,10 @@ void read_item(Material& material, IndexRows& rows, const YAML::Node& item) {
     return read_formula(material, item, formula);
   }
   check_keys(material, item, {"type", "data", "wavelength_range"});  // a table may have wavelength_range, too
-  const CsvColumns columns(index_columns(has_n, !has_n || is_nk));
+  std::vector<std::string> names;
+  if (has_n) names.emplace_back("n");
+  if (!has_n || is_nk) names.emplace_back("k");
+  const CsvColumns columns(record_columns(names));
   for (CsvReader row = rows_of(material, text_of(material, item, "data")); row.next();) rows.add(row, columns);
   rows.end_table();
 }
@@ -184,7 +299,22 @@ std::string kind_without_data(const YAML::Node& root) {
   return "it has no list DATA";
 }
 
+/// Refuses a record that is long without its rows of numbers.
+void check_yaml_size(const Material& material, std::string_view text) {
+  std::size_t bytes = 0;
+  for (const std::string_view line : split_lines(text)) {
+    const std::string_view cells = trim(line);
+    const bool begins_with_digit = !cells.empty() && cells.front() >= '0' && cells.front() <= '9';
+    const bool is_row = begins_with_digit && cells.find_first_not_of("0123456789+-.eE \t") == cells.npos;
+    if (!is_row) bytes += line.size() + 1;
+  }
+  if (bytes > kMostYamlBytes)
+    throw InputError(
+        fmt::format("{}: is longer than {} bytes without its rows of numbers", material.source, kMostYamlBytes));
+}
+
 void parse_yaml(Material& material, IndexRows& rows, const std::string& text) {
+  check_yaml_size(material, text);
   try {
     const YAML::Node record = YAML::Load(text);
     const YAML::Node data = record.IsMap() ? record["DATA"] : YAML::Node();
@@ -203,7 +333,7 @@ void parse_yaml(Material& material, IndexRows& rows, const std::string& text) {
 Material read_material_file(const std::string& path, const Spectrum& spectrum, const std::string& prefix) {
   const std::string lower_path = lower_case(path);
   const bool is_record = lower_path.ends_with(".yml") || lower_path.ends_with(".yaml");
-  const std::string text = read_named_file(path, prefix, is_record ? kMostRecordBytes : kMostTextBytes);
+  const std::string text = read_named_file(path, prefix);
   Material material;
   material.name = path.substr(path.find_last_of('/') + 1);
   material.source = path;
@@ -213,6 +343,7 @@ Material read_material_file(const std::string& path, const Spectrum& spectrum, c
   } else {
     parse_csv(material, rows, text);
   }
+  rows.end_file();
   if (material.n.wavelength_um.empty()) {
     throw InputError(fmt::format("{}:1: no values of n{} at wavelengths in {} um", path,
                                  material.k.wavelength_um.empty() ? "" : ", only of k,", kWavelengthUmRange.text()));

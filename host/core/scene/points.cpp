@@ -12,7 +12,7 @@
 #include <dolp/number_range.hpp>
 #include "base/text.hpp"
 #include "model/slopes.hpp"
-#include "scene/csv.hpp"
+#include "scene/csv_columns.hpp"
 #include "scene/scene_keys.hpp"
 
 namespace dolp {
@@ -78,14 +78,22 @@ std::vector<CsvColumn> csv_columns(const std::vector<ColumnRule>& rules) {
   return columns;
 }
 
-std::size_t end_of_header(std::string_view text) {
-  std::size_t begin = 0;
-  for (;;) {
-    const std::size_t end = text.find('\n', begin);
-    const std::string_view line = trim(text.substr(begin, end - begin));
-    if (end == std::string_view::npos || (!line.empty() && line.front() != '#')) return std::min(end, text.size());
-    begin = end + 1;
+/// The words above the first row of numbers or names, and those of this row.
+std::vector<std::string> words_of_header(std::string_view text) {
+  std::vector<std::string> words;
+  bool is_comment = true;
+  while (is_comment && !text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = trim(text.substr(0, end));
+    is_comment = line.empty() || is_comment_line(line);
+    for (std::size_t at = 0; at < line.size();) {
+      const std::size_t length = std::min(line.find_first_of(" ;,\t\r#!%=:\"", at), line.size()) - at;
+      if (length > 0) words.emplace_back(line.substr(at, length));
+      at += length + 1;
+    }
+    text.remove_prefix(std::min(end + 1, text.size()));
   }
+  return words;
 }
 
 const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_view name, const Points& points) {
@@ -115,11 +123,10 @@ void check_required(Points& points, const std::vector<ColumnRule>& rules) {
   if (!missing.empty()) throw InputError(fmt::format("{}: {}", points.where(), fmt::join(missing, "; ")));
 }
 
-void add_columns(const CsvReader& header, const CsvColumns& columns, const std::vector<ColumnRule>& rules,
-                 Points& points) {
+void add_columns(const CsvColumns& columns, const std::vector<ColumnRule>& rules, Points& points) {
   std::vector<std::string_view> kept;
   for (std::size_t cell = 0; cell < columns.cells().size(); ++cell) {
-    const std::string_view name = header.cells()[cell];
+    const std::string& name = columns.names()[cell];
     if (const std::optional<std::size_t> column = columns.cells()[cell]) {
       add_column(points, rules[*column]);
       kept.push_back(name);
@@ -138,6 +145,7 @@ void parse_row(const CsvReader& row, const CsvColumns& columns, const std::vecto
     const ColumnRule& rule = rules[*columns.cells()[cell]];
     if (const Axis* const axis = std::get_if<Axis>(&rule.column); axis && description_of(*axis).has_labels) {
       std::vector<std::string>& labels = points.labels[*axis];
+      if (cell >= row.cells().size()) row.fail(rule.name + ": the value is missing");
       const auto known = std::ranges::find(labels, row.cells()[cell]);
       rule.of(points)->push_back(static_cast<double>(known - labels.begin()));
       if (known == labels.end()) labels.emplace_back(row.cells()[cell]);
@@ -231,14 +239,11 @@ Points parse_points(const std::string& text, const std::string& path_name, Point
                     const std::vector<std::string>& results) {
   Points points;
   points.name = input_name(path_name);
-  CsvReader row(text, points.name, {.has_blank_lines = false});
-  std::vector<std::string> names;
-  CsvReader header(std::string_view(text).substr(0, end_of_header(text)), points.name);
-  if (header.next()) names.assign(header.cells().begin(), header.cells().end());
-  const std::vector<ColumnRule> rules = column_rules(kind, names);
+  CsvReader row(text, points.name, {.separator = std::nullopt, .has_blank_lines = false});
+  const std::vector<ColumnRule> rules = column_rules(kind, words_of_header(text));
   const CsvColumns columns = CsvColumns::first_of(row, csv_columns(rules), results);
   points.header_line = row.line_number();
-  add_columns(row, columns, rules, points);
+  add_columns(columns, rules, points);
   while (row.next()) parse_row(row, columns, rules, points);
   return points;
 }

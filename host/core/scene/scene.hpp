@@ -32,7 +32,10 @@ struct Material {
   OpticalConstants constant;
   SpectralTable n, k;
   std::shared_ptr<const Material> tabulated = {};  ///< the whole table, if `constant` was taken from it; else null
-  double least_k = 0.0;  ///< smallest k in the file, if it is negative; the tables have 0 instead
+  double least_k = 0.0;                 ///< smallest k in the file, if it is negative; the tables have 0 instead
+  bool is_conjugate = false;            ///< the file gives n - ik with a negative k; the tables have the positive one
+  bool has_guessed_unit = false;        ///< the file gives no unit of the wavelength; um was assumed
+  std::vector<double> unknown_um = {};  ///< wavelengths of the rows of the file that have NaN; the tables omit them
   bool is_constant() const { return n.wavelength_um.empty(); }
   OpticalConstants at(double wavelength_um) const;
 };

@@ -56,11 +56,13 @@ void load_material(SceneValues& scene, const SceneDocument& document, const std:
   const bool is_file = document.find(table + ".material_file") != nullptr;
   if (!is_file && !document.find(table + ".material")) return;
   const std::string prefix = document.prefix(table + (is_file ? ".material_file" : ".material"));
-  const Spectrum all = all_wavelengths(scene);
   const auto check_axis = [&](const Material& used) {
     const Material& known_everywhere = used.tabulated ? *used.tabulated : used;
-    check_covers(known_everywhere, all, prefix);
-    for (const double um : scene.grid[Axis::kWavelength]) check_formula(known_everywhere, {um, um}, prefix);
+    for (const Spectrum& band : scene.bands) check_covers(known_everywhere, band, prefix);
+    for (const double um : scene.grid[Axis::kWavelength]) {
+      check_covers(known_everywhere, {um, um}, prefix);
+      check_formula(known_everywhere, {um, um}, prefix);
+    }
   };
   if (stored) {
     material = *stored;

@@ -205,7 +205,7 @@ std::optional<SkyProfile> built_in_sky(std::string_view name, const SkyAir& air,
 }
 
 SkyProfile parse_sky_profile(std::string_view text, const std::string& name) {
-  CsvReader reader(text, name);
+  CsvReader reader(text, name, kDataFile);
   const CsvColumns columns = read_header(reader);
   const bool is_radiance = columns.has("radiance");
   SkyProfile profile;

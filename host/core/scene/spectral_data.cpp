@@ -17,14 +17,16 @@ namespace dolp {
 namespace {
 
 SpectralTable parse_irradiance(std::string_view text, const std::string& name) {
-  const std::vector<CsvColumn> known = {{"wavelength_um", kPositiveRange, true, "wl"},
+  const std::vector<CsvColumn> known = {{"wavelength_um", kPositiveRange, true},
                                         {"irradiance", kNonNegativeRange, true, "irradiance_W_m2_um", "W m-2 um-1"}};
   std::optional<CsvColumns> columns;
   std::vector<SpectralRow> rows;
-  for (CsvReader row(text, name); row.next();) {
-    const bool is_header = !columns && !row.has_numbers();
-    if (!columns) columns = is_header ? CsvColumns(row, known) : CsvColumns(known);
-    if (is_header) continue;
+  for (CsvReader row(text, name, kDataFile); row.next();) {
+    if (!columns && !row.has_numbers()) {
+      columns = CsvColumns::header_at(row, known);
+      continue;
+    }
+    if (!columns) columns = CsvColumns::in_comments(row, known).value_or(CsvColumns(known));
     rows.push_back(
         {columns->number(row, "wavelength_um").value(), columns->number(row, "irradiance").value(), row.line_number()});
   }
@@ -41,7 +43,6 @@ bool covers(const SpectralTable& table, const Spectrum& spectrum) {
   return table.wavelength_um.front() <= spectrum.min_um && spectrum.max_um <= table.wavelength_um.back();
 }
 
-constexpr std::size_t kMostAngleRows = 100'000;
 constexpr double kLargestSplitAtNormal = 0.01;
 
 /// Refuses rows whose angles do not ascend from 0 to 90, or differ from the angles of `first`, the first wavelength.
@@ -184,7 +185,6 @@ std::vector<AngleRow> read_angle_rows(CsvReader& row, const CsvColumns& columns,
                                       const std::vector<std::string>& values, const std::string& file) {
   std::vector<AngleRow> rows;
   while (row.next()) {
-    if (rows.size() == kMostAngleRows) row.fail(fmt::format("too many rows; at most {}", kMostAngleRows));
     AngleRow& read = rows.emplace_back();
     read.wavelength_um = columns.number(row, "wavelength_um").value_or(0.0);
     read.angle_deg = columns.number(row, angle).value();
@@ -214,7 +214,7 @@ ReflectanceTable read_reflectance_file(const std::string& path, const std::strin
 }
 
 ReflectanceTable parse_reflectances(const std::string& text, const std::string& name) {
-  CsvReader reader(text, name);
+  CsvReader reader(text, name, kDataFile);
   const CsvColumns columns = CsvColumns::first_of(reader, {{"beta_deg", kZenithDegRange, true},
                                                            {"r_s", kFractionRange, true},
                                                            {"r_p", kFractionRange, true},

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <dolp/number_range.hpp>
-#include "scene/csv.hpp"
+#include "scene/csv_columns.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp {

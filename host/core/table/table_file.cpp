@@ -58,13 +58,15 @@ std::string value_text(const Attribute& attribute) {
   }
 }
 
+/// The names of the columns, then attributes as comments. numpy.genfromtxt(names=True) takes its names from the first
+/// line, even if this is a comment.
 std::string csv_header(const TableLayout& layout) {
   std::string text;
+  for (const Axis axis : present_axes(layout.head.axes)) (text += description_of(axis).column) += ',';
+  text += result_header(layout.quantities, layout.has_status) + "\n";
   for (const Attribute& attribute : layout.head.attributes)
     text += "# " + attribute.name + ": " + value_text(attribute) + "\n";
-  text += "# units of stokes: " + layout.head.stokes_units + "\n";
-  for (const Axis axis : present_axes(layout.head.axes)) (text += description_of(axis).column) += ',';
-  return text + result_header(layout.quantities, layout.has_status) + "\n";
+  return text + "# units of stokes: " + layout.head.stokes_units + "\n";
 }
 
 std::string csv_rows(const TableValues& part, const TableLayout& layout) {

@@ -10,7 +10,7 @@
 #include <dolp/number_range.hpp>
 #include "base/text.hpp"
 #include "fit/model.hpp"
-#include "scene/csv.hpp"
+#include "scene/csv_columns.hpp"
 #include "scene/scene_reader.hpp"
 
 namespace dolp {
@@ -55,7 +55,8 @@ void add_row(MeasuredData& data, const CsvReader& row, const CsvColumns& columns
   observation.wavelength_um = columns.number(row, "wavelength_um");
   observation.uncertainty = columns.number(row, "uncertainty");
   for (std::size_t cell = 0; cell < columns.cells().size(); ++cell) {
-    const std::string& name = known_columns()[columns.cells()[cell].value()].name;
+    if (!columns.cells()[cell]) continue;
+    const std::string& name = known_columns()[*columns.cells()[cell]].name;
     const auto observable = std::ranges::find_if(kObservables, [&](Observable kind) { return name == name_of(kind); });
     if (observable == kObservables.end()) continue;
     if (*observable == Observable::kDolp && columns.number_at(row, cell) < 0.0) {
@@ -148,7 +149,7 @@ MeasuredData MeasuredData::from_csv(const std::string& csv, const std::string& n
   MeasuredData data;
   data.name = input_name(name);
   data.settings = std::move(settings);
-  CsvReader row(csv, data.name);
+  CsvReader row(csv, data.name, kDataFile);
   const CsvColumns columns = CsvColumns::first_of(row, known_columns());
   check_columns(row, columns);
   data.zenith_column = columns.has("theta_deg") ? "theta_deg" : "theta_i_deg";

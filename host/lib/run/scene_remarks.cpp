@@ -9,6 +9,7 @@
 
 #include <dolp/number_range.hpp>
 #include "scene/scene_document.hpp"
+#include "scene/spectral_data.hpp"
 #include "spectrum/planck.hpp"
 #include "spectrum/sky_factors.hpp"
 
@@ -165,6 +166,12 @@ class Remarks {
       add(key, "the file has no k, so that k = 0");
     if (material.least_k < 0.0)
       add(key, fmt::format("k is down to {} in the file; below 0 it counts as 0", material.least_k));
+    if (material.is_conjugate) add(key, "k is negative in the file, which gives N = n - ik; it is taken as positive");
+    if (material.has_guessed_unit) add(key, "the file gives no unit of the wavelength; it is taken in um");
+    if (const std::vector<double>& um = material.unknown_um; !um.empty()) {
+      add(key, fmt::format("rows with NaN are left out: {} at {}", um.size(),
+                           wavelength_text(std::ranges::min(um), std::ranges::max(um))));
+    }
     const std::optional<Interval> gap = bridged_gap(material.n, used_um(scene_));
     add_gap(key, gap);
     if (const auto k_gap = bridged_gap(material.k, used_um(scene_)); k_gap != gap) add_gap(key, k_gap);

@@ -26,7 +26,7 @@ void expect_near(const OpticalConstants& index, const OpticalConstants& expected
 
 TEST(Material_BuiltIn, HasTheRowsThatItsSourceCounts) {
   const std::vector<Material>& materials = built_in_materials();
-  ASSERT_EQ(materials.size(), 34U);
+  ASSERT_EQ(materials.size(), 41U);
   CsvReader row(embedded_materials_sources_csv(), "sources");
   row.next();
   ASSERT_EQ(row.cells()[2], "from_um");
@@ -87,6 +87,13 @@ TEST(Material_BuiltIn, IsWithinTheThinningOfTheWholeRecord) {
       {"BK7 borosilicate", 2.4080, 0.65976},
       {"oxidised Al mirror", 42.666, 65.844},
       {"water 25C", 1.1786, 0.07232},
+      {"Ge germanium", 4.0036, 0.0},
+      {"Si3N4 silicon nitride film", 1.9402, 1.5458},
+      {"ZnS", 2.1895, 0.002},
+      {"CaF2 calcium fluoride (Li)", 1.2811, 0.0},
+      {"CaF2 calcium fluoride (Kaiser)", 1.286, 0.003597},
+      {"kaolinite pellet", 1.5555, 0.46781},
+      {"montmorillonite pellet", 1.8812, 0.18479},
   };
   for (const Case& row : cases) {
     const OpticalConstants index = find_material(row.name, kCo2Line, "").at(10.6);
@@ -137,7 +144,18 @@ TEST(Material_NameUnknown, NamesTheNearest) {
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface.material=irom"}), "--set surface.material=irom: unknown material"));
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface.material=irom"}), "known: iron"));
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface.material=aluminium"}), "aluminium (Rakic), aluminium (Ordal)"));
-  EXPECT_TRUE(contains(error_of(kMinimal, {"surface.material="}), "unknown material"));
+  EXPECT_TRUE(contains(error_of(kMinimal, {"surface.material=sea water"}), "known: water 25C"));
+  EXPECT_TRUE(contains(error_of(kMinimal, {"surface.material=kaolinit"}), "known: kaolinite pellet"));
+}
+
+TEST(Material_NameOfNoBuiltIn, SaysHowToGiveNAndK) {
+  for (const std::string name : {"asphalt", "paint", "steel", "stainless steel", "concrete", ""}) {
+    const std::string error = error_of(kMinimal, {"surface.material=" + name});
+    EXPECT_TRUE(contains(error,
+                         "is not one of the 41 built-in materials, which dolp materials lists; give its n and k as "
+                         "numbers, or as a file by material_file"))
+        << error;
+  }
 }
 
 const std::string kDatabaseRecord =
@@ -265,18 +283,17 @@ TEST(MaterialFile_Wrong, NamesFileAndLine) {
   const std::vector<Case> cases = {
       {"e.csv", "", "e.csv:1: no values of n"},
       {"e.csv", "8,1.5,0\n", "e.csv:1: the columns must be named first"},
-      {"e.csv", "wl,n,k\n8,1.5\n", "e.csv:2: k: the value is missing; must be a number in [-1e-05, 1e6]"},
+      {"e.csv", "wl,n,k\n8,1.5\n", "e.csv:2: k: the value is missing; must be a number in [-1e"},
       {"e.csv", "wl,n,k\n8,x,1\n", "e.csv:2: n = x: not a number"},
       {"e.csv", "wl,n,k\n8,0,1\n", "e.csv:2: n = 0: out of range; must be a number in (0, 1e6]"},
-      {"e.csv", "wl,n,k\n8,1,-1\n", "e.csv:2: k = -1: out of range; must be a number in [-1e-05, 1e6]"},
+      {"e.csv", "wl,n,k\n8,1,-1\n9,1,1\n", "e.csv:2: k = -1: out of range; must be a number in [-1e-05, 1e6]"},
       {"e.csv", "wl,n,k\n8,1,1\n7,2,1\n8,1.5,1\n", "e.csv:4: wavelength_um = 8: has n = 1 and 1.5"},
       {"e.csv", "wl,n\n8,1\nwl,n\n7,1\n", "e.csv:4: wavelength_um = 7: must be greater than 8"},
-      {"e.csv", "wl,n,k\n8,1,-0.05\n", "e.csv:2: k = -0.05: out of range"},
+      {"e.csv", "wl,n,k\n8,1,-2e6\n", "e.csv:2: k = -2e6: out of range"},
       {"e.csv", "wl,n,k\n0.01,1,1\n", "e.csv:1: no values of n at wavelengths in [0.1, 1e4] um"},
       {"e.csv", "wl,n,k\n-8,1,1\n", "e.csv:2: wavelength_um = -8: out of range"},
-      {"e.csv", "wavelength_nm,n,k\n8,1,1\n",
-       "column \"wavelength_nm\" is unknown; the nearest known is wavelength_um"},
-      {"e.csv", "wl\tn\n8\t1\n", "e.csv:1: wl n: cells must be separated by commas, not tabs"},
+      {"e.csv", "wavelength_mm,n,k\n8,1,1\n",
+       "column \"wavelength_mm\" is unknown; the nearest known is wavelength_um"},
       {"e.csv", "wl,n\n8;1,5\n", "e.csv:2: 8;1,5: cells must be separated by commas, not semicolons"},
       {"e.txt", "# a record\nDATA:\n  - type: tabulated n\n", "e.txt:1: is a YAML record; the name must end in .yml"},
       {"e.csv", "wl,k\n8,1\n", "e.csv:1: no values of n, only of k"},
@@ -299,7 +316,7 @@ TEST(MaterialFile_Wrong, NamesFileAndLine) {
       {"e.yml", "a: *b\n", "e.yml:1: not valid YAML: "},
       {"e.yml", std::string(1U << 20U, '['), "e.yml:1: nested too deeply"},
       {"e.yml", "a: &a [*a]\nDATA: *a\n", "a DATA item has the keys type and data"},
-      {"e.yml", std::string(5U << 20U, ' '), "is longer than 4194304 bytes"},
+      {"e.yml", std::string(5U << 20U, 'x'), "e.yml: is longer than 4194304 bytes without its rows of numbers"},
       {"e.yml", "DATA:\n  - type: tabulated n\n    data: |\n        8 1 1\n",
        "e.yml:4: 1: one value too many after column n; there are 2 columns"},
       {"e.yml", "DATA:\n  - type: tabulated n\n    rows: 1\n",
@@ -404,12 +421,11 @@ TEST(IrradianceFile_Wrong, NamesFileAndLine) {
       {"wavelength,irradiance\n8,1\n", "e.csv:1: column \"wavelength\" is unknown; the nearest known is wavelength_um"},
       {"wavelength_um,temperature_K\n8,300\n", "e.csv:1: column \"temperature_K\" is unknown; allowed are"},
       {"wavelength_um,irradiance_W_m2_nm\n8,1\n",
-       "column \"irradiance_W_m2_nm\" is unknown; the nearest known is irradiance, allowed are wavelength_um, "
-       "irradiance (W "
-       "m-2 um-1)"},
+       "column \"irradiance_W_m2_nm\" is unknown; the nearest known is irradiance, allowed are wavelength_um (or "
+       "wavelength_nm, wavenumber_cm, energy_eV), irradiance (W m-2 um-1)"},
       {"wavelength_um,reflectance_percent\n8,1\n", "column \"reflectance_percent\" is unknown; allowed are"},
       {"wavelength_um\n8\n", "e.csv:1: column \"irradiance\" is missing, a number in [0, inf)"},
-      {"8;1\n", "e.csv:1: 8;1: cells must be separated by commas, not semicolons"},
+      {"8;1,5\n", "e.csv:1: irradiance = 1,5: not a number; must be a number in [0, inf); numbers must have a decimal"},
       {"8,1,2\n", "e.csv:1: 2: one value too many after column irradiance"},
       {"8,1\n9\n", "e.csv:2: irradiance: the value is missing"},
       {"8,-1\n", "e.csv:1: irradiance = -1: out of range; must be a number in [0, inf)"},

@@ -31,8 +31,7 @@ TEST(SkyProfile, BadFile_IsOneLineThatNamesFileLineAndWhatIsAllowed) {
   for (const auto& [text, message] : {
            Case{"",
                 "sky.csv:1: the file is empty; a line of column names is expected: zenith_deg, temperature_K, radiance "
-                "(W m-2 "
-                "sr-1 um-1), wavelength_um"},
+                "(W m-2 sr-1 um-1), wavelength_um (or wavelength_nm, wavenumber_cm, energy_eV)"},
            Case{"zenith_deg,temperature_K\n", "sky.csv:1: no rows; zenith_deg from 0 to 90 is expected"},
            Case{"temperature_K\n200\n", "sky.csv:1: column \"zenith_deg\" is missing, a number in [0, 90]"},
            Case{"zenith_deg\n0\n",
@@ -43,8 +42,7 @@ TEST(SkyProfile, BadFile_IsOneLineThatNamesFileLineAndWhatIsAllowed) {
                 "um-1; both are there"},
            Case{"zenith_deg,height\n0,1\n",
                 "sky.csv:1: column \"height\" is unknown; allowed are zenith_deg, temperature_K, radiance (W m-2 sr-1 "
-                "um-1), "
-                "wavelength_um"},
+                "um-1), wavelength_um (or wavelength_nm, wavenumber_cm, energy_eV)"},
            Case{"zenith_deg,temperature_K\n10,200\n90,250\n",
                 "sky.csv:2: zenith_deg = 10: must be 0 in one row, and 90 in another"},
            Case{"zenith_deg,temperature_K\n0,200\n80,250\n", "sky.csv:3: zenith_deg = 80: must be 90 in one row"},
@@ -62,10 +60,9 @@ TEST(SkyProfile, BadFile_IsOneLineThatNamesFileLineAndWhatIsAllowed) {
                 "sky.csv:4: zenith_deg = 0: must be 90 in one row"},
            Case{"wavelength_um,zenith_deg,radiance\n8,0,1\n8,90,1\n9,0,1\n9,30,1\n9,90,1\n",
                 "sky.csv:5: zenith_deg = 30: each wavelength must have the same angles, and the first has 90"},
-           Case{
-               "zenith_deg;radiance\n0;1\n90;1\n",
-               "sky.csv:1: zenith_deg;radiance: cells must be separated by commas, not semicolons; numbers must have a "
-               "decimal point"},
+           Case{"zenith_deg;radiance\n0;1,5\n90;1\n",
+                "sky.csv:2: radiance = 1,5: not a number; must be a number in [0, inf); numbers must have a decimal "
+                "point"},
        }) {
     EXPECT_EQ(refusal_of(text), message);
   }

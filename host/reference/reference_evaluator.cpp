@@ -108,7 +108,7 @@ std::vector<ColumnMoments> responses_of(const MomentsRequest& request, const Mom
 Moments moments_of(const MomentsRequest& request, const MomentsPoint& point, const reference::Refinement& refinement) {
   if (point.shape.sigma == 0.0) return mirror_of(request, point);
   const reference::Slopes slopes(request.distribution, point.shape.sigma, point.shape.q);
-  const auto integrate = [&](const reference::SkyFunction* sky) {
+  const auto integrate = [&](const SkyFunction* sky) {
     return request.scattering == Scattering::kSingle
                ? reference::hemisphere_moments(slopes, request.masking, point.theta_deg, point.index, refinement, sky)
                : reference::groove_moments(slopes, point.theta_deg, point.index, refinement, sky);
@@ -117,7 +117,7 @@ Moments moments_of(const MomentsRequest& request, const MomentsPoint& point, con
   // Integrates once for each function of the sky. Each integration also computes the moments again.
   for (std::size_t k = 0; request.sky && k < request.sky->size(); ++k) {
     const auto column = static_cast<Eigen::Index>(k);
-    const reference::SkyFunction sky{[&](double zenith_deg) { return request.sky->at(zenith_deg)[column]; },
+    const SkyFunction sky{[&](double zenith_deg) { return request.sky->at(zenith_deg)[column]; },
                                      request.sky->nodes().ends_deg()};
     Moments with = integrate(&sky);
     std::vector<ColumnMoments> all = std::move(m.columns);
@@ -173,6 +173,8 @@ void ReferenceEvaluator::note(double seconds) {
   report_.precision = "double";
   report_.kernel_s += seconds;
 }
+
+TransmissionIntegral ReferenceEvaluator::transmission() const { return reference::transmission_integral; }
 
 std::vector<Moments> ReferenceEvaluator::evaluate(const MomentsRequest& request, const Progress& progress) {
   check(request);

@@ -7,6 +7,7 @@
 
 #include "model/moments.hpp"
 #include "model/scattering.hpp"
+#include "model/transmission.hpp"
 
 namespace dolp {
 
@@ -53,6 +54,8 @@ class ModelEvaluator {
   virtual std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) = 0;
   /// Announces a later call of `scatter`. The evaluator may prepare for it in parallel with other calls.
   virtual void prepare(const ScatteringRequest& /*request*/) {}
+  /// Integrates for a polarised diffuse part.
+  virtual TransmissionIntegral transmission() const { return transmission_integral; }
   virtual bool has_double() const { return true; }
   /// True if the evaluator must integrate each entry. Then a run neither interpolates nor uses responses.
   virtual bool computes_each_entry() const { return false; }

@@ -86,7 +86,7 @@ double SkyNodes::error(const Eigen::VectorXd& values) const {
   return error;
 }
 
-Eigen::VectorXd SkyNodes::mean_weights(double power, const std::function<double(double)>& factor) const {
+Eigen::VectorXd SkyNodes::mean_weights(double power) const {
   using Rule = boost::math::quadrature::gauss<double, 30>;
   const auto count = static_cast<Eigen::Index>(zenith_deg_.size());
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(count);
@@ -106,8 +106,7 @@ Eigen::VectorXd SkyNodes::mean_weights(double power, const std::function<double(
       }
       const double x = std::clamp((end - zenith_deg + (start - zenith_deg)) / (end - start), -1.0, 1.0);
       weights.segment(static_cast<Eigen::Index>(part) * kPoints, kPoints) +=
-          weight * measure * std::pow(at.cos, power + 1.0) * (factor ? factor(at.cos) : 1.0) *
-          cardinal_values(points_, x).transpose();
+          weight * measure * std::pow(at.cos, power + 1.0) * cardinal_values(points_, x).transpose();
     };
     for (std::size_t i = 0; i < Rule::abscissa().size(); ++i) {
       add(0.5 * (1.0 + Rule::abscissa()[i]), Rule::weights()[i]);

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <functional>
 #include <vector>
 
 namespace dolp {
@@ -37,9 +36,9 @@ class SkyNodes {
   double error(const Eigen::VectorXd& values) const;
 
   /// A weight for each node. The weighted sum of a function's values at the nodes is its mean over the solid angle of
-  /// the sky. In this mean, a direction with the cosine c of the zenith has the weight c^(power + 1) factor(c): the
-  /// projected area c times the reflectance c^power factor(c). Domain: power > -1.
-  Eigen::VectorXd mean_weights(double power, const std::function<double(double)>& factor = {}) const;
+  /// the sky. In this mean, a direction with the cosine c of the zenith has the weight c^(power + 1): the projected area
+  /// c times the reflectance c^power. Domain: power > -1.
+  Eigen::VectorXd mean_weights(double power) const;
 
  private:
   std::vector<double> ends_deg_;

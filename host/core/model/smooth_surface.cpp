@@ -152,6 +152,24 @@ double critical_cosine(const FacetOptics& optics) {
   return is_sharp && squared > 0.0 && squared < 1.0 ? std::sqrt(squared) : 0.0;
 }
 
+std::vector<double> kink_elevations_rad(const FacetOptics& optics) {
+  std::vector<double> elevations_rad;
+  if (optics.measured) {
+    for (const double beta_deg : optics.measured->beta_deg)
+      elevations_rad.push_back((90.0 - beta_deg) * std::numbers::pi / 180.0);
+    return elevations_rad;
+  }
+  const auto add_critical = [&](const OpticalConstants& index) {
+    const double squared_sine = (1.0 - index.n) * (1.0 + index.n) + index.k * index.k;
+    const double squared_cosine = (index.n - index.k) * (index.n + index.k);
+    if (squared_sine <= 0.0 || squared_cosine <= 0.0) return;
+    elevations_rad.push_back(std::atan2(std::sqrt(squared_sine), std::sqrt(squared_cosine)));
+  };
+  add_critical(optics.index);
+  for (const Film& film : optics.films) add_critical(film.index);
+  return elevations_rad;
+}
+
 Moments mirror_moments(const FacetOptics& optics, double cosine) {
   const SmoothAbsorptance absorbed = smooth_absorptance(optics, cosine);
   const double rounding = 16.0 * std::numeric_limits<double>::epsilon() * cosine;

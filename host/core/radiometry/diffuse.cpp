@@ -1,32 +1,22 @@
 #include "radiometry/diffuse.hpp"
 
-#include <algorithm>
-#include <boost/math/quadrature/tanh_sinh.hpp>
 #include <cmath>
 
 #include "model/smooth_surface.hpp"
 
 namespace dolp {
-namespace {
 
-constexpr double kRelativeError = 1e-12;
-constexpr double kLeastCosine = 1e-15;  // lower end of the integral; smaller cosines contribute less than the error
-
-}  // namespace
-
-DiffuseReflection::DiffuseReflection(const Surface& surface, const FacetOptics& optics)
+DiffuseReflection::DiffuseReflection(const Surface& surface, const FacetOptics& optics,
+                                     TransmissionIntegral transmission)
     : albedo_(surface.diffuse),
       exponent_(surface.diffuse_exponent),
-      is_polarised_(albedo_ > 0.0 && surface.diffuse_polarisation == DiffusePolarisation::kTransmission) {
+      is_polarised_(albedo_ > 0.0 && surface.diffuse_polarisation == DiffusePolarisation::kTransmission),
+      transmission_(transmission) {
   if (!is_polarised_) return;
   optics_ = optics;
   const SmoothAbsorptance normal = smooth_absorptance(optics_, 1.0);
   normal_ = 0.5 * (normal.s + normal.p);
-  const auto integrand = [&](double mu) { return std::pow(mu, exponent_ + 1.0) * transmitted(mu).i; };
-  boost::math::quadrature::tanh_sinh<double> rule;
-  const double kink = critical_cosine(optics_);
-  integral_ = rule.integrate(integrand, std::max(kink, kLeastCosine), 1.0, kRelativeError);
-  if (kink > kLeastCosine) integral_ += rule.integrate(integrand, kLeastCosine, kink, kRelativeError);
+  integral_ = transmission_(optics_, exponent_ + 1.0, {[](double) { return 1.0; }, {}});
 }
 
 DiffuseLight DiffuseReflection::transmitted(double cosine) const {
@@ -41,8 +31,9 @@ DiffuseLight DiffuseReflection::rho(double cosine) const {
   if (!is_polarised_) return {2.0 * albedo_ * std::pow(cosine, exponent_) / (exponent_ + 2.0), 0.0};
   if (cosine == 0.0) return {};
   const DiffuseLight leaving = transmitted(cosine);
-  const double scale = 2.0 * albedo_ * std::pow(cosine, exponent_) * integral_;
-  return {scale * leaving.i, scale * leaving.q};
+  const double unit = 2.0 * albedo_ * std::pow(cosine, exponent_) / normal_;
+  const double scale = unit * integral_.value;
+  return {scale * leaving.i, scale * leaving.q, unit * integral_.error * leaving.i};
 }
 
 DiffuseLight DiffuseReflection::beam(double cos_theta_i, double cos_theta_r) const {
@@ -54,8 +45,12 @@ DiffuseLight DiffuseReflection::beam(double cos_theta_i, double cos_theta_r) con
   return {entering * leaving.i, entering * leaving.q};
 }
 
-Eigen::VectorXd DiffuseReflection::mean_weights(const SkyNodes& nodes) const {
-  return nodes.mean_weights(exponent_, [this](double cosine) { return transmitted(cosine).i; });
+Estimate DiffuseReflection::sky_mean(const SkyNodes& nodes, const Eigen::VectorXd& sky) const {
+  if (!is_polarised_) return {nodes.mean_weights(exponent_).dot(sky), 0.0};
+  const auto at = [&](double zenith_deg) { return nodes.at(zenith_deg, sky)[0]; };
+  const Estimate sum = transmission_(optics_, exponent_ + 1.0, {at, nodes.ends_deg()});
+  const double mean = sum.value / integral_.value;
+  return {mean, (sum.error + std::abs(mean) * integral_.error) / integral_.value};
 }
 
 bool diffuse_diverges(const Surface& surface) {

@@ -4,6 +4,7 @@
 
 #include "model/facet_optics.hpp"
 #include "model/sky_basis.hpp"
+#include "model/transmission.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp {
@@ -12,6 +13,7 @@ namespace dolp {
 struct DiffuseLight {
   double i = 0.0;
   double q = 0.0;
+  double error = 0.0;  ///< bound of the errors of i and q, beyond rounding errors
 };
 
 /// The diffuse part of a pBRDF.
@@ -23,7 +25,8 @@ struct DiffuseLight {
 /// Domain: a bare medium.
 class DiffuseReflection {
  public:
-  DiffuseReflection(const Surface& surface, const FacetOptics& optics);
+  DiffuseReflection(const Surface& surface, const FacetOptics& optics,
+                    TransmissionIntegral transmission = transmission_integral);
 
   /// Reflectance into the direction `cosine` under uniform light. By reciprocity, `i` is also the reflectance for light
   /// that comes from this direction. Domain: cosine in [0, 1].
@@ -32,16 +35,17 @@ class DiffuseReflection {
   DiffuseLight beam(double cos_theta_i, double cos_theta_r) const;
   /// t_+ and t_- of the class comment, at the incidence `cosine`, over t_+(0). 1 and 0 if is_polarised_ is false.
   DiffuseLight transmitted(double cosine) const;
-  /// One weight per node. The weighted sum of a sky's radiances is the mean radiance that the diffuse part reflects.
-  Eigen::VectorXd mean_weights(const SkyNodes& nodes) const;
+  /// Mean of a function of the sky, weighted with the light that the diffuse part reflects. `sky`: values at the nodes.
+  Estimate sky_mean(const SkyNodes& nodes, const Eigen::VectorXd& sky) const;
 
  private:
   double albedo_;
   double exponent_;
   bool is_polarised_;
   FacetOptics optics_;
-  double normal_ = 1.0;    ///< t_+(0)
-  double integral_ = 0.0;  ///< integral of mu^(exponent_ + 1) t_+ / t_+(0) over the cosine mu from 0 to 1
+  TransmissionIntegral transmission_;
+  double normal_ = 1.0;  ///< t_+(0)
+  Estimate integral_;    ///< integral of mu^(exponent_ + 1) t_+ over the cosine mu from 0 to 1
 };
 
 /// True if the diffuse part of rho has no limit at 90 degrees.

@@ -153,9 +153,10 @@ PointResult grazing_limit(const SceneModel& scene, const SpectralRule& rule, std
 }  // namespace
 
 Radiometry::Radiometry(const SceneModel& scene, const KeptEffects& kept, double dropped,
-                       const std::shared_ptr<const SkyBasis>& sky)
+                       const std::shared_ptr<const SkyBasis>& sky, TransmissionIntegral transmission)
     : scene_(scene),
       beam_specular_(scene.surface.specular),
+      transmission_(transmission),
       kept_(kept),
       dropped_(dropped),
       knows_rho_(kept.moments || scene.surface.specular == 0.0),
@@ -170,13 +171,11 @@ Radiometry::Radiometry(const SceneModel& scene, const KeptEffects& kept, double 
 
 Radiometry::Optics Radiometry::optics_with(std::vector<FacetOptics> facets) const {
   Optics optics;
-  for (const FacetOptics& facet : facets) optics.diffuse.emplace_back(scene_.surface, facet);
+  for (const FacetOptics& facet : facets) optics.diffuse.emplace_back(scene_.surface, facet, transmission_);
   for (std::size_t j = 0; scene_.surface.diffuse > 0.0 && j < sky_.size(); ++j) {
     const std::vector<double>& sky = kept_rule_.samples[j].sky;
-    optics.diffuse_beyond_mean.push_back(
-        optics.diffuse[j]
-            .mean_weights(basis_->nodes())
-            .dot(Eigen::Map<const Eigen::VectorXd>(sky.data(), static_cast<Eigen::Index>(sky.size()))));
+    const Eigen::Map<const Eigen::VectorXd> values(sky.data(), static_cast<Eigen::Index>(sky.size()));
+    optics.diffuse_beyond_mean.push_back(optics.diffuse[j].sky_mean(basis_->nodes(), values));
   }
   optics.facets = std::move(facets);
   return optics;
@@ -226,8 +225,8 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
   boost::container::small_vector<DiffuseSample, 1> diffuse;
   boost::container::small_vector<DiffuseLight, 1> diffuse_beam;
   for (std::size_t j = 0; j < moments.size(); ++j) {
-    diffuse.push_back(
-        {optics.diffuse[j].rho(cos_theta), optics.diffuse_beyond_mean.empty() ? 0.0 : optics.diffuse_beyond_mean[j]});
+    diffuse.push_back({optics.diffuse[j].rho(cos_theta),
+                       optics.diffuse_beyond_mean.empty() ? Estimate{} : optics.diffuse_beyond_mean[j]});
     if (bistatic) diffuse_beam.push_back(optics.diffuse[j].beam(cos_theta_i, cos_theta));
     reflected.push_back(reflectance(scene_.surface, moments[j], cos_theta, diffuse[j].rho));
     if (is_unphysical(reflected.back())) result.status |= kReflectanceOutsideZeroToOne;

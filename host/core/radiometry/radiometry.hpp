@@ -25,8 +25,10 @@ class Radiometry {
   /// `kept`: effects that contribute. If kept.moments is false, the specular part of rho counts as 0, and quantities
   /// that need it are NaN. `dropped`: how much the effects that are not kept can change DOLP. The error estimate of
   /// DOLP includes it. `sky`: has the functions of Moments::columns. If null, they are computed from the scene.
+  /// `transmission`: integrates for a polarised diffuse part.
   explicit Radiometry(const SceneModel& scene, const KeptEffects& kept = {}, double dropped = 0.0,
-                      const std::shared_ptr<const SkyBasis>& sky = nullptr);
+                      const std::shared_ptr<const SkyBasis>& sky = nullptr,
+                      TransmissionIntegral transmission = transmission_integral);
 
   /// The spectral samples of the scene. `point` needs Moments for each sample's refractive index, in this order.
   const SpectralRule& rule() const { return rule_; }
@@ -40,7 +42,7 @@ class Radiometry {
   struct Optics {
     std::vector<FacetOptics> facets;
     std::vector<DiffuseReflection> diffuse;
-    std::vector<double> diffuse_beyond_mean;  ///< DiffuseSample::beyond_mean
+    std::vector<Estimate> diffuse_beyond_mean;  ///< DiffuseSample::beyond_mean
   };
   Optics optics_with(std::vector<FacetOptics> facets) const;
 
@@ -62,6 +64,7 @@ class Radiometry {
 
   SceneModel scene_;  ///< the scene; its specular or diffuse part is 0 if KeptEffects drops it
   double beam_specular_;
+  TransmissionIntegral transmission_;
   KeptEffects kept_;
   double dropped_;
   bool knows_rho_;

@@ -27,9 +27,9 @@ Reflectance reflectance(const Surface& surface, const Moments& moments, double c
   r.rho_i = scale * moments.r_i + diffuse.i;
   r.rho_q = scale * moments.r_q + diffuse.q;
   r.absorbed = (1.0 - surface.specular) + scale * moments.deficit - diffuse.i;
-  r.rho_i_error = scale * moments.r_i_error + kReflectanceRounding * std::abs(r.rho_i);
-  r.rho_q_error = scale * moments.r_q_error + kReflectanceRounding * std::abs(r.rho_q);
-  r.absorbed_error = scale * moments.deficit_error + kReflectanceRounding * absorbed_terms;
+  r.rho_i_error = scale * moments.r_i_error + kReflectanceRounding * std::abs(r.rho_i) + diffuse.error;
+  r.rho_q_error = scale * moments.r_q_error + kReflectanceRounding * std::abs(r.rho_q) + diffuse.error;
+  r.absorbed_error = scale * moments.deficit_error + kReflectanceRounding * absorbed_terms + diffuse.error;
   r.mismatch = scale * std::abs((moments.r_i - cos_theta) + moments.deficit);
   return r;
 }

@@ -129,11 +129,12 @@ void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std:
   for (std::size_t j = 0; j < weights.size(); ++j) {
     add_specular_sky(sum, surface.specular / cos_theta, rounding, weights[j], moments[j]);
     const DiffuseLight& rho = diffuse[j].rho;
-    const double error = weights[j].error + rounding * std::abs(diffuse[j].beyond_mean);
-    sum.i += rho.i * diffuse[j].beyond_mean;
-    sum.q += rho.q * diffuse[j].beyond_mean;
-    sum.i_error += std::abs(rho.i) * error;
-    sum.q_error += std::abs(rho.q) * error;
+    const Estimate& sky = diffuse[j].beyond_mean;
+    const double error = weights[j].error + sky.error + rounding * std::abs(sky.value);
+    sum.i += rho.i * sky.value;
+    sum.q += rho.q * sky.value;
+    sum.i_error += std::abs(rho.i) * error + rho.error * std::abs(sky.value);
+    sum.q_error += std::abs(rho.q) * error + rho.error * std::abs(sky.value);
   }
   if (weights.empty() || surface.specular == 0.0) return;
   const auto error_of = [&](double ColumnMoments::*part) {

@@ -45,10 +45,10 @@ Stokes stokes_sum(const SpectralRule& rule, std::span<const Reflectance> reflect
 void add_specular(Stokes& sum, double net, const Moments& moments);
 
 /// Diffuse reflection in a spectral sample. `beyond_mean` is the difference of two means of the sky's exitance. The
-/// first has the weights DiffuseReflection::mean_weights. The second is SpectralFactors::surroundings.
+/// first is DiffuseReflection::sky_mean. The second is SpectralFactors::surroundings.
 struct DiffuseSample {
   DiffuseLight rho;
-  double beyond_mean = 0.0;
+  Estimate beyond_mean;
 };
 
 /// Adds the reflected light of a sky profile, minus the reflected light of a uniform sky with the same irradiance. The

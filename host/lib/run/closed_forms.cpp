@@ -5,8 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "model/smooth_surface.hpp"
+#include "model/transmission.hpp"
 
 namespace dolp {
 namespace {
@@ -26,16 +28,6 @@ constexpr double kReflectanceRounding = 8.0 * std::numeric_limits<double>::epsil
 
 // Below this cosine the integrand counts as 0: there it is negligible, and the square of the cosine may underflow.
 constexpr double kSmallestCosine = 1e-100;
-
-/// Angle in rad between ray and surface below which reflection is total (k = 0) or nearly total; 0 if there is none.
-double critical_angle(const FacetOptics& optics) {
-  if (optics.measured) return 0.0;
-  const OpticalConstants& index = optics.index;
-  const double squared_sine = (1.0 - index.n) * (1.0 + index.n) + index.k * index.k;
-  const double squared_cosine = (index.n - index.k) * (index.n + index.k);
-  return squared_sine > 0.0 && squared_cosine > 0.0 ? std::atan2(std::sqrt(squared_sine), std::sqrt(squared_cosine))
-                                                    : 0.0;
-}
 
 constexpr double kHorizon_deg = 90.0;
 // A facet with a slope up to kMirrorSlope turns the reflected ray by at most this angle.
@@ -71,8 +63,11 @@ Moments closed_form(const Surface& surface, const Direction& direction, const Sl
 }
 
 Moments grazing_limit_moments(const FacetOptics& index, double q) {
+  constexpr double kEnd = 0.5 * std::numbers::pi;
   boost::math::quadrature::tanh_sinh<double> integrator;
-  const double critical = critical_angle(index);
+  std::vector<double> ends = kink_elevations_rad(index);
+  ends.insert(ends.end(), {0.0, kEnd});
+  std::ranges::sort(ends);
   // The integrand is not smooth near x = cos(phi) = 0. There sin(psi), with psi = pi/2 - phi, has a smaller rounding
   // error than cos(phi). So the integral is over psi.
   const auto integral = [&](auto&& of_cosine) {
@@ -81,24 +76,34 @@ Moments grazing_limit_moments(const FacetOptics& index, double q) {
       const double x = std::sin(psi);
       return x > kSmallestCosine ? std::pow(x, 4.0 - 2.0 * q) * of_cosine(x) : 0.0;
     };
-    constexpr double kEnd = 0.5 * std::numbers::pi;
-    const double above = critical < kEnd ? integrator.integrate(integrand, critical, kEnd, kAgreement) : 0.0;
-    return critical > 0.0 ? integrator.integrate(integrand, 0.0, critical, kAgreement) + above : above;
+    Estimate sum;
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+      double error = 0.0;
+      if (ends[i] < ends[i + 1]) sum.value += integrator.integrate(integrand, ends[i], ends[i + 1], kAgreement, &error);
+      sum.error += error;
+    }
+    return sum;
   };
-  Moments moments;
-  moments.albedo = integral([](double) { return 1.0; });
-  moments.r_i = integral([&](double x) {
+  const auto half_sum = [&](double x) {
     const SmoothAbsorptance absorbed = smooth_absorptance(index, x);
     return 1.0 - 0.5 * (absorbed.s + absorbed.p);
-  });
-  moments.r_q = integral([&](double x) {
+  };
+  const auto half_difference = [&](double x) {
     const SmoothAbsorptance absorbed = smooth_absorptance(index, x);
     return 0.5 * (absorbed.s - absorbed.p);
-  });
+  };
+  const Estimate albedo = integral([](double) { return 1.0; });
+  const Estimate r_i = integral(half_sum);
+  const Estimate r_q = integral(half_difference);
+  const double rounding = kRelativeError * r_i.value + kReflectanceRounding * albedo.value;
+  Moments moments;
+  moments.albedo = albedo.value;
+  moments.r_i = r_i.value;
+  moments.r_q = r_q.value;
   moments.deficit = -moments.r_i;
-  moments.albedo_error = kRelativeError * moments.albedo;
-  moments.r_i_error = kRelativeError * moments.r_i + kReflectanceRounding * moments.albedo;
-  moments.r_q_error = moments.deficit_error = moments.r_i_error;
+  moments.albedo_error = albedo.error + kRelativeError * moments.albedo;
+  moments.r_i_error = moments.deficit_error = r_i.error + rounding;
+  moments.r_q_error = r_q.error + rounding;
   return moments;
 }
 

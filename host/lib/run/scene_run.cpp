@@ -30,9 +30,11 @@ constexpr std::size_t kWholeDirectionMissRatio = 8;
 constexpr std::size_t kEntriesAtOnce = 4096;  // with fewer entries per thread, starting the thread does not pay
 
 struct Spectra {
-  Spectra(const SceneValues& scene, const EffectPlan& plan, const std::vector<SceneVariant>& variants) {
+  Spectra(const SceneValues& scene, const EffectPlan& plan, const std::vector<SceneVariant>& variants,
+          const ModelEvaluator* evaluator) {
+    const TransmissionIntegral transmission = evaluator ? evaluator->transmission() : transmission_integral;
     for (const SceneVariant& variant : variants)
-      radiometries.emplace_back(with_variant(scene, variant), plan.kept, plan.bound, plan.sky);
+      radiometries.emplace_back(with_variant(scene, variant), plan.kept, plan.bound, plan.sky, transmission);
     for (const Radiometry& radiometry : radiometries) indices.push_back(radiometry.rule().indices());
   }
   std::vector<Radiometry> radiometries;
@@ -427,7 +429,7 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
     if (left > 0) {
       --left;
     } else {
-      const Spectra spectra(scene, plan, part.variants());
+      const Spectra spectra(scene, plan, part.variants(), evaluator);
       const RunContext context{scene, plan, spectra, evaluator, basis, summary};
       std::vector<PointResult> results = part_results(context, part, checked, summary.check, part_progress);
       summary.add(scene, part, results);

@@ -87,7 +87,7 @@ TEST(DiffuseReflection, MeanOfASky_IsWeightedWithItsTransmission) {
     sum += weight * radiance(mu);
     weights += weight;
   }
-  EXPECT_NEAR(diffuse.mean_weights(nodes).dot(sky), sum / weights, 1e-6);
+  EXPECT_NEAR(diffuse.sky_mean(nodes, sky).value, sum / weights, 1e-6);
 }
 
 TEST(DiffuseReflection, GrazingView_HasALimit) {

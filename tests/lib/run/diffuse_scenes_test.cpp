@@ -6,6 +6,7 @@
 
 #include "computed_scene.hpp"
 #include "radiometry/diffuse.hpp"
+#include "reference/reference_evaluator.hpp"
 #include "run/mueller_run.hpp"
 #include "temporary_file.hpp"
 
@@ -97,6 +98,24 @@ TEST(DiffuseScenes, SkyBrighterAtTheHorizon_AddsWhatTheDiffusePartSees) {
   const double reflected = mean / weights;
   EXPECT_NEAR(all[kStokesI] / std::numbers::pi, emitted * (1.0 - rho.i) + reflected * rho.i, 1e-4 * emitted);
   EXPECT_NEAR(all[kStokesQ] / std::numbers::pi, (reflected - emitted) * rho.q, 1e-4 * emitted);
+}
+
+// Below the critical angle the body lets light through, beyond it none. The value comes from adaptive quadrature with
+// 30 digits (mpmath), split at the critical angle, with the sky's formula evaluated at each zenith.
+TEST(DiffuseScenes, TotalReflectionUnderALayeredSky_HasTheKinkAsAnEndOfThePanels) {
+  constexpr double kQOverI0 = 0.00959910657358024;
+  const SceneValues scene =
+      scene_with({"surface.n=0.9", "surface.k=0", "surface.diffuse=1", "surface.specular=0",
+                  "surface.diffuse_exponent=-0.3", "surroundings.profile=clear-sky", "surroundings.vapour_cm=0.5",
+                  "spectrum.wavelength_um=3.4", "grid.theta_deg=[35]", "accuracy.tolerance=1e-6"});
+  CpuEvaluator kernels;
+  ReferenceEvaluator reference;
+  for (ModelEvaluator* evaluator : std::initializer_list<ModelEvaluator*>{&kernels, &reference}) {
+    const PointResult result = evaluate_scene(scene, grid_entries(scene), *evaluator, {}).front();
+    EXPECT_NEAR(result[kQOverI], kQOverI0, result[kErrorEstimate]);
+    EXPECT_LT(result[kErrorEstimate], 1e-9);
+    EXPECT_EQ(result.status, 0U);
+  }
 }
 
 TEST(DiffuseScenes, FilmsOrMeasuredReflectances_AreRefused) {

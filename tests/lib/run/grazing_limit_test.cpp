@@ -159,5 +159,16 @@ TEST(GrazingLimit_UnderAFilmWithoutThickness, IsThatOfTheMedium) {
   EXPECT_NEAR(covered.r_i, bare.r_i, covered.r_i_error + bare.r_i_error);
 }
 
+// R_s = R_p falls in a straight line from 1 at normal incidence to 0 at 45 degrees, and rises back to 1. For q = 3/2
+// the integrand is R(phi) cos(phi), so r_i = 1 + 4 (1 - sqrt 2) / pi.
+TEST(GrazingLimit, RowsOfMeasuredReflectances_AreEndsOfThePanels) {
+  FacetOptics optics;
+  optics.measured = std::make_shared<const MeasuredReflectance>(
+      MeasuredReflectance{{0.0, 45.0, 90.0}, {1.0, 0.0, 1.0}, {1.0, 0.0, 1.0}});
+  const Moments moments = grazing_limit_moments(optics, 1.5);
+  EXPECT_NEAR(moments.r_i, 1.0 + 4.0 / std::numbers::pi * (1.0 - std::numbers::sqrt2), moments.r_i_error);
+  EXPECT_LE(moments.r_i_error, 1e-11);
+}
+
 }  // namespace
 }  // namespace dolp

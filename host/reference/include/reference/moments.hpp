@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "model/moments.hpp"
+#include "model/transmission.hpp"
 #include "reference/slopes.hpp"
 
 namespace dolp::reference {
@@ -14,12 +15,6 @@ namespace dolp::reference {
 struct Refinement {
   double relative_tolerance = 1e-9;  ///< of r_i, the albedo and the absorbed part; the error of r_q is relative to r_i
   int subdivisions = 1;              ///< initial number of panels between two neighbouring break points
-};
-
-/// A function of the zenith of the reflected ray, and the zeniths at which the function has kinks.
-struct SkyFunction {
-  std::function<double(double zenith_deg)> value;
-  std::vector<double> corners_deg;
 };
 
 /// Functions of cos(beta) within [-1, 1]. In integrals each replaces (R_s + R_p) / 2 and (R_s - R_p) / (2 sin^2(beta)).
@@ -43,6 +38,9 @@ std::vector<ColumnMoments> hemisphere_responses(const Slopes& slopes, Masking ma
                                                 const Curves& curves, double bend, const Refinement& refinement);
 
 Moments mirror_moments(double theta_deg, const FacetOptics& constants);
+
+/// A TransmissionIntegral, by adaptive Gauss-Kronrod quadrature over the zenith. Domain: a bare medium.
+Estimate transmission_integral(const FacetOptics& optics, double power, const SkyFunction& sky);
 
 /// The moments of a surface of symmetric V-grooves (sigma > 0) with all bounces, for k_s = 1.
 /// Equation: r_i = int P(t) t dt dphi sum_k w_k |E_k|^2. The integral runs over the slope t and the azimuth phi of the

@@ -30,6 +30,7 @@ class ReferenceEvaluator final : public ModelEvaluator {
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
   /// Computes pBRDFs with explicit vectors (reference/mueller.hpp). Accuracy: kScatteringErrorDouble.
   std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override;
+  TransmissionIntegral transmission() const override;
   bool computes_each_entry() const override { return true; }
   EvaluationReport report() const override { return report_; }
   void clear_report() override { report_ = {}; }

@@ -5,10 +5,12 @@
 #include <bit>
 #include <cmath>
 #include <complex>
+#include <map>
 #include <numbers>
 #include <stdexcept>
 
 #include "base/numbers.hpp"
+#include "base/parallel_ranges.hpp"
 #include "model/angles.hpp"
 #include "model/response_basis.hpp"
 #include "model/slopes.hpp"
@@ -166,20 +168,35 @@ kernel::IndexNode index_node(const FacetOptics& optics) {
           0.0};
 }
 
-// Adds the reflectance tables of all indices. Interference fringes of films also increase the numbers of nodes.
+// Adds the reflectance tables of all indices. Equal indices share a table. Interference fringes of films also increase
+// the numbers of nodes.
 void add_curves(KernelData& data, const MomentsRequest& request) {
   data.has_curves = std::ranges::any_of(request.optics, [](const FacetOptics& optics) { return !optics.is_bare(); });
   if (!data.has_curves) return;
+  std::vector<const FacetOptics*> different;
+  std::map<FacetOptics, std::size_t> numbers;
+  for (const FacetOptics& optics : request.optics) {
+    if (numbers.try_emplace(optics, different.size()).second) different.push_back(&optics);
+  }
+  std::vector<ReflectanceCurve> curves(different.size());
+  parallel_ranges(curves.size(), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) curves[i] = reflectance_curve(*different[i], request.tolerance);
+  });
+  std::vector<double> starts;
   double fringes = 0.0;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    starts.push_back(static_cast<double>(data.rule_nodes.size()));
+    data.rule_nodes.insert(data.rule_nodes.end(), curves[i].nodes.begin(), curves[i].nodes.end());
+    fringes = std::max(fringes, fringe_count(*different[i]));
+  }
   for (std::size_t i = 0; i < request.optics.size(); ++i) {
-    const ReflectanceCurve curve = reflectance_curve(request.optics[i], request.tolerance);
-    data.indices[i].curve_start = static_cast<double>(data.rule_nodes.size());
+    const std::size_t number = numbers.at(request.optics[i]);
+    const ReflectanceCurve& curve = curves[number];
+    data.indices[i].curve_start = starts[number];
     data.indices[i].curve_cells = static_cast<double>(curve.cells);
     data.indices[i].pole_re = curve.pole.real();
     data.indices[i].pole_im = curve.pole.imag();
     data.curve_errors.push_back({curve.error, curve.steepness});
-    data.rule_nodes.insert(data.rule_nodes.end(), curve.nodes.begin(), curve.nodes.end());
-    fringes = std::max(fringes, fringe_count(request.optics[i]));
   }
   data.rule.t_nodes += kNodesOfFringe * fringes;
   data.rule.phi_nodes += kNodesOfFringe * fringes;

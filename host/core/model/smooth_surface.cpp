@@ -9,25 +9,39 @@
 namespace dolp {
 namespace {
 
+using Complex = std::complex<double>;
+
+// The operators * and / of std::complex and std::sqrt guard against overflow and NaN. Here nothing overflows, and the
+// functions below take a fraction of the time.
+Complex product(Complex a, Complex b) {
+  return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
+
+Complex quotient(Complex a, Complex b) {
+  const double inverse = 1.0 / (b.real() * b.real() + b.imag() * b.imag());
+  return {(a.real() * b.real() + a.imag() * b.imag()) * inverse, (a.imag() * b.real() - a.real() * b.imag()) * inverse};
+}
+
+/// Domain: an imaginary part of at least 0, which the root has, too.
+Complex root(Complex square) {
+  const double x = square.real(), y = square.imag();
+  if (y == 0.0) return x >= 0.0 ? Complex(std::sqrt(x), 0.0) : Complex(0.0, std::sqrt(-x));
+  const double larger = std::sqrt(0.5 * (std::sqrt(x * x + y * y) + std::abs(x)));
+  const double smaller = larger > 0.0 ? 0.5 * y / larger : 0.0;
+  return x >= 0.0 ? Complex(larger, smaller) : Complex(smaller, larger);
+}
+
 /// A medium at one angle: N^2, and q = sqrt(N^2 - sin^2 beta) with an imaginary part of at least 0.
 struct Wave {
-  std::complex<double> square;
-  std::complex<double> q;
+  Complex square;
+  Complex q;
 };
 
 Wave wave_in(const OpticalConstants& index, double cosine) {
   const double n = index.n, k = index.k;
-  const std::complex<double> square((n - k) * (n + k), 2.0 * n * k);
-  const std::complex<double> of_q((n - 1.0) * (n + 1.0) - k * k + cosine * cosine, square.imag());
-  return {square, std::sqrt(of_q)};
+  const Complex square((n - k) * (n + k), 2.0 * n * k);
+  return {square, root({(n - 1.0) * (n + 1.0) - k * k + cosine * cosine, square.imag()})};
 }
-
-// Faster than operator/, which guards against overflow. Here nothing overflows.
-std::complex<double> quotient(std::complex<double> a, std::complex<double> b) {
-  return a * std::conj(b) / std::norm(b);
-}
-
-using Complex = std::complex<double>;
 
 /// Tangential fields of s or p light at a depth. `flux` / `field` is the admittance q (s) or q / N^2 (p) of the wave
 /// there.
@@ -90,7 +104,7 @@ double split_of(const FacetOptics& optics, double cosine, const SmoothAbsorptanc
 }  // namespace
 
 ReflectedAmplitudes film_amplitudes(const FacetOptics& optics, double cosine) {
-  constexpr double kTwoPi = 2.0 * std::numbers::pi;
+  constexpr double kFourPi = 4.0 * std::numbers::pi;
   const Wave medium = wave_in(optics.index, cosine);
   Fields s{1.0, medium.q};
   Fields p{1.0, quotient(medium.q, medium.square)};
@@ -98,14 +112,16 @@ ReflectedAmplitudes film_amplitudes(const FacetOptics& optics, double cosine) {
   // films. Amplitudes of single interfaces would be 0 / 0 where two of them cancel, as at grazing incidence on n = 1.
   for (std::size_t j = optics.films.size(); j-- > 0;) {
     const Wave film = wave_in(optics.films[j].index, cosine);
-    const Complex path(0.0, 2.0 * kTwoPi * optics.films[j].thickness);  // 2 i delta / q
-    const Complex turn = std::exp(path * film.q);
+    const double scale = kFourPi * optics.films[j].thickness;
+    const double passed = std::exp(-scale * film.q.imag());
+    const Complex turn(passed * std::cos(scale * film.q.real()), passed * std::sin(scale * film.q.real()));
     const Complex sum = 1.0 + turn;
     const Complex difference = 1.0 - turn;
-    const Complex over_q = film.q == 0.0 ? -path : quotient(difference, film.q);
-    s = {sum * s.field + over_q * s.flux, film.q * difference * s.field + sum * s.flux};
-    p = {sum * p.field + film.square * over_q * p.flux,
-         quotient(film.q * difference, film.square) * p.field + sum * p.flux};
+    const Complex over_q = film.q == 0.0 ? Complex(0.0, -scale) : quotient(difference, film.q);
+    const Complex times_q = product(film.q, difference);
+    s = {product(sum, s.field) + product(over_q, s.flux), product(times_q, s.field) + product(sum, s.flux)};
+    p = {product(sum, p.field) + product(product(film.square, over_q), p.flux),
+         product(quotient(times_q, film.square), p.field) + product(sum, p.flux)};
   }
   return {quotient(cosine * s.field - s.flux, cosine * s.field + s.flux),
           quotient(cosine * p.field - p.flux, cosine * p.field + p.flux)};

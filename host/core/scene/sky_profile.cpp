@@ -86,16 +86,20 @@ CsvColumns read_header(CsvReader& reader) {
 
 }  // namespace
 
+double SkyProfile::vertical_emissivity(double at_um) const {
+  if (at_um >= kOpaqueFrom_um && at_um <= kOpaqueTo_um) return 1.0;
+  if (at_um >= kWindowFrom_um && at_um <= kWindowTo_um) return window;
+  if (at_um >= kSkyBandFrom_um && at_um <= kSkyBandTo_um) return beside_window;
+  return emissivity;
+}
+
+double SkyProfile::emitted_share(double vertical_emissivity, double at_deg) {
+  const double cosine = cos_sin_deg(at_deg).cos;
+  return cosine <= 0.0 ? 1.0 : 1.0 - std::pow(1.0 - vertical_emissivity, 1.0 / cosine);
+}
+
 SkyProfile::Emission SkyProfile::at(double at_um, double at_deg) const {
-  if (kind == Kind::kLayers) {
-    const bool is_opaque = at_um >= kOpaqueFrom_um && at_um <= kOpaqueTo_um;
-    const double cosine = cos_sin_deg(at_deg).cos;
-    double vertical = emissivity;
-    if (at_um >= kSkyBandFrom_um && at_um <= kSkyBandTo_um) vertical = beside_window;
-    if (at_um >= kWindowFrom_um && at_um <= kWindowTo_um) vertical = window;
-    const double passed = is_opaque || cosine <= 0.0 ? 0.0 : std::pow(1.0 - vertical, 1.0 / cosine);
-    return {1.0 - passed, air_K, beyond_K, 0.0};
-  }
+  if (kind == Kind::kLayers) return {emitted_share(vertical_emissivity(at_um), at_deg), air_K, beyond_K, 0.0};
   const Between zenith = between(zenith_deg, at_deg);
   const Between wavelength = between(wavelength_um, at_um);
   const auto on_line = [&](std::size_t line) {

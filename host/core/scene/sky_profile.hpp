@@ -36,6 +36,10 @@ struct SkyProfile {
   };
   Emission at(double wavelength_um, double zenith_deg) const;
 
+  /// For kLayers: the vertical emissivity of the air at a wavelength, and the share that the air emits at a zenith.
+  double vertical_emissivity(double wavelength_um) const;
+  static double emitted_share(double vertical_emissivity, double zenith_deg);
+
   /// Zeniths that cut the interval between zenith_deg[interval] and the next zenith into parts of similar temperature.
   std::vector<double> temperature_divisions_deg(std::size_t interval) const;
   /// Zeniths from 0 to 90 between which the profile is a smooth function of zenith.

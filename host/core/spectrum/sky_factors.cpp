@@ -27,11 +27,25 @@ double sky_radiance(const SkyProfile& profile, double wavelength_um, double zeni
 SkySampler::SkySampler(const SkyProfile& profile)
     : profile_(profile), nodes_(profile.ends_deg()), mean_weights_(nodes_.mean_weights(0.0)) {}
 
-Eigen::VectorXd SkySampler::at(double wavelength_um) const {
+Eigen::VectorXd SkySampler::at(double wavelength_um) {
   const std::vector<double>& zenith_deg = nodes_.zenith_deg();
   Eigen::VectorXd exitances(static_cast<Eigen::Index>(zenith_deg.size()));
+  if (profile_.kind != SkyProfile::Kind::kLayers) {
+    for (std::size_t i = 0; i < zenith_deg.size(); ++i)
+      exitances[static_cast<Eigen::Index>(i)] = std::numbers::pi * sky_radiance(profile_, wavelength_um, zenith_deg[i]);
+    return exitances;
+  }
+  const double vertical = profile_.vertical_emissivity(wavelength_um);
+  if (vertical != vertical_emissivity_) {
+    vertical_emissivity_ = vertical;
+    emitted_shares_.clear();
+    for (const double at_deg : zenith_deg) emitted_shares_.push_back(SkyProfile::emitted_share(vertical, at_deg));
+  }
+  const double air = planck_radiance(wavelength_um, profile_.air_K);
+  const double beyond = planck_radiance(wavelength_um, profile_.beyond_K);
   for (std::size_t i = 0; i < zenith_deg.size(); ++i) {
-    exitances[static_cast<Eigen::Index>(i)] = std::numbers::pi * sky_radiance(profile_, wavelength_um, zenith_deg[i]);
+    const double share = emitted_shares_[i];
+    exitances[static_cast<Eigen::Index>(i)] = std::numbers::pi * (share * air + (1.0 - share) * beyond);
   }
   return exitances;
 }

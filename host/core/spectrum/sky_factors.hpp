@@ -18,7 +18,7 @@ double sky_radiance(const SkyProfile& profile, double wavelength_um, double zeni
 class SkySampler {
  public:
   explicit SkySampler(const SkyProfile& profile);
-  Eigen::VectorXd at(double wavelength_um) const;
+  Eigen::VectorXd at(double wavelength_um);  ///< fast where the air is as transparent as in the call before
   double mean(const Eigen::VectorXd& exitances) const { return mean_weights_.dot(exitances); }
   const SkyNodes& nodes() const { return nodes_; }
 
@@ -26,6 +26,8 @@ class SkySampler {
   const SkyProfile& profile_;
   SkyNodes nodes_;
   Eigen::VectorXd mean_weights_;
+  double vertical_emissivity_ = -1.0;   ///< emissivity that emitted_shares_ belong to; kLayers only
+  std::vector<double> emitted_shares_;  ///< SkyProfile::emitted_share at each node
 };
 
 /// Functions of the zenith. For each sample of each variant, a weighted sum of the functions approximates

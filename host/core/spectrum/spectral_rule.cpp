@@ -80,20 +80,24 @@ const SkyProfile* profile_of(const SceneModel& scene) {
   return scene.surroundings ? scene.surroundings->profile.get() : nullptr;
 }
 
-std::optional<SkySampler> sampler_of(const SceneModel& scene) {
-  const SkyProfile* profile = profile_of(scene);
-  return profile ? std::optional<SkySampler>(*profile) : std::nullopt;
-}
+/// A scene, and the sampler of its sky, which takes long to make.
+struct SampledScene {
+  explicit SampledScene(const SceneModel& of) : model(of) {
+    if (const SkyProfile* profile = profile_of(of)) sky.emplace(*profile);
+  }
+  const SceneModel& model;
+  std::optional<SkySampler> sky;
+};
 
-FineNode fine_node(const SceneModel& scene, const std::optional<SkySampler>& sampler, double wavelength_um,
-                   double weight) {
+FineNode fine_node(SampledScene& sampled, double wavelength_um, double weight) {
+  const SceneModel& scene = sampled.model;
   const double emitted =
       scene.emission ? std::numbers::pi * planck_radiance(wavelength_um, scene.emission->temperature_K) : 0.0;
   double surroundings = 0.0;
   FineNode node;
-  if (sampler) {
-    const Eigen::VectorXd exitances = sampler->at(wavelength_um);
-    surroundings = sampler->mean(exitances);
+  if (sampled.sky) {
+    const Eigen::VectorXd exitances = sampled.sky->at(wavelength_um);
+    surroundings = sampled.sky->mean(exitances);
     const Eigen::VectorXd sky = (weight * (exitances.array() - surroundings)).matrix();
     node.sky.assign(sky.begin(), sky.end());
   } else if (scene.surroundings) {
@@ -135,20 +139,19 @@ bool is_one_piece(const SceneModel& scene, double from_um, double to_um) {
   });
 }
 
-void append_fine_nodes(const SceneModel& scene, const std::optional<SkySampler>& sampler, double from_um, double to_um,
-                       std::vector<FineNode>& nodes) {
+void append_fine_nodes(SampledScene& scene, double from_um, double to_um, std::vector<FineNode>& nodes) {
   const double middle_um = 0.5 * (from_um + to_um);
-  if (!is_one_piece(scene, from_um, to_um)) {
-    append_fine_nodes(scene, sampler, from_um, middle_um, nodes);
-    append_fine_nodes(scene, sampler, middle_um, to_um, nodes);
+  if (!is_one_piece(scene.model, from_um, to_um)) {
+    append_fine_nodes(scene, from_um, middle_um, nodes);
+    append_fine_nodes(scene, middle_um, to_um, nodes);
     return;
   }
   const double half_um = 0.5 * (to_um - from_um);
   for (std::size_t i = 0; i < FineRule::abscissa().size(); ++i) {
     const double offset_um = half_um * FineRule::abscissa()[i];
     const double weight = half_um * FineRule::weights()[i];
-    nodes.push_back(fine_node(scene, sampler, middle_um - offset_um, weight));
-    nodes.push_back(fine_node(scene, sampler, middle_um + offset_um, weight));
+    nodes.push_back(fine_node(scene, middle_um - offset_um, weight));
+    nodes.push_back(fine_node(scene, middle_um + offset_um, weight));
   }
 }
 
@@ -164,28 +167,37 @@ std::vector<double> segment_ends(double from_um, double to_um,
   return ends;
 }
 
-std::vector<FineNode> fine_nodes(const SceneModel& scene, double from_um, double to_um) {
-  const bool tabulated = scene.source && scene.source->kind == Source::Kind::kTabulated;
-  const SkyProfile* profile = profile_of(scene);
-  const std::vector<double> of_source = tabulated ? scene.source->table.wavelength_um : std::vector<double>{};
+std::vector<FineNode> fine_nodes(SampledScene& scene, double from_um, double to_um) {
+  const std::optional<Source>& source = scene.model.source;
+  const bool tabulated = source && source->kind == Source::Kind::kTabulated;
+  const SkyProfile* profile = profile_of(scene.model);
+  const std::vector<double> of_source = tabulated ? source->table.wavelength_um : std::vector<double>{};
   const std::vector<double> of_profile = profile ? profile->breaks_um() : std::vector<double>{};
   const std::vector<double> ends = segment_ends(from_um, to_um, {&of_source, &of_profile});
-  const std::optional<SkySampler> sampler = sampler_of(scene);
   std::vector<FineNode> nodes;
-  for (std::size_t i = 0; i + 1 < ends.size(); ++i) append_fine_nodes(scene, sampler, ends[i], ends[i + 1], nodes);
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) append_fine_nodes(scene, ends[i], ends[i + 1], nodes);
   return nodes;
 }
 
-std::vector<FineNode> finer_nodes(const SceneModel& scene, double from_um, double to_um) {
+std::vector<FineNode> finer_nodes(SampledScene& scene, double from_um, double to_um) {
   const double middle_um = 0.5 * (from_um + to_um);
   std::vector<FineNode> nodes = fine_nodes(scene, from_um, middle_um);
   std::ranges::move(fine_nodes(scene, middle_um, to_um), std::back_inserter(nodes));
   return nodes;
 }
 
+const std::vector<double>& legendre_zeros(int count) {
+  static const auto zeros = [] {
+    std::array<std::vector<double>, kMostNodes + 1> all;
+    for (int i = 1; i <= kMostNodes; ++i) all[static_cast<std::size_t>(i)] = boost::math::legendre_p_zeros<double>(i);
+    return all;
+  }();
+  return zeros[static_cast<std::size_t>(count)];
+}
+
 std::vector<double> gauss_wavelengths(double from_um, double to_um, int count) {
   std::vector<double> wavelengths_um;
-  for (const double zero : boost::math::legendre_p_zeros<double>(count)) {
+  for (const double zero : legendre_zeros(count)) {
     const double offset_um = 0.5 * (to_um - from_um) * zero;
     wavelengths_um.push_back(0.5 * (from_um + to_um) + offset_um);
     if (zero > 0.0) wavelengths_um.push_back(0.5 * (from_um + to_um) - offset_um);
@@ -307,13 +319,14 @@ double enough_for_tolerance(const SceneModel& scene) {
   return std::max(kShareOfTolerance * scene.accuracy.tolerance, kNodesRelativeError);
 }
 
-SegmentRule smooth_segment(const SceneModel& scene, double from_um, double to_um, const std::vector<FineNode>& fine,
+SegmentRule smooth_segment(SampledScene& sampled, double from_um, double to_um, const std::vector<FineNode>& fine,
                            const std::vector<double>& cosines) {
+  const SceneModel& scene = sampled.model;
   if (scene.surface.has_constant_optics()) return {samples_at(scene, gauss_wavelengths(from_um, to_um, 1), fine), 0.0};
   SegmentRule rule;
   // Interference fringes of films need many nodes. So with films a larger error is enough if the tolerance allows it.
   const double enough = scene.surface.coating.empty() ? kNodesRelativeError : enough_for_tolerance(scene);
-  const std::vector<ProbeSums> exact = exact_sums(scene.surface, finer_nodes(scene, from_um, to_um), cosines);
+  const std::vector<ProbeSums> exact = exact_sums(scene.surface, finer_nodes(sampled, from_um, to_um), cosines);
   for (int count = 1; count <= kMostNodes; ++count) {
     rule.samples = samples_at(scene, gauss_wavelengths(from_um, to_um, count), fine);
     rule.error = nodes_error(rule.samples, exact, cosines, kSmallestPart);
@@ -322,7 +335,7 @@ SegmentRule smooth_segment(const SceneModel& scene, double from_um, double to_um
   return rule;
 }
 
-SegmentRule segment_of_panels(const SceneModel& scene, double from_um, double to_um, int panels,
+SegmentRule segment_of_panels(SampledScene& scene, double from_um, double to_um, int panels,
                               const std::vector<double>& cosines) {
   SegmentRule rule;
   std::vector<FineNode> all;
@@ -330,21 +343,22 @@ SegmentRule segment_of_panels(const SceneModel& scene, double from_um, double to
     const double start_um = std::lerp(from_um, to_um, static_cast<double>(i) / panels);
     const double end_um = std::lerp(from_um, to_um, static_cast<double>(i + 1) / panels);
     const std::vector<FineNode> fine = finer_nodes(scene, start_um, end_um);
-    for (const SpectralSample& sample : samples_at(scene, gauss_wavelengths(start_um, end_um, kPanelNodes), fine))
+    for (const SpectralSample& sample : samples_at(scene.model, gauss_wavelengths(start_um, end_um, kPanelNodes), fine))
       rule.samples.push_back(sample);
     all.insert(all.end(), fine.begin(), fine.end());
   }
-  rule.error = nodes_error(rule.samples, exact_sums(scene.surface, all, cosines), cosines, 1.0);
+  rule.error = nodes_error(rule.samples, exact_sums(scene.model.surface, all, cosines), cosines, 1.0);
   return rule;
 }
 
 /// Adds the samples of a segment to `rule`, or to `panels` if the segment must be cut into panels.
-void append_segment(const SceneModel& scene, double from_um, double to_um, SpectralRule& rule,
+void append_segment(SampledScene& sampled, double from_um, double to_um, SpectralRule& rule,
                     std::vector<SpectralSample>& panels) {
-  const std::vector<FineNode> fine = fine_nodes(scene, from_um, to_um);
+  const SceneModel& scene = sampled.model;
+  const std::vector<FineNode> fine = fine_nodes(sampled, from_um, to_um);
   for (const FineNode& node : fine) rule.path_exitance += node.path;
   const std::vector<double> cosines = probe_cosines(scene.surface, from_um, to_um);
-  SegmentRule segment = smooth_segment(scene, from_um, to_um, fine, cosines);
+  SegmentRule segment = smooth_segment(sampled, from_um, to_um, fine, cosines);
   const double tolerance = scene.accuracy.tolerance;
   if (segment.error <= enough_for_tolerance(scene)) {
     if (segment.error > 0.0) rule.relative_error = std::max(rule.relative_error, kProbeSafety * segment.error);
@@ -354,14 +368,15 @@ void append_segment(const SceneModel& scene, double from_um, double to_um, Spect
   const double share = (to_um - from_um) / (scene.spectrum.max_um - scene.spectrum.min_um);
   const double most = share * (is_mirror({.sigma = scene.surface.sigma}) ? kMostMirrorPanels : kMostPanels);
   for (int count = kLeastPanels;; count *= 2) {
-    segment = segment_of_panels(scene, from_um, to_um, count, cosines);
+    segment = segment_of_panels(sampled, from_um, to_um, count, cosines);
     if (segment.error <= kPanelShareOfTolerance * tolerance || 2 * count > most) break;
   }
   panels.insert(panels.end(), segment.samples.begin(), segment.samples.end());
 }
 
 SpectralRule single_wavelength_rule(const SceneModel& scene, double wavelength_um) {
-  const FineNode node = fine_node(scene, sampler_of(scene), wavelength_um, 1.0);
+  SampledScene sampled(scene);
+  const FineNode node = fine_node(sampled, wavelength_um, 1.0);
   SpectralSample sample;
   sample.wavelength_um = wavelength_um;
   sample.index = scene.surface.optics_at(wavelength_um);
@@ -395,7 +410,8 @@ SpectralRule spectral_rule(const SceneModel& scene) {
   const std::vector<double> fringes_um = fringe_ends(scene);
   const std::vector<double> ends = segment_ends(scene.spectrum.min_um, scene.spectrum.max_um, {&rows_um, &fringes_um});
   std::vector<SpectralSample> panels;
-  for (std::size_t i = 0; i + 1 < ends.size(); ++i) append_segment(scene, ends[i], ends[i + 1], rule, panels);
+  SampledScene sampled(scene);
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) append_segment(sampled, ends[i], ends[i + 1], rule, panels);
   rule.panels = panels.size() / kPanelNodes;
   rule.samples.insert(rule.samples.end(), panels.begin(), panels.end());
   return rule;

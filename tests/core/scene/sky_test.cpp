@@ -166,7 +166,7 @@ TEST(SkyBasis, FewFunctions_StandForAllWavelengths) {
   const std::shared_ptr<const SkyBasis> basis = sky_basis(scene, variants_of(axes_of({}, {}, {}, wavelengths)));
   ASSERT_TRUE(basis);
   EXPECT_LE(basis->size(), 3U);  // the air has three emittances
-  const SkySampler sampler(*scene.surroundings->profile);
+  SkySampler sampler(*scene.surroundings->profile);
   for (const double um : {3.3, 7.7, 13.1}) {
     const Eigen::VectorXd exitances = sampler.at(um);
     const Eigen::VectorXd sky = (exitances.array() - sampler.mean(exitances)).matrix();

@@ -113,10 +113,13 @@ ReflectedAmplitudes film_amplitudes(const FacetOptics& optics, double cosine) {
   for (std::size_t j = optics.films.size(); j-- > 0;) {
     const Wave film = wave_in(optics.films[j].index, cosine);
     const double scale = kFourPi * optics.films[j].thickness;
-    const double passed = std::exp(-scale * film.q.imag());
-    const Complex turn(passed * std::cos(scale * film.q.real()), passed * std::sin(scale * film.q.real()));
-    const Complex sum = 1.0 + turn;
-    const Complex difference = 1.0 - turn;
+    // exp(2 i delta) is passed (cos + i sin). Half the angle gives 1 - exp(2 i delta) without cancellation.
+    const double absorbed = -std::expm1(-scale * film.q.imag());
+    const double passed = 1.0 - absorbed;
+    const double sine = std::sin(0.5 * scale * film.q.real());
+    const double imaginary = 2.0 * passed * sine * std::cos(0.5 * scale * film.q.real());
+    const Complex difference(absorbed + 2.0 * passed * sine * sine, -imaginary);
+    const Complex sum = 2.0 - difference;
     const Complex over_q = film.q == 0.0 ? Complex(0.0, -scale) : quotient(difference, film.q);
     const Complex times_q = product(film.q, difference);
     s = {product(sum, s.field) + product(over_q, s.flux), product(times_q, s.field) + product(sum, s.flux)};

@@ -469,6 +469,10 @@ PYBIND11_MODULE(_native, module) {
       return py::make_tuple(key.key, key.unit, key.allowed(), key.fallback, key.meaning);
     });
   });
+  module.def("key_by_meaning", [](const py::str& unknown) -> py::object {
+    const std::optional<dolp::KeyHint> meant = dolp::key_by_meaning(bytes_of(unknown));
+    return meant ? py::object(text_of(meant->key)) : py::none();
+  });
   module.def("axes", [] {
     const auto described = [](const dolp::AxisDescription& axis) {
       return py::make_tuple(axis.column, axis.name, axis.long_name, axis.units);
@@ -484,6 +488,18 @@ PYBIND11_MODULE(_native, module) {
   });
   module.def("quantities", [name] { return list_of(dolp::kAllQuantities, name); });
   module.attr("most_attribute_bytes") = dolp::kMostAttributeBytes;
+  module.def("surface_settings", [] {
+    return list_of(dolp::surface_settings(), [](const dolp::Setting& setting) {
+      return py::make_tuple(text_of(setting.key), object_of(setting.value));
+    });
+  });
+  module.def("response_fingerprints", [](const Array& entries) {
+    std::vector<double> found;
+    const std::size_t width = static_cast<std::size_t>(entries.shape(1));
+    for (py::ssize_t i = 0; i < entries.shape(0); ++i)
+      found.push_back(dolp::response_fingerprint({entries.data(i, 0), width}));
+    return array_of(std::move(found));
+  });
   module.def("version", &dolp::version);
   module.def("commit", &dolp::commit);
   module.def("citation", &dolp::citation);

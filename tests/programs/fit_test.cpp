@@ -148,8 +148,15 @@ TEST_F(FitProgram, ModelOfSingleScatteringThatFails_IsSaidUnlessItsBracketIsUsed
   measure("metal.csv", "theta_deg", {"dolp"}, keys);
   std::vector<std::string> options = {"--data", "metal.csv", "--vary", "surface.sigma=0.1:0.4"};
   for (const std::string& one : keys) options.insert(options.end(), {"--set", one});
-  EXPECT_NE(fit(options).out.find("status     32 at some point: single scattering"), std::string::npos);
-  const std::string bracket = fit(joined(options, {"--model-error", "bracket"})).out;
+  const Outcome ignored = fit(options);
+  EXPECT_NE(ignored.out.find("status     32 at some point: single scattering"), std::string::npos);
+  EXPECT_NE(ignored.out.find("uncertainties) from the fit: the fit is at most doubtful"), std::string::npos)
+      << ignored.out;
+  EXPECT_NE(ignored.err.find("which the intervals ignore; --model-error bracket includes it"), std::string::npos);
+  EXPECT_EQ(json::parse(fit(joined(options, {"--json"})).out)["fit_quality"], "doubtful");
+  const Outcome included = fit(joined(options, {"--model-error", "bracket"}));
+  EXPECT_EQ(included.err, "");
+  const std::string bracket = included.out;
   EXPECT_EQ(bracket.find("status     32"), std::string::npos) << bracket;
   EXPECT_NE(bracket.find("surface.masking \"v-cavity\" with surface.scattering \"multiple\" follows all bounces"),
             std::string::npos)
@@ -310,7 +317,7 @@ TEST_F(FitProgram, Plot_OfDataWithWavelengths_HasACurveForEachAndNoBracket) {
   EXPECT_FALSE(plotted("alone.csv")["brackets"][0].is_null());
   const json report = plotted("wavelengths.csv");
   EXPECT_TRUE(report["brackets"][0].is_null()) << report["brackets"];
-  EXPECT_TRUE(report["model_gap"].is_null()) << report["model_gap"];
+  EXPECT_GT(report["model_gap"].get<double>(), 0.0);
   ASSERT_EQ(report["curves"].size(), 2U);
   for (const json& curve : report["curves"]) {
     const std::string wavelength = "spectrum.wavelength_um=" + curve["wavelength_um"].dump();

@@ -142,6 +142,44 @@ TEST_F(Verify, ValueOfAnyQuantityThatIsOff_IsFound) {
   }
 }
 
+TEST_F(Verify, AlbedoAndEmissivitiesOffByThreeBounds_AreFoundInEveryEntry) {
+  for (const char* masking : {"none", "v-cavity", "integral", "smith"}) {
+    const TableValues table = make_table({"--set", std::string("surface.masking=") + masking});
+    for (const Quantity quantity : {Quantity::kAlbedo, Quantity::kEmissivityS, Quantity::kEmissivityP}) {
+      TableValues wrong = table;
+      for (std::size_t i = 0; i < table.size(); ++i) {
+        const double of_rho = 2.0 * table[Quantity::kRhoErrorEstimate][i] * table[Quantity::kRhoI][i];
+        const double of_albedo = table[Quantity::kRhoErrorEstimate][i] * table[Quantity::kAlbedo][i];
+        // The value in the table errs by at most one bound, so the changed value errs by at least two.
+        wrong[quantity][i] += 3.0 * (quantity == Quantity::kAlbedo ? of_albedo : of_rho);
+      }
+      write_table(wrong, at("t.nc"));
+      EXPECT_EQ(verify_json(kAccuracy)["failures"].size(), table.size())
+          << masking << ' ' << description_of(quantity).name;
+    }
+  }
+}
+
+TEST_F(Verify, RadiationWithoutPolarisation_HasABoundFromRho) {
+  const TableValues table = make_table({"--set", "grid.theta_deg=0"});
+  ASSERT_LT(table[Quantity::kDolp][0], 1e-8);  // the bound of DOLP divided by DOLP is useless
+  // The bound is rho_error_estimate * rho_I times the emitted and the incident radiation. Both are at most this one.
+  const double most = table[Quantity::kStokesI][0] / (1.0 - table[Quantity::kRhoI][0]);
+  const double bound = 2.0 * most * table[Quantity::kRhoErrorEstimate][0] * table[Quantity::kRhoI][0];
+  verify_json(kDone);
+  put_value(at("t.nc"), Quantity::kStokesI, 0, table[Quantity::kStokesI][0] + 3.0 * bound);
+  const nlohmann::json failures = verify_json(kAccuracy)["failures"];
+  ASSERT_EQ(failures.size(), 1U);
+  EXPECT_EQ(failures[0]["quantity"], "stokes_i");
+}
+
+TEST_F(Verify, RadiationThatTheRunDropped_IsNoError) {
+  // Diffuse light is unpolarised, so the surroundings change no DOLP, and the table lacks their light.
+  make_table({"--set", "surface.specular=0", "--set", "surface.diffuse=0.3"});
+  const nlohmann::json json = verify_json(kDone);
+  EXPECT_EQ(json["checked"], 16);
+}
+
 TEST_F(Verify, Samples_AreThoseOfTheSeed) {
   make_table();
   EXPECT_EQ(verify_json(kDone, {"--samples", "3"})["checked"], 3);
@@ -165,6 +203,8 @@ TEST_F(Verify, EveryKindOfScene_Passes) {
        {std::vector<std::string>{"--set", "geometry.mode=bistatic", "--set", "source.irradiance=1"},
         {"--set", "spectrum.band_um=[8, 12]", "--set", "emission.model=fresnel"},
         {"--set", "emission.bracket=true", "--set", "surface.masking=smith"},
+        {"--set", "emission.model=direct", "--set", "surface.masking=v-cavity", "--set", "grid.theta_deg=[0, 50]"},
+        {"--set", "surroundings.profile=clear-sky", "--set", "grid.theta_deg=40", "--set", "grid.sigma=0.2"},
         {"--set", "surface.distribution=gaussian", "--set", "surface.diffuse=0.1", "--set", "path.transmittance=0.5"},
         {"--set", "grid.sigma=[0, 0.4]"}}) {
     make_table(options);

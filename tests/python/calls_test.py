@@ -68,6 +68,22 @@ class Calls(PackageCase):
             self.assertEqual(pickle.loads(pickle.dumps(scene)).toml(), scene.toml())
             self.assertIn("scene.toml", repr(scene))
 
+    def test_dictionaries_and_complex_indices_are_taken_as_python_has_them(self):
+        films = [{"material": "PMMA acrylic", "thickness_um": 2}, {"n": 1.5 + 0.05j, "thickness_um": 0.5}]
+        coated = self.scene.with_({"surface.coating": [{"n": 2, "thickness_um": 1}] * 3}).with_({"surface.coating": films})
+        keys = ("material", "thickness_um"), ("n", "k", "thickness_um")
+        self.assertEqual([coated[f"surface.coating.{i}.{key}"] for i, own in enumerate(keys, 1) for key in own],
+                         ["PMMA acrylic", 2, 1.5, 0.05, 0.5])
+        self.assertIsNone(coated["surface.coating.3.n"])
+        self.assertIsNone(coated.with_({"surface.coating": []})["surface.coating.1.thickness_um"])
+        nested = self.scene.with_({"surface": {"n": 1.7 + 0.2j, "coating": films}, "grid": {"q": {"from": 2, "to": 4, "count": 3}}})
+        self.assertEqual((nested["surface.n"], nested["surface.k"], nested["surface.masking"], nested["grid.q"]),
+                         (1.7, 0.2, "smith", [2, 3, 4]))
+        self.assertEqual(nested["surface.coating.2.k"], 0.05)
+        table = dolp.table(self.scene, n=1.6 + 0.1j, evaluator="cpu")
+        self.assertEqual((float(table.n), float(table.k)), (1.6, 0.1))
+        self.assertTrue((table.dolp == dolp.table(self.scene, n=1.6, k=[0.1], evaluator="cpu").dolp).all())
+
     def test_wrong_kinds_are_told_in_the_words_of_python(self):
         table = dolp.table(self.scene, evaluator="cpu")
         dates = np.array(["2026-01-01"], dtype="datetime64[ns]")
@@ -114,6 +130,16 @@ class Calls(PackageCase):
                 (dolp.InputError, "surface.masking: is compared without a value",
                  lambda: self.fit_points(compare={"surface.masking": []})),
                 (dolp.InputError, "the nearest is surface.sigma", lambda: self.scene["surface.sgma"]),
+                (dolp.InputError, "the nearest is surface.sigma", lambda: self.scene["sigma"]),
+                (dolp.InputError, "roughness is none of .*; did you mean sigma?", lambda: dolp.evaluate(self.scene, roughness=0.1)),
+                (dolp.InputError, "angle is none of .*; did you mean theta_deg?", lambda: dolp.table(self.scene, angle=30)),
+                (dolp.InputError, "emission: is an empty dictionary; None removes a table", lambda: self.scene.with_({"emission": {}})),
+                (dolp.InputError, "surface.coating: must be a list of dictionaries",
+                 lambda: self.scene.with_({"surface.coating": {"n": 1.5, "thickness_um": 1}})),
+                (dolp.InputError, "n: several complex values form no grid", lambda: dolp.table(self.scene, n=[1.5 + 0.1j, 1.6 + 0.1j])),
+                (dolp.InputError, "n: is complex, so that k cannot be given too", lambda: dolp.table(self.scene, n=1.5 + 0.1j, k=0.1)),
+                (dolp.InputError, "wavelength_um.* set spectrum.wavelength_um in the scene, which replaces the band",
+                 lambda: dolp.evaluate(self.scene.with_({"spectrum.band_um": [8, 12]}), theta_deg=30, wavelength_um=10)),
                 (dolp.InputError, "fit: surface.k is none of surface.n", lambda: self.fit_points()["surface.k"]),
                 (dolp.InputError, "level = 0.9", lambda: self.fit_points().conf_interval(0.9)),
                 (TypeError, "grid.q.count: must be a whole number, not float",

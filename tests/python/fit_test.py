@@ -65,13 +65,32 @@ class Fit(PackageCase):
                 found = dolp.fit(scene, data, vary, evaluator="cpu", starts=4, **options)
             self.assertEqual([one.category for one in caught], [dolp.ModelWarning] * warned)
             if warned:
-                self.assertEqual((found.fit_quality, caught[0].filename), ("good", __file__))
+                self.assertEqual((found.fit_quality, caught[0].filename), ("doubtful", __file__))
+                self.assertGreater(found.values["p_value"], 0.05)
                 self.assertEqual(found.conf_interval(scaled=True), found.conf_interval())
         with warnings.catch_warnings(record=True):
             wrong = dolp.fit(metal.with_({"surface.k": 3.0}), data, vary, evaluator="cpu", starts=4)
         self.assertEqual(wrong.fit_quality, "doubtful")
         self.assertEqual(list(wrong.conf_interval(0.68, scaled=True)["surface.sigma"]), wrong.values["parameters"][0]["scaled_68"])
         self.assertNotEqual(wrong.conf_interval(0.68, scaled=True), wrong.conf_interval(0.68))
+
+    def test_a_fit_warns_if_further_bounces_may_change_it(self):
+        """Single scattering fits paint with all bounces well, by a wrong n and sigma. No point has status 32."""
+        theta = np.arange(10, 81, 10.0)
+        grooves = self.scene.with_({"surface.masking": "v-cavity", "surroundings": None})
+        truth = dolp.evaluate(grooves.with_({"surface.scattering": "multiple"}), theta_deg=theta, sigma=0.3)
+        vary = {"surface.n": (1.1, 3), "surface.sigma": (0.05, 0.6)}
+        for uncertainty, quality in ((0.001, "doubtful"), (0.05, "good")):
+            data = {"theta_deg": theta, "dolp": truth.dolp.values, "uncertainty": uncertainty}
+            scene = dolp.Scene(grooves)
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                found = dolp.fit(scene, data, vary, evaluator="cpu", starts=4)
+            self.assertEqual((found.fit_quality, found.values["status"] & 32), (quality, 0), found)
+            self.assertGreater(found.values["p_value"], 0.05, found)
+            self.assertEqual(found.values["model_gap_in_uncertainties"] > 1, quality == "doubtful")
+            self.assertEqual(["light of further bounces can move the model by" in str(one.message) for one in caught],
+                             [True] if quality == "doubtful" else [])
 
     def test_a_fit_keeps_the_order_of_its_numbers_and_refuses_what_does_not_fit(self):
         theta = np.arange(10, 81, 10.0)

@@ -99,7 +99,7 @@ class Package(PackageCase):
             together = dolp.evaluate(self.scene, theta_deg=60, n=index, evaluator="cpu")
             np.testing.assert_array_equal(together.dolp, apart.dolp)
         for call in (lambda: dolp.evaluate(self.scene, theta_deg=60, n=2j, k=1),
-                     lambda: dolp.table(self.scene, theta_deg=60, n=1.5 + 1j)):
+                     lambda: dolp.table(self.scene, theta_deg=60, n=[1.5 + 1j, 2])):
             with self.assertRaisesRegex(dolp.InputError, "n: "):
                 call()
 

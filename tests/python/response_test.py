@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Tests responses and the moments that follow from them."""
+import pickle
 import unittest
 
 import numpy as np
@@ -79,6 +80,64 @@ class Response(PackageCase):
         multiple = self.scene.with_({"surface.masking": "v-cavity", "surface.scattering": "multiple"})
         with self.assertRaisesRegex(dolp.InputError, "must be \"single\" for a response table"):
             dolp.response(multiple)
+
+    def test_parts_of_a_response_keep_their_moments(self):
+        response = dolp.response(self.scene, evaluator="cpu", theta_deg=[0, 60, 90])
+        expected = dolp.moments(response, n=1.5, k=0.05).rho_i
+        response.to_netcdf(self.folder / "r.nc")
+        sea = {"surface.distribution": "gaussian", "grid.wind_m_s": [2, 5]}
+        winds = dolp.response(self.scene.with_({**sea, "grid.q": None}), evaluator="cpu")
+        part = {"theta": 60, "sigma": 0.1, "q": 2}
+        for whole in (response, xr.load_dataset(self.folder / "r.nc"), response.transpose("beta", "q", "theta", "sigma"),
+                      response.isel(sigma=slice(None, None, -1)), response.stack(shape=("sigma", "q")).unstack("shape"),
+                      response.drop_vars("emission_i"), response.where(response.theta < 80),
+                      xr.concat([response.isel(theta=[i]) for i in range(3)], "theta"), response.copy(deep=True)):
+            # The order of the sum over beta, and so its last digits, may depend on the order of the dimensions.
+            self.assertAlmostEqual(float(dolp.moments(whole, n=1.5, k=0.05).rho_i.sel(part)), float(expected.sel(part)), 14)
+        self.assertAlmostEqual(float(dolp.moments(response.sel(part), n=1.5, k=0.05).rho_i), float(expected.sel(part)), 14)
+        one = dolp.moments(winds.swap_dims(sigma="wind_m_s").sel(wind_m_s=5), n=1.5)
+        self.assertEqual(one.rho_i.sizes, dolp.moments(winds.isel(sigma=1), n=1.5).rho_i.sizes)
+        others = [response, dolp.response(self.scene.with_({"surface.masking": "v-cavity"}), evaluator="cpu", theta_deg=[0, 60, 90])]
+        joined = dolp.moments(xr.concat(others, "masking"), n=1.5, k=0.05).rho_i
+        self.assertAlmostEqual(float(joined.isel(masking=0).sel(part)), float(expected.sel(part)), 14)
+
+    def test_weights_that_were_not_computed_are_refused(self):
+        response = dolp.response(self.scene, evaluator="cpu", theta_deg=[0, 58, 60, 62])
+        hint = r"compute others instead of interpolating, as in dolp.response\(scene, theta_deg=65\)"
+        for changed in (lambda r: r.interp(theta=59), lambda r: r.interp(theta=[58, 61]), lambda r: r.interp(sigma=0.2),
+                        lambda r: r.mean("sigma"), lambda r: r.mean("q", keep_attrs=True), lambda r: r.sum("theta"),
+                        lambda r: r.coarsen(theta=2).mean(), lambda r: r.rolling(theta=2).mean(), lambda r: r * 1.01,
+                        lambda r: (r * 1.01).assign_attrs(r.attrs), lambda r: r + r, lambda r: r.assign(response_i=r.response_q),
+                        lambda r: r.reindex(theta=[0, 65], method="nearest"), lambda r: r.assign_coords(theta=r.theta + 1),
+                        lambda r: r.sortby("theta", ascending=False).assign_coords(theta=r.theta.values), lambda r: r.astype("float32"),
+                        lambda r: r.isel(beta=slice(3, None)), lambda r: r.drop_vars("fingerprint"),
+                        lambda r: r.interp(theta=60.0000001), lambda r: r.shift(theta=1),
+                        lambda r: 0.5 * r.isel(theta=1) + 0.5 * r.isel(theta=2)):
+            with self.assertRaisesRegex(dolp.InputError, f"^response: .*{hint}"):
+                dolp.moments(changed(response), n=1.5)
+        with self.assertRaisesRegex(dolp.InputError, "6 of 6 entries, the first at theta 59, sigma 0.1, q 2, are not as"):
+            dolp.moments(response.interp(theta=59), n=1.5)
+        empty = dolp.moments(response.reindex(theta=[60, 65]), n=1.5)
+        self.assertTrue(np.isnan(empty.rho_i.sel(theta=65)).all() and np.isfinite(empty.rho_i.sel(theta=60)).all())
+        with self.assertRaisesRegex(dolp.InputError, "has no response_i, so it is no response table; dolp.response"):
+            dolp.moments(dolp.table(self.scene, evaluator="cpu"), n=1.5)
+        with self.assertRaisesRegex(TypeError, "response: must be an xarray.Dataset, not DataArray"):
+            dolp.moments(response.response_i, n=1.5)
+
+    def test_a_response_needs_no_material(self):
+        text = "surface = { sigma = 0.2, q = 3, masking = 'smith' }"
+        (self.folder / "bare.toml").write_text(text)
+        with self.assertRaisesRegex(dolp.InputError, "surface.n: missing"):
+            dolp.Scene(text=text)
+        expected = dolp.response(self.scene, evaluator="cpu", theta_deg=60, sigma=0.2, q=3)
+        for bare in (dolp.Scene.for_response(text=text), dolp.Scene.for_response(self.folder / "bare.toml"),
+                     dolp.Scene.for_response(self.scene), dolp.Scene.for_response(self.scene).with_({"title": "a"}),
+                     pickle.loads(pickle.dumps(dolp.Scene.for_response(text=text))),
+                     dolp.Scene.for_response(text="surface.sigma = 0.2", overrides={"surface": {"q": 3, "masking": "smith"}})):
+            found = dolp.response(bare, evaluator="cpu", theta_deg=60, sigma=0.2, q=3)
+            np.testing.assert_array_equal(found.response_i.values, expected.response_i.values)
+            with self.assertRaisesRegex(dolp.InputError, "comes from Scene.for_response, so only dolp.response takes it"):
+                dolp.table(bare, evaluator="cpu")
 
 
 if __name__ == "__main__":

@@ -55,7 +55,7 @@ void add_emissivity(PointResult& result, const SpectralRule& rule, std::span<con
 std::uint32_t tolerance_status(const PointResult& result, double tolerance) {
   const bool is_outside = (result.status & kOutsideModelDomain) != 0;  // rho diverges, or DOLP is NaN
   const bool dolp_missed = (is_outside || promises_dolp(result.status)) && result[kErrorEstimate] > tolerance;
-  const bool rho_missed = !is_outside && result[kRhoErrorEstimate] > tolerance;
+  const bool rho_missed = !std::isnan(result[kRhoI]) && result[kRhoErrorEstimate] > tolerance;
   return (dolp_missed ? std::uint32_t{kToleranceNotMet} : 0U) | (rho_missed ? std::uint32_t{kRhoToleranceNotMet} : 0U);
 }
 

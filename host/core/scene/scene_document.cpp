@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <dolp/errors.hpp>
 #include <limits>
@@ -75,9 +76,26 @@ std::string_view table_part(std::string_view key) {
   return dot == std::string_view::npos ? std::string_view{} : key.substr(0, dot);
 }
 
+/// The fault of a text that is not TOML. If a word without quotes may be the reason, says so.
+std::string toml_fault(std::string_view text, const toml::parse_error& error) {
+  const toml::source_position at = error.source().begin;
+  const std::vector<std::string_view> lines = split(text, '\n');
+  const std::string_view line = lines[std::clamp<std::size_t>(at.line, 1, lines.size()) - 1];
+  const std::size_t before = line.substr(0, at.column).find_last_of("=,[");
+  std::string hint;
+  if (before != std::string_view::npos) {
+    const std::string_view value = line.substr(before + 1);
+    const std::string_view word = trim(value.substr(0, value.find_first_of(",]}#")));
+    const bool is_word = !word.empty() && (std::isalpha(static_cast<unsigned char>(word[0])) != 0 || word[0] == '/');
+    if (is_word) hint = fmt::format("; a text needs quotes: \"{}\"", one_line(word));
+  }
+  return fmt::format("not valid TOML: {}{}", one_line(error.description()), hint);
+}
+
 /// Reads `text` as TOML, else as a number in a notation that TOML lacks, else as a word. Calls `insert` with the value.
+/// Errors: InputError that begins with `origin` for a list or a table that is not TOML.
 template <class Insert>
-void insert_text(const std::string& text, bool is_text_key, const Insert& insert) {
+void insert_text(const std::string& text, bool is_text_key, const std::string& origin, const Insert& insert) {
   try {
     const toml::table parsed = toml::parse("v = " + text);
     const toml::node* node = parsed.get("v");
@@ -85,7 +103,9 @@ void insert_text(const std::string& text, bool is_text_key, const Insert& insert
       node->visit([&](const auto& value) { insert(value); });
       return;
     }
-  } catch (const toml::parse_error&) {
+  } catch (const toml::parse_error& error) {
+    const bool is_list = text.starts_with('[') || text.starts_with('{');
+    if (is_list && !is_text_key) throw InputError(fmt::format("{}: {}", origin, toml_fault("v = " + text, error)));
     const std::optional<double> number = parse_number(text);
     if (number && !is_text_key) {
       insert(*number);
@@ -125,8 +145,7 @@ SceneDocument::SceneDocument(const std::string& text, const std::string& path_na
   try {
     root_ = toml::parse(std::string_view(text));
   } catch (const toml::parse_error& error) {
-    throw InputError(
-        fmt::format("{}:{}: not valid TOML: {}", name_, error.source().begin.line, one_line(error.description())));
+    throw InputError(fmt::format("{}:{}: {}", name_, error.source().begin.line, toml_fault(text, error)));
   }
 }
 
@@ -160,7 +179,7 @@ void SceneDocument::apply(const Setting& setting) {
     insert(*text);  // this text need not be UTF-8, unlike TOML
   } else {
     const bool is_of_user = std::holds_alternative<TomlText>(setting.value.content());
-    insert_text(value, is_of_user && known && known->description.type == Key::Type::kText, insert);
+    insert_text(value, is_of_user && known && known->description.type == Key::Type::kText, origin, insert);
   }
   origins_[key] = origin;
 }

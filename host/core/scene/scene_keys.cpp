@@ -409,7 +409,9 @@ const std::vector<KeyChoice>& key_choices() {
           {{"grid.material"}}}},
         {"surface", {{{"surface.sigma", "grid.sigma"}}, {{"surface.wind_m_s", "grid.wind_m_s"}}}},
         {"source", {{{"source.irradiance"}}, {{"source.relative_irradiance"}}, {{"source.preset"}}, {{"source.file"}}}},
-        {"surroundings", {{{"surroundings.temperature_K"}}, {{"surroundings.profile"}}}},
+        {"surroundings",
+         {{{"surroundings.temperature_K"}},
+          {{"surroundings.profile"}, {"surroundings.vapour_cm", "surroundings.air_temperature_K"}}}},
         {"path", {{{"path.temperature_K"}}, {{"path.radiance"}}}, false},
         {"spectrum", {{{"spectrum.wavelength_um", "grid.wavelength_um"}}, {{"spectrum.band_um"}}, {{"grid.band_um"}}}},
     };

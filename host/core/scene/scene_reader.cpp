@@ -9,22 +9,11 @@
 #include <numeric>
 
 #include "base/text.hpp"
+#include "scene/key_hints.hpp"
 #include "scene/scene_keys.hpp"
 
 namespace dolp {
 namespace {
-
-std::string key_hint(const std::string& key) {
-  std::vector<std::string> known = scene_tables();
-  for (const Key& description : dolp::keys()) known.push_back(description.key);
-  const auto last_part = [](const std::string& name) { return name.substr(name.find_last_of('.') + 1); };
-  const auto distance = [&](const std::string& name) {
-    return std::min({edit_distance(key, name), edit_distance(last_part(key), last_part(name)) + 1,
-                     edit_distance(key, name.substr(0, key.size() + 1)) + 1});
-  };
-  return *std::min_element(known.begin(), known.end(),
-                           [&](const std::string& a, const std::string& b) { return distance(a) < distance(b); });
-}
 
 void append_layer_keys(const SceneDocument& document, const std::string& coating, const toml::node& node,
                        std::vector<std::string>& keys) {
@@ -247,10 +236,10 @@ void check_scattering(const SceneValues& scene, const SceneDocument& document) {
 
 void check_radiation(const SceneValues& scene, const SceneDocument& document) {
   for (const char* key : {"surroundings.vapour_cm", "surroundings.air_temperature_K"}) {
-    if (document.find(key))
-      check_needs(
-          document, key,
-          {{built_in_sky(scene.names.profile).has_value(), "surroundings.profile = \"clear-sky\" or \"overcast\""}});
+    if (!document.find(key) || built_in_sky(scene.names.profile)) continue;
+    const std::string needs = "needs surroundings.profile = \"clear-sky\" or \"overcast\"";
+    if (document.is_set(key) || !document.is_set("surroundings.profile")) document.fail(key, needs);
+    document.fail("surroundings.profile", fmt::format("{0} in the scene {1}; {0} = none removes it", key, needs));
   }
   if (!scene.emission && !scene.source && !scene.surroundings) {
     document.fail("emission", "missing; nothing radiates without one of the tables emission, source, surroundings");

@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "base/text.hpp"
+#include "scene/key_hints.hpp"
 
 namespace dolp {
 namespace {
@@ -142,7 +143,8 @@ KeyValue read_word(const SceneDocument& document, const Key& description, const 
   KeyValue value;
   value.text = node.value_or(std::string());
   const auto found = std::find(description.words.begin(), description.words.end(), value.text);
-  if (found == description.words.end()) document.fail(description.key, "must be " + description.allowed());
+  if (found == description.words.end())
+    document.fail(description.key, "must be " + description.allowed() + word_hint(description.key, value.text));
   value.word = static_cast<std::size_t>(found - description.words.begin());
   return value;
 }

@@ -122,7 +122,7 @@ struct FitParameter {
   std::optional<double> standard_error;  ///< from the covariance matrix, as if parameters at a bound were fixed
   /// 68.27 % and 95 % intervals. All ends are empty if data without uncertainties have no more points than parameters.
   FitInterval interval_68, interval_95;
-  /// The intervals with all uncertainties multiplied by sqrt(reduced chi^2). Empty unless the fit is doubtful or bad.
+  /// The intervals with all uncertainties multiplied by sqrt(reduced chi^2). Empty unless the p-value is below 0.05.
   std::optional<FitInterval> scaled_68 = {}, scaled_95 = {};
   bool is_at_bound = false;
   std::string why_no_error = {};  ///< why there is no standard error; empty if there is one
@@ -138,8 +138,10 @@ struct FitNumbers {
   double chi_square = 0.0;                    ///< sum of the losses of all residuals; the loss kSquares is the square
   std::size_t degrees_of_freedom = 0;         ///< points minus parameters; with kBracket, the number of points
   std::optional<double> p_value = {};         ///< empty unless data have uncertainties and the loss is kSquares
-  std::string fit_quality = {};         ///< "good", "doubtful" (p < 0.05), "bad" (p < 0.001); empty without p_value
-  std::vector<FitMinimum> minima = {};  ///< all minima that the fit found, the best first
+  /// "good", "doubtful" (p < 0.05), "bad" (p < 0.001); empty without p_value. Also doubtful if light of further bounces
+  /// can move the model by more than the uncertainty of a point, unless ModelError::kBracket accounts for it.
+  std::string fit_quality = {};
+  std::vector<FitMinimum> minima = {};         ///< all minima that the fit found, the best first
   std::vector<std::string> degeneracies = {};  ///< combinations of parameters that the data do not determine, in words
 };
 

@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <dolp/errors.hpp>
@@ -41,5 +43,15 @@ struct DOLP_EXPORT Key {
 
 /// Every key that a scene can have, in the order of a scene file. Scenes with unknown keys are refused.
 DOLP_EXPORT const std::vector<Key>& keys();
+
+/// A key, or a table of keys, that a user probably means by an unknown name.
+struct DOLP_EXPORT KeyHint {
+  std::string key;
+  std::string why;  ///< how it differs from what the user wrote; may be empty
+
+  std::string text() const;  ///< for messages: "surface.sigma (a slope, not a height; ...)"
+};
+/// The key for another usual name of a quantity, such as surface.sigma for "surface.roughness" or "roughness".
+DOLP_EXPORT std::optional<KeyHint> key_by_meaning(std::string_view unknown);
 
 }  // namespace dolp

@@ -5,8 +5,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include <dolp/enum_array.hpp>
+#include <dolp/errors.hpp>
 
 namespace dolp {
 
@@ -17,8 +19,16 @@ namespace dolp {
 /// of rho: at most F * response_error + albedo * P; errors of the emissivities: at most F * response_error + P. F
 /// depends on the material: 0.7 to 1.3 if it is bare, more with total reflection (host/programs/cli/README.md). Between
 /// the angles beta, polynomials replace R and D. P is the largest difference between R or D and its polynomial.
-enum class ResponseVariable : std::uint8_t { kResponseI, kResponseQ, kEmissionI, kEmissionQ, kResponseError };
-inline constexpr std::size_t kResponseVariableCount = static_cast<std::size_t>(ResponseVariable::kResponseError) + 1;
+/// The fingerprint of an entry is response_fingerprint(). It shows whether another program changed the entry.
+enum class ResponseVariable : std::uint8_t {
+  kResponseI,
+  kResponseQ,
+  kEmissionI,
+  kEmissionQ,
+  kResponseError,
+  kFingerprint
+};
+inline constexpr std::size_t kResponseVariableCount = static_cast<std::size_t>(ResponseVariable::kFingerprint) + 1;
 
 template <class Value>
 using ResponseArray = EnumArray<ResponseVariable, Value, kResponseVariableCount>;
@@ -41,11 +51,16 @@ inline constexpr std::array<ResponseDescription, kResponseVariableCount> kRespon
     {"emission_q", "weights of the direct emissivity (eps_s - eps_p) / 2 = -sum of emission_q (r_s - r_p) / 2", true},
     {kResponseQualifier, "bound of the errors of these sums for curves whose coefficients fall as 2^-m, see comment",
      false},
+    {"fingerprint", "hash of the entry's numbers, by which dolp.moments finds entries that were changed", false},
 }};
 
 constexpr const ResponseDescription& description_of(ResponseVariable variable) {
   return kResponseVariables[static_cast<std::size_t>(variable)];
 }
+
+/// The fingerprint of an entry in a response table, a whole number below 2^53. It changes with every bit of `numbers`.
+/// These are theta in degree, sigma, q, albedo, response_error, then all response_i, then all response_q of the entry.
+DOLP_EXPORT double response_fingerprint(std::span<const double> numbers);
 
 struct BetaDescription {
   const char* name;

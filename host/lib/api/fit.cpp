@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include <dolp/fit.hpp>
 #include <dolp/status.hpp>
@@ -146,18 +147,15 @@ struct Bracketed {
   double model, low, high;
 };
 
-/// The fitted model at each zenith angle, and its bracket: the range that contains the value with all bounces of light.
-/// Empty if the scene has no bracket, or if the data contain emissivities or wavelengths.
-std::vector<Bracketed> bracketed(const Best& best, MeasuredData data, const std::vector<double>& theta_deg,
-                                 const FitOptions& options, ModelEvaluator& evaluator) {
-  const Measurement first = data.measurements.front();
-  const bool is_dolp = first.observable == Observable::kDolp || first.observable == Observable::kQOverI;
-  if (!is_dolp || first.wavelength_um) return {};
+/// The fitted model at each point of `data`, and its bracket: the range that contains the value with all bounces of
+/// light. The measured values have no influence. Empty if the scene has no bracket.
+std::vector<Bracketed> bracketed(const Best& best, MeasuredData data, const FitOptions& options,
+                                 ModelEvaluator& evaluator) {
+  const std::vector<Measurement> points = std::exchange(data.measurements, {});
   data.has_uncertainties = true;
-  data.measurements.clear();
-  for (const double zenith : theta_deg) {
+  for (const Measurement& point : points) {
     for (const double beyond_end : {-1.0, 1.0})
-      data.measurements.push_back({first.observable, zenith, beyond_end, 1.0, {}});
+      data.measurements.push_back({point.observable, point.theta_deg, beyond_end, 1.0, point.wavelength_um});
   }
   const std::vector<double> ends = model_values(best, data, options, ModelError::kBracket, evaluator);
   const std::vector<double> model = model_values(best, data, options, ModelError::kNone, evaluator);
@@ -168,12 +166,23 @@ std::vector<Bracketed> bracketed(const Best& best, MeasuredData data, const std:
   return all;
 }
 
+/// Copies of `measurement` at each of the zeniths, with the settings of `data`.
+MeasuredData at_zeniths(MeasuredData data, const Measurement& measurement, const std::vector<double>& zeniths) {
+  data.measurements.assign(zeniths.size(), measurement);
+  for (std::size_t i = 0; i < zeniths.size(); ++i) data.measurements[i].theta_deg = zeniths[i];
+  return data;
+}
+
 Json brackets(const Best& best, const FitOptions& options, ModelEvaluator& evaluator) {
   Json all = Json::array();
   for (const MeasuredData& data : best.model->data()) {
     Json& bracket = all.emplace_back(nullptr);
+    const Measurement first = data.measurements.front();
+    const bool is_drawn = first.observable == Observable::kDolp || first.observable == Observable::kQOverI;
+    if (!is_drawn || first.wavelength_um) continue;
     const std::vector<double> zeniths = fine_zeniths(data);
-    for (const Bracketed& at : bracketed(best, data, zeniths, options, evaluator)) {
+    const MeasuredData fine = at_zeniths(data, first, zeniths);
+    for (const Bracketed& at : bracketed(best, fine, options, evaluator)) {
       bracket["low"].push_back(at.low);
       bracket["high"].push_back(at.high);
     }
@@ -190,9 +199,7 @@ Json curves(const Best& best, const FitOptions& options, ModelEvaluator& evaluat
       kinds.emplace(std::pair(measurement.observable, measurement.wavelength_um), measurement);
     const std::vector<double> zeniths = fine_zeniths(data);
     for (const auto& [kind, measurement] : kinds) {
-      MeasuredData fine = data;
-      fine.measurements.assign(zeniths.size(), measurement);
-      for (std::size_t i = 0; i < zeniths.size(); ++i) fine.measurements[i].theta_deg = zeniths[i];
+      const MeasuredData fine = at_zeniths(data, measurement, zeniths);
       const std::vector<double> values = model_values(best, fine, options, ModelError::kNone, evaluator);
       if (values.empty()) continue;
       all.push_back({{"data", data.name},
@@ -205,25 +212,38 @@ Json curves(const Best& best, const FitOptions& options, ModelEvaluator& evaluat
   return all;
 }
 
-void add_model_gap(ReportBuilder& report, const Best& best, const FitOptions& options, ModelEvaluator& evaluator) {
-  std::optional<double> gap, share;
+/// The largest distance between the fitted value of a point and the farther end of its bracket. Empty without bracket.
+struct ModelGap {
+  std::optional<double> distance;
+  std::optional<double> in_uncertainties;  ///< largest ratio of the distance to the uncertainty of the point
+  bool is_ignored = false;  ///< the fit's intervals ignore the bracket, which is wider than the uncertainties
+};
+
+ModelGap model_gap(const Best& best, const FitOptions& options, ModelEvaluator& evaluator) {
+  ModelGap gap;
   for (const MeasuredData& data : best.model->data()) {
-    std::vector<double> zeniths;
-    for (const Measurement& measurement : data.measurements) zeniths.push_back(measurement.theta_deg);
-    const std::vector<Bracketed> results = bracketed(best, data, zeniths, options, evaluator);
+    const std::vector<Bracketed> results = bracketed(best, data, options, evaluator);
     for (std::size_t i = 0; i < results.size(); ++i) {
       const auto& [model, low, high] = results[i];
       const double distance = std::max(high - model, model - low);
       if (!(distance >= 0.0)) continue;
-      gap = std::max(gap.value_or(0.0), distance);
-      if (data.has_uncertainties) share = std::max(share.value_or(0.0), distance / *data.measurements[i].uncertainty);
+      gap.distance = std::max(gap.distance.value_or(0.0), distance);
+      if (!data.has_uncertainties) continue;
+      gap.in_uncertainties = std::max(gap.in_uncertainties.value_or(0.0), distance / *data.measurements[i].uncertainty);
     }
   }
-  report.row_if(gap.has_value(), "bracket",
-                "of all bounces: its far end lies up to {:.2g} points of DOLP or Q/I{} from the fit",
-                kPoints * gap.value_or(0.0), share ? fmt::format(", {:.2g} uncertainties,", *share) : "");
-  report.value("model_gap", gap);
-  report.value("model_gap_in_uncertainties", share);
+  gap.is_ignored = gap.in_uncertainties > 1.0 && options.model_error == ModelError::kNone;
+  return gap;
+}
+
+void add_model_gap(ReportBuilder& report, const ModelGap& gap) {
+  report.row_if(gap.distance.has_value(), "bracket",
+                "of all bounces: its far end lies up to {:.2g} points{} from the fit{}",
+                kPoints * gap.distance.value_or(0.0),
+                gap.in_uncertainties ? fmt::format(" ({:.2g} uncertainties)", *gap.in_uncertainties) : "",
+                gap.is_ignored ? ": the fit is at most doubtful" : "");
+  report.value("model_gap", gap.distance);
+  report.value("model_gap_in_uncertainties", gap.in_uncertainties);
 }
 
 /// Fits the scene with each combination of compared settings. Adds all results to `models`, the best first. Calls
@@ -283,17 +303,20 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
     report_start(options.progress, 1);
     std::vector<ComparedModel> models;
     ModelEvaluator* evaluator = nullptr;
-    const Best best = best_of(models, values, data, options, [&](const SceneValues& first) {
+    Best best = best_of(models, values, data, options, [&](const SceneValues& first) {
       check_outputs(options, first, data);
       return evaluator = impl_->begin(first);
     });
 
     ReportBuilder report;
+    ModelGap gap;
     add_title(report, values);
     if (best.result) {
       report.row("data", "{} measured values of {} file{}", key("observations", best.model->observation_count()),
                  data.size(), data.size() == 1 ? "" : "s");
       if (models.size() > 1) add_comparison(report, models);
+      gap = model_gap(best, options, *evaluator);
+      if (gap.is_ignored && best.result->fit_quality == "good") best.result->fit_quality = "doubtful";
       add_fit(report, *best.model, *best.result);
     } else {
       report.row("minimum", "none was found: no descent converged; try other ranges, or more starts");
@@ -302,7 +325,7 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
     report.row("starts", "{} descents, seed {}", key("starts", options.starts), key("seed", options.seed));
     report.value("loss", loss_names()[static_cast<std::size_t>(options.loss)]);
     const Scene fitted = best.result ? scene.with(best.settings()) : scene;
-    if (best.result) add_model_gap(report, best, options, *evaluator);
+    if (best.result) add_model_gap(report, gap);
     if (best.result && !options.output.empty()) {
       const std::filesystem::path folder = options.output.has_parent_path() ? options.output.parent_path() : ".";
       write_text_atomically(options.output, fitted.toml(folder));
@@ -313,7 +336,14 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
     if (!best.result) return Fit{{}, public_report(report, false), false, scene};
     if (!options.output.empty()) report.row("written", "{}", key("output", options.output.string()));
     const bool is_good = (best.result->status & kAnyToleranceNotMet) == 0;
-    return Fit{*best.result, public_report(report, is_good, options.output), true, fitted};
+    Fit found{*best.result, public_report(report, is_good, options.output), true, fitted};
+    if (gap.is_ignored) {
+      found.report.remarks.push_back(
+          fmt::format("fit: light of further bounces can move the model by {:.2g} uncertainties of a point, which the "
+                      "intervals ignore; --model-error bracket includes it",
+                      *gap.in_uncertainties));
+    }
+    return found;
   });
 }
 

@@ -6,6 +6,7 @@
 #include "base/text.hpp"
 #include "run/scene_remarks.hpp"
 #include "scene/embedded_data.hpp"
+#include "scene/key_hints.hpp"
 #include "scene/material_data.hpp"
 #include "scene/scene_keys.hpp"
 #include "scene/scene_reader.hpp"
@@ -17,12 +18,8 @@ using Type = Key::Type;
 
 std::optional<KeyValue> value_of(const SceneValues& scene, std::string_view key, std::initializer_list<Type> types) {
   const SceneKey* const known = find_scene_key(key);
-  if (!known) {
-    std::vector<std::string> names;
-    for (const SceneKey& scene_key : scene_key_table()) names.push_back(scene_key.description.key);
-    throw InputError(
-        fmt::format("{}: is no key of a scene; the nearest is {}", one_line(key), nearest_name(key, names)));
-  }
+  if (!known)
+    throw InputError(fmt::format("{}: is no key of a scene; the nearest is {}", one_line(key), key_hint(key)));
   if (std::ranges::find(types, known->description.type) == types.end()) {
     throw InputError(fmt::format("{}: is {}", known->description.key, known->description.allowed()));
   }

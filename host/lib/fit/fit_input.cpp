@@ -134,8 +134,10 @@ std::vector<std::string> number_keys() {
 void check_key(const std::string& key, const std::string& origin) {
   const std::vector<std::string> keys = number_keys();
   if (std::ranges::find(keys, key) != keys.end()) return;
+  const std::optional<KeyHint> meant = key_by_meaning(key);
+  const bool can_vary = meant && std::ranges::find(keys, meant->key) != keys.end();
   throw InputError(fmt::format("{}: {} is no number of a scene that can vary; the nearest is {}", origin, one_line(key),
-                               nearest_name(key, keys)));
+                               can_vary ? meant->text() : nearest_name(key, keys)));
 }
 
 }  // namespace

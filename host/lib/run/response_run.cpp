@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/hash.hpp"
 #include "base/stopwatch.hpp"
 #include "evaluate/planned_moments.hpp"
 #include "model/angles.hpp"
@@ -162,7 +163,27 @@ bool misses(const EntryResponses& of, std::size_t entry, double tolerance) {
   return !std::isnan(error) && !(error <= tolerance * of.albedo[entry]);
 }
 
+/// The fingerprint of an entry of a response table, which has all other variables already.
+double entry_fingerprint(const TableValues& table, const SceneEntry& entry, std::size_t i) {
+  std::vector<double> numbers = {entry.theta_deg, entry.shape.sigma, entry.shape.q, table[Quantity::kAlbedo][i],
+                                 table.responses[ResponseVariable::kResponseError][i]};
+  for (const ResponseVariable variable : {ResponseVariable::kResponseI, ResponseVariable::kResponseQ}) {
+    const auto weights = std::span(table.responses[variable]).subspan(i * kBetaAngles, kBetaAngles);
+    numbers.insert(numbers.end(), weights.begin(), weights.end());
+  }
+  return response_fingerprint(numbers);
+}
+
 }  // namespace
+
+double response_fingerprint(std::span<const double> numbers) {
+  std::vector<double> plain(numbers.begin(), numbers.end());
+  for (double& number : plain) {
+    if (std::isnan(number)) number = std::numeric_limits<double>::quiet_NaN();  // files may store another NaN
+  }
+  constexpr int kUnusedBits = 64 - std::numeric_limits<double>::digits;
+  return static_cast<double>(hashed(kHashStart, plain) >> kUnusedBits);
+}
 
 TableLayout response_layout(const SceneValues& scene) {
   if (scene.surface.scattering != Scattering::kSingle)
@@ -190,7 +211,7 @@ TableLayout response_layout(const SceneValues& scene) {
   layout.responses = {ResponseVariable::kResponseI, ResponseVariable::kResponseQ};
   if (has_emission(scene.surface.masking))
     layout.responses.insert(layout.responses.end(), {ResponseVariable::kEmissionI, ResponseVariable::kEmissionQ});
-  layout.responses.push_back(ResponseVariable::kResponseError);
+  layout.responses.insert(layout.responses.end(), {ResponseVariable::kResponseError, ResponseVariable::kFingerprint});
   return layout;
 }
 
@@ -281,6 +302,9 @@ ResponseOutcome run_responses(const SceneValues& scene, const TableLayout& layou
     outcome.entries += part.size();
     part.responses = std::move(of_part.responses);
     part[Quantity::kAlbedo] = std::move(of_part.albedo);
+    const SceneEntries entries = SceneEntries::of_grid(part.axes, kUnusedIndex);
+    for (std::size_t i = 0; i < part.size(); ++i)
+      part.responses[ResponseVariable::kFingerprint][i] = entry_fingerprint(part, entries[i], i);
     take(std::move(part), box.first);
   }
   const EvaluationReport& evaluation = outcome.evaluation = evaluator.report();

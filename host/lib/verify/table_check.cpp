@@ -6,13 +6,16 @@
 #include <array>
 #include <cmath>
 #include <dolp/errors.hpp>
+#include <numbers>
 #include <random>
 #include <set>
 #include <span>
+#include <utility>
 
 #include <dolp/number_range.hpp>
 #include <dolp/status.hpp>
 #include "base/numbers.hpp"
+#include "plan/effects.hpp"
 #include "reference/reference_evaluator.hpp"
 #include "run/response_run.hpp"
 #include "run/scene_run.hpp"
@@ -47,52 +50,89 @@ constexpr std::array<Compared, 13> kCompared{{
     {Quantity::kEmissivityP, Bound::kEmissivity},
 }};
 
-/// Tables state no errors of emissivities and albedo, nor of I where DOLP is 0. These errors, relative to 1, max(1,
-/// albedo) and the largest possible I, are assumed to be at most this factor times the largest of error_estimate,
-/// rho_error_estimate and the tolerance.
-constexpr double kUnstatedOverStated = 10.0;
+/// Relative rounding error of a radiance, an emissivity and an albedo at one wavelength.
+constexpr double kRounding = 1e-12;
 
-/// Terms of the error bounds that all entries of one variant (material, band, wavelength, temperature) share.
+/// Terms of the error bounds that all entries of one variant (material, band, wavelength, temperature) share. They have
+/// the unit of I: radiances in bistatic mode, else exitances.
 struct BoundTerms {
+  double emitted = 0.0;    ///< emission of a black surface, at the sensor
+  double radiation = 0.0;  ///< emission, surroundings and source, before the surface reflects them
+  double dropped = 0.0;    ///< radiation of the effects that the table leaves out
+  double rounding = kRounding;
+  bool depends_on_rho = true;  ///< false if the run needed no rho
   double tolerance = 0.0;
-  double radiation = 0.0;  ///< largest possible Stokes I: full emission and reflection, plus path radiance
+  EmissionModel model = EmissionModel::kMoments;
 };
 
-BoundTerms bound_terms(const SceneModel& scene) {
-  BoundTerms terms{.tolerance = scene.accuracy.tolerance};
+BoundTerms bound_terms(const SceneModel& scene, const EffectPlan& plan) {
   const SpectralRule rule = spectral_rule(scene);
-  for (const SpectralSample& sample : rule.samples)
-    terms.radiation += std::abs(sample.emitted) + std::abs(sample.surroundings) + std::abs(sample.irradiance);
-  terms.radiation += rule.path_exitance;
+  SpectralSample total;
+  for (const SpectralSample& sample : rule.samples) {
+    total.emitted += std::abs(sample.emitted);
+    total.surroundings += std::abs(sample.surroundings);
+    total.irradiance += std::abs(sample.irradiance);
+  }
+  const std::array<std::pair<Part, double>, 4> parts{{{Part::kEmission, total.emitted},
+                                                      {Part::kSurroundings, total.surroundings},
+                                                      {Part::kSource, total.irradiance},
+                                                      {Part::kPathRadiance, rule.path_exitance}}};
+  const double unit = scene.geometry.mode == Mode::kBistatic ? 1.0 / std::numbers::pi : 1.0;
+  BoundTerms terms;
+  for (const auto& [part, exitance] : parts) {
+    if (plan.dropped.contains(part)) terms.dropped += unit * exitance;
+  }
+  terms.emitted = unit * total.emitted * (scene.path ? scene.path->transmittance : 1.0);
+  terms.radiation = unit * (total.emitted + total.surroundings + total.irradiance);
+  terms.depends_on_rho = plan.gives_rho;
+  terms.rounding += rule.relative_error;
+  terms.tolerance = scene.accuracy.tolerance;
+  if (scene.emission) terms.model = scene.emission->model;
   return terms;
 }
 
-std::vector<BoundTerms> bound_terms(const SceneValues& scene, const std::vector<SceneVariant>& variants) {
+std::vector<BoundTerms> bound_terms(const SceneValues& scene, const SceneEntries& grid, const EffectPlan& plan) {
   std::vector<BoundTerms> terms;
-  for (const SceneVariant& variant : variants) terms.push_back(bound_terms(with_variant(scene, variant)));
+  for (const SceneVariant& variant : grid.variants()) terms.push_back(bound_terms(with_variant(scene, variant), plan));
   return terms;
 }
 
-/// The error bound of a quantity. Both estimates come from the table, or both from the reference.
-double bound_of(Bound bound, double dolp_estimate, double rho_estimate, const PointResult& reference,
-                const BoundTerms& terms) {
-  const double radiation = dolp_estimate * std::abs(reference[Quantity::kStokesI]);
-  const double unstated = kUnstatedOverStated * std::max({dolp_estimate, rho_estimate, terms.tolerance});
-  const double dolp = std::abs(reference[Quantity::kDolp]);
+/// Error bounds that the table states, or those of the reference.
+struct Estimates {
+  double dolp = kInfinity;
+  double rho = kInfinity;  ///< relative to rho_I
+};
+
+double absolute(double relative, double value) { return std::isinf(relative) ? relative : relative * std::abs(value); }
+
+/// The error bound of I. The bound of DOLP limits it, because a relative error e of I changes DOLP by e * DOLP. The
+/// bound of rho also limits it: an error d of rho_I changes I by at most d * terms.radiation. The errors of a sky, a
+/// beam and direct emission are in this second limit by the bound of DOLP, which contains their error of Q and I.
+double radiation_bound(const Estimates& estimates, const PointResult& reference, const BoundTerms& terms) {
+  const double of_dolp = absolute(estimates.dolp, reference[Quantity::kStokesI]);
+  const double of_rho = terms.depends_on_rho ? absolute(estimates.rho, reference[Quantity::kRhoI]) : 0.0;
+  const double dropped = terms.dropped * std::max(1.0, std::abs(reference[Quantity::kRhoI]));
+  const double by_rho = of_dolp + dropped + (of_rho + terms.rounding) * terms.radiation;
+  const double by_dolp = of_dolp / std::abs(reference[Quantity::kDolp]);
+  return by_rho < by_dolp || reference[Quantity::kDolp] == 0.0 ? by_rho : by_dolp;
+}
+
+double error_bound(Bound bound, const Estimates& estimates, const PointResult& reference, const BoundTerms& terms) {
+  const double of_rho = absolute(estimates.rho, reference[Quantity::kRhoI]);
+  const double of_dolp = absolute(estimates.dolp, reference[Quantity::kStokesI]);
   switch (bound) {
     case Bound::kDolp:
-      return dolp_estimate;
+      return estimates.dolp;
     case Bound::kReflectance:
-      return rho_estimate * std::abs(reference[Quantity::kRhoI]);
+      return of_rho;
     case Bound::kPolarisedRadiation:
-      return radiation;
+      return of_dolp;
     case Bound::kRadiation:
-      // A relative error e of I changes DOLP by e * DOLP. So e is at most the error of DOLP divided by DOLP.
-      return std::min(dolp > 0.0 ? radiation / dolp : kInfinity, unstated * terms.radiation);
+      return radiation_bound(estimates, reference, terms);
     case Bound::kEmissivity:
-      return unstated;
+      return 2.0 * (terms.model == EmissionModel::kMoments ? of_rho : of_dolp / terms.emitted) + terms.rounding;
     case Bound::kAlbedo:
-      return unstated * std::max(1.0, std::abs(reference[Quantity::kAlbedo]));
+      return absolute(estimates.rho + terms.rounding, reference[Quantity::kAlbedo]);
   }
   return kInfinity;
 }
@@ -132,11 +172,13 @@ CheckedValue compare(const TableSample& sample, const Compared& compared, std::s
   CheckedValue value{description_of(compared.quantity).name, position_of(sample.positions[i], table)};
   value.stored = table[compared.quantity][i];
   value.reference = reference[compared.quantity];
-  const double dolp_estimate = estimate_at(table[Quantity::kErrorEstimate], i);
-  const double rho_estimate = estimate_at(table[Quantity::kRhoErrorEstimate], i);
-  value.stated = bound_of(compared.bound, dolp_estimate, rho_estimate, reference, terms);
-  value.reference_error = bound_of(compared.bound, reference[Quantity::kErrorEstimate],
-                                   reference[Quantity::kRhoErrorEstimate], reference, {0.0, terms.radiation});
+  const Estimates stated{estimate_at(table[Quantity::kErrorEstimate], i),
+                         estimate_at(table[Quantity::kRhoErrorEstimate], i)};
+  const Estimates of_reference{reference[Quantity::kErrorEstimate], reference[Quantity::kRhoErrorEstimate]};
+  BoundTerms keeps_all = terms;
+  keeps_all.dropped = 0.0;
+  value.stated = error_bound(compared.bound, stated, reference, terms);
+  value.reference_error = error_bound(compared.bound, of_reference, reference, keeps_all);
   // If neither the table nor the reference has an error bound, for example because I overflows, any error is allowed.
   if (std::isnan(value.stated) && !std::isfinite(value.reference_error))
     value.stated = value.reference_error = kInfinity;
@@ -229,7 +271,7 @@ TableCheck check_table(const TableSample& sample, const SceneValues& scene, cons
                                                ? integrate_band(scene, chosen, reference, progress)
                                                : evaluate_scene(scene, chosen, reference, progress);
 
-  const std::vector<BoundTerms> terms = bound_terms(scene, grid.variants());
+  const std::vector<BoundTerms> terms = bound_terms(scene, grid, plan_effects(scene, grid, false));
   TableCheck check;
   check.entries = table.size();
   check.checked = sample.positions.size();

@@ -31,8 +31,10 @@ void add_key(Report& report, Json& list, const Key& key) {
                   {"default", key.fallback}});
 }
 
-/// The scene key that is most similar to `wanted`: "surface.q" for "q". Empty if more than half of the letters differ.
+/// The scene key that `wanted` means or, if none is known, the most similar one: "surface.q" for "q". Empty if more
+/// than half of the letters differ.
 std::string near_key(const std::string& wanted, const std::vector<std::string>& names) {
+  if (const std::optional<KeyHint> meant = key_by_meaning(wanted)) return meant->text();
   const auto distance = [&](const std::string& name) {
     return std::min(edit_distance(wanted, name), edit_distance(wanted, name.substr(name.find('.') + 1)));
   };

@@ -113,7 +113,9 @@ def check_names(what: str, given: Iterable[str], known: list[str]) -> None:
     for name in given:
         if name in known:
             continue
-        near = [axis for axis in known if axis.startswith(f"{name}_")] or difflib.get_close_matches(name, known, 1)
+        meant = (_native.key_by_meaning(name) or "").split(".")[-1]
+        near = ([axis for axis in known if axis.startswith(f"{name}_")] or [axis for axis in known if axis == meant]
+                or difflib.get_close_matches(name, known, 1))
         keys = [key for key, *_ in _native.keys() if key.split(".")[-1] == name]
         hint = f"; did you mean {near[0]}?" if near else f'; it is a key of the scene: scene.with_({{"{keys[0]}": ...}})' if keys else ""
         raise InputError(f"{what}: {name} is none of {', '.join(known)}{hint}")
@@ -141,13 +143,27 @@ def short(value: Any) -> str:
 
 
 def native_values(overrides: Mapping[str, Any] | None) -> list[tuple[str, Any]]:
-    values = []
+    values: list[tuple[str, Any]] = []
     for key, value in check_mapping("overrides", overrides).items():
-        if key == "surface.n" and np.ndim(value) == 0 and np.iscomplexobj(value):
-            values += [(key, float(np.real(value))), ("surface.k", float(np.imag(value)))]
+        check_key(key)
+        if isinstance(value, Mapping) and "." not in key:  # a whole table of keys
+            if not value:
+                raise InputError(f"{key}: is an empty dictionary; None removes a table")
+            values += native_values({f"{key}.{check_key(name)}": item for name, item in value.items()})
+        elif key == "surface.coating" and value is not None:
+            values += [(key, None), *native_values(_film_keys(key, value))]
+        elif key.endswith(".n") and np.ndim(value) == 0 and np.iscomplexobj(value):
+            values += [(key, float(np.real(value))), (f"{key[:-1]}k", float(np.imag(value)))]
         else:
-            values.append((check_key(key), _value(key, value)))
+            values.append((key, _value(key, value)))
     return values
+
+
+def _film_keys(key: str, films: Any) -> dict[str, Any]:
+    """Keys of single films, such as surface.coating.1.thickness_um, from a list with a dictionary for each film."""
+    if not isinstance(films, (list, tuple)) or not all(isinstance(film, Mapping) and film for film in films):
+        raise InputError(f"{key}: must be a list of dictionaries, as in [{{'material': 'PMMA acrylic', 'thickness_um': 2}}]")
+    return {f"{key}.{i}.{check_key(name)}": value for i, film in enumerate(films, 1) for name, value in film.items()}
 
 
 def _value(key: str, value: Any) -> Any:

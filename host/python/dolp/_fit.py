@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from ._arguments import Path, check_key, check_mapping, check_names, floats, native_path, native_values, whole_number, word, word_list
-from ._model_warning import warn_of_model
+from ._model_warning import warn_of_gap, warn_of_model
 from ._native import InputError
 from ._points import csv_of
 from ._runs import evaluate, native_evaluator, native_scene
@@ -29,7 +29,8 @@ class Fit:
     parameters at a bound stay there.
     `covariance`: matrix in the order of `params`; NaN for a parameter without a standard error.
     `scene`: the scene with the fitted values, and with the best of the models that the argument `compare` asks for.
-    `fit_quality`: "good", "doubtful" (p < 0.05), "bad" (p < 0.001), or None without a p-value.
+    `fit_quality`: "good", "doubtful" (p < 0.05), "bad" (p < 0.001), or None without a p-value. Also doubtful if light of
+    further bounces can move the model by more than an uncertainty, unless model_error="bracket" accounts for it.
     `values`: the report of `dolp fit --json` as a dictionary, with parameters, correlation, chi_square,
     reduced_chi_square, p_value, aic, bic, minima, residuals, models, alike, ranges.
     """
@@ -53,13 +54,15 @@ class Fit:
 
     def conf_interval(self, level: float = 0.95, *, scaled: bool = False) -> dict[str, tuple[float | None, float | None] | None]:
         """Confidence intervals at a level of 0.68 or 0.95. An end is None if the data do not limit the parameter there.
-        An interval is None if the data exclude all values. `scaled`: in a doubtful or bad fit, multiplies all
-        uncertainties by sqrt(reduced chi^2).
+        An interval is None if the data exclude all values. `scaled`: if the p-value is below 0.05, multiplies
+        all uncertainties by sqrt(reduced chi^2).
         """
         if level not in (0.68, 0.95):
             raise InputError(f"level = {level}: must be 0.68 or 0.95")
-        name = f"{'scaled' if scaled and self.fit_quality in ('doubtful', 'bad') else 'interval'}_{100 * level:.0f}"
-        return {one["key"]: one[name] and tuple(one[name]) for one in self.values["parameters"]}
+        ends = {one["key"]: one[f"interval_{100 * level:.0f}"] for one in self.values["parameters"]}
+        if scaled:
+            ends |= {one["key"]: one.get(f"scaled_{100 * level:.0f}", ends[one["key"]]) for one in self.values["parameters"]}
+        return {key: both and tuple(both) for key, both in ends.items()}
 
     def plot(self, axes: Any = None) -> Any:
         """Draws data, model and bracket (dolp_low to dolp_high) over zenith with Matplotlib. Returns the axes."""
@@ -116,7 +119,8 @@ def fit(scene: Scene, data: Any, vary: Mapping[str, tuple[float, ...]], *, compa
     `compare`: lists of values for other keys. One model for each combination of these values is fitted and ranked.
     `loss`: squares. For data with outliers: huber, soft-l1, cauchy or tukey.
     `model_error`: none, or bracket. With bracket, the true value at each point may lie anywhere between dolp_low and
-    dolp_high. With none, dolp.ModelWarning appears if single scattering is not accurate enough (status 32).
+    dolp_high. With none, dolp.ModelWarning appears if single scattering is not accurate enough (status 32), or if the
+    bracket of a point reaches more than one uncertainty away from the fit.
     `plot`: a .png, .pdf or .svg file, to which the fit draws data, model, residuals and contours.
 
     >>> truth = dolp.evaluate(scene, theta_deg=np.arange(5, 85, 5), n=1.6)
@@ -140,5 +144,6 @@ def fit(scene: Scene, data: Any, vary: Mapping[str, tuple[float, ...]], *, compa
     report = json.loads(values)
     if model_error == "none":
         warn_of_model(scene, report["status"])
+        warn_of_gap(scene, report["model_gap_in_uncertainties"])
     names = ["data"] if len(sets) == 1 else [f"data{i + 1}" for i in range(len(sets))]
     return Fit(text, report, fitted, {name: own or {} for name, (_, own) in zip(names, sets)})

@@ -14,7 +14,7 @@ _MODEL_INACCURATE = 32  # status bit
 
 class ModelWarning(UserWarning):
     """Warns that the estimated error of the intensity I is above 5 % (status 32), because single scattering loses light
-    or the masking function creates light."""
+    or the masking function creates light. Also warns that this light may change a fit by more than the uncertainties."""
 
 
 def warn_of_model(scene: Scene, status: Any, change: float | None = None, stacklevel: int = 3) -> None:
@@ -26,3 +26,12 @@ def warn_of_model(scene: Scene, status: Any, change: float | None = None, stackl
     warnings.warn(f"{scene!r}: single scattering, or a masking that creates light, changes I by {much} at some entries "
                   '(status 32); surface.masking "v-cavity" with surface.scattering "multiple" follows all bounces',
                   ModelWarning, stacklevel=stacklevel)
+
+
+def warn_of_gap(scene: Scene, gap: float | None, stacklevel: int = 3) -> None:
+    """Warns once for each scene if a bracket reaches more than one uncertainty away from a fit. `gap`: this distance."""
+    if scene._has_model_warning or gap is None or gap <= 1:
+        return
+    scene._has_model_warning = True
+    warnings.warn(f"{scene!r}: light of further bounces can move the model by {gap:.2g} uncertainties of a point, which the "
+                  'intervals of the fit ignore; model_error="bracket" includes it', ModelWarning, stacklevel=stacklevel)

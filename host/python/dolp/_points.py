@@ -37,7 +37,7 @@ def columns_of(points: Mapping[str, Array], labels: Mapping[str, list[str]] = {}
     """
     check_names("points", [name for name in points if not (has_keys and "." in name)], list(COORDINATES))
     points = {name: _positions(name, values, labels[name]) if name in labels else values
-              for name, values in _with_real_index(points).items()}
+              for name, values in with_real_index(points).items()}
     if any(isinstance(values, xr.DataArray) for values in points.values()):
         arrays = {name: values.copy(data=floats(name, values)) if isinstance(values, xr.DataArray)
                   else xr.DataArray(floats(name, values)) for name, values in points.items()}
@@ -103,7 +103,7 @@ def _dimensions(points: Mapping[str, np.ndarray],
     return tuple(dims), coordinates
 
 
-def _with_real_index(points: Mapping[str, Array]) -> Mapping[str, Array]:
+def with_real_index(points: Mapping[str, Array]) -> Mapping[str, Array]:
     if not np.iscomplexobj(points.get("n")):
         return points
     if "k" in points:

@@ -4,21 +4,26 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from . import _native
 from ._arguments import Array, check_names, floats
 from ._datasets import table_dataset
 from ._native import InputError
 from ._points import columns_of
-from ._runs import native_evaluator, with_axes
+from ._runs import native_evaluator, native_surface, with_axes
 from ._scene import Scene
 
+_HINT = "take entries by sel or isel, and compute others instead of interpolating, as in dolp.response(scene, theta_deg=65)"
 _ANGLES = 256  # number of angles at which _distance compares reflectances with polynomials
+_AXES = ("theta", "sigma", "q")
+_ENTRY = ("albedo", "response_error")  # with the axes and the weights, in the order of dolp::response_fingerprint
+_WEIGHTS = ("response_i", "response_q")
 
 
 def response(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **axes: Array) -> xr.Dataset:
     """The response table over the scene's grid, with the contents of its file. `moments` converts it to reflectances.
 
     `axes` (theta_deg, sigma or wind_m_s, q) replace axes of the scene. Material, wavelength and radiation of the scene
-    do not matter. The dimension beta has angles of incidence on a facet. Let r_s and r_p be reflectances of a smooth
+    do not matter: for a surface without a material use Scene.for_response. The dimension beta has angles of incidence on a facet. Let r_s and r_p be reflectances of a smooth
     surface at these angles. Then rho_i is the sum of response_i * (r_s + r_p) / 2 over beta, and rho_q is the sum of
     response_q * (r_s - r_p) / 2, if k_s is 1 and there is no diffuse part. With masking smith or v-cavity, emission_i
     and emission_q give the direct emissivities in the same way, from 1 - r_s and 1 - r_p.
@@ -28,7 +33,7 @@ def response(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **axe
     (('theta', 'sigma', 'q', 'beta'), True)
     """
     check_names("axes", axes, ["theta_deg", "sigma", "wind_m_s", "q"])
-    contents, (beta, long_name, units, variables) = native_evaluator(evaluator, device).response(with_axes(scene, axes))
+    contents, (beta, long_name, units, variables) = native_evaluator(evaluator, device).response(with_axes(native_surface(scene), axes))
     table = table_dataset(*contents)
     dims, shape = table.albedo.dims, table.albedo.shape
     table.coords["beta"] = xr.Variable("beta", beta, {"long_name": long_name, "units": units}, {"dtype": beta.dtype})
@@ -43,7 +48,9 @@ def response(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **axe
 def moments(response: xr.Dataset, *, n: Array | None = None, k: Array = 0.0, r_s: xr.DataArray | None = None,
             r_p: xr.DataArray | None = None) -> xr.Dataset:
     """Computes the reflectances rho_i and rho_q of rough materials, their error bound rho_error, and the albedo. The
-    specular weight k_s is 1, and there is no diffuse part. `response` is a response table or a part of a table.
+    specular weight k_s is 1, and there is no diffuse part. `response` is a response table or a part of a table, such as
+    `r.sel(theta=60)`. Weights that were not computed, such as after `r.interp(theta=65)` or `r.mean("sigma")`, give an
+    InputError: compute them instead, as in `dolp.response(scene, theta_deg=65)`.
 
     Give n and k of the materials, as for `evaluate`, or the reflectances r_s and r_p of smooth surfaces. r_s and r_p
     are DataArrays over the beta of `response` and may have more dimensions. Between the values of beta, polynomials
@@ -57,6 +64,7 @@ def moments(response: xr.Dataset, *, n: Array | None = None, k: Array = 0.0, r_s
     """
     if (n is None) == (r_s is None and r_p is None) or (r_s is None) != (r_p is None):
         raise InputError("moments: needs either n, and k where it is not 0, or both r_s and r_p")
+    _check_entries(response)
     beta = response.beta
     distance = 0.0
     if n is None:
@@ -74,6 +82,33 @@ def moments(response: xr.Dataset, *, n: Array | None = None, k: Array = 0.0, r_s
              "rho_error": (response.response_error * _size(mean, half) + distance * response.albedo,
                            f"bound of the absolute errors of rho_i and rho_q{beyond}")}
     return xr.Dataset({name: values.assign_attrs(long_name=meaning, units="1") for name, (values, meaning) in known.items()})
+
+
+def _check_entries(response: xr.Dataset) -> None:
+    """Errors: InputError if `response` is no response table, or if xarray changed an entry since it was computed."""
+    if not isinstance(response, xr.Dataset):
+        raise TypeError(f"response: must be an xarray.Dataset, not {type(response).__name__}")
+    if "response_i" not in response:
+        raise InputError("response: has no response_i, so it is no response table; dolp.response(scene) computes one")
+    lacks = [name for name in (*_AXES, "beta", *_ENTRY, *_WEIGHTS, "fingerprint") if name not in response.variables]
+    if lacks or "c0" not in response.attrs:
+        raise InputError(f"response: lacks {', '.join(lacks) or 'the attribute c0'}, without which nothing shows that its weights "
+                         f"are as dolp.response computed them; {_HINT}")
+    dims = response.fingerprint.dims
+    try:
+        columns = [response[name].broadcast_like(response.fingerprint).transpose(*dims) for name in (*_AXES, *_ENTRY)]
+        weights = [response[name].transpose(*dims, "beta") for name in _WEIGHTS]
+    except ValueError:
+        raise InputError(f"response: its variables are not over the same axes, as those of dolp.response are; {_HINT}") from None
+    stated = np.atleast_1d(response.fingerprint.values).ravel()
+    entries = np.column_stack([*(floats(one.name, one).ravel() for one in columns),
+                               *(floats(one.name, one).reshape(stated.size, -1) for one in weights)])
+    is_empty = np.isnan(stated) & np.isnan(entries[:, len(columns):]).all(axis=1)  # such entries give NaN
+    wrong = np.flatnonzero(~is_empty & (_native.response_fingerprints(entries) != stated))
+    if wrong.size:
+        where = ", ".join(f"{name} {value:g}" for name, value in zip(_AXES, entries[wrong[0]]))
+        raise InputError(f"response: {wrong.size} of {stated.size} entries, the first at {where}, are not as dolp.response computed "
+                         f"them; {_HINT}")
 
 
 def _index(n: Array, k: Array) -> xr.DataArray:

@@ -16,7 +16,7 @@ from ._between import between_tables
 from ._datasets import concatenated, dataset_at, native_table, table_dataset
 from ._model_warning import warn_of_model
 from ._native import InputError
-from ._points import KEY_ATTRIBUTES, columns_of
+from ._points import KEY_ATTRIBUTES, columns_of, with_real_index
 from ._scene import Scene
 
 
@@ -26,8 +26,8 @@ def table(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all
 
     `axes` (theta_deg, sigma or wind_m_s, q, wavelength_um or band_um, temperature_K, and n, k or material) replace axes
     of the scene. Each axis is a number or a list, and the table has all combinations of their values. Materials are
-    names, as in `dolp.table(scene, material=["gold (Ordal)", "iron"])`, or "all". Winds become a second coordinate
-    along sigma; `t.swap_dims(sigma="wind_m_s")` makes it the dimension.
+    names, as in `dolp.table(scene, material=["gold (Ordal)", "iron"])`, or "all". A complex n gives n and k. Winds become
+    a second coordinate along sigma; `t.swap_dims(sigma="wind_m_s").sel(wind_m_s=5)` selects a wind.
 
     Any other number of the scene can be an axis, with its key as the name. The program then computes one table for each
     value and joins the tables. Only attributes equal in all tables remain. `lookup` interpolates between values, as in
@@ -41,7 +41,7 @@ def table(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all
     """
     key = next((name for name in axes if "." in name), None)
     if key is None:
-        on_axes = with_axes(scene, axes)
+        on_axes = with_axes(native_scene(scene), axes)
         whole = table_dataset(*native_evaluator(evaluator, device).table(on_axes, flag("keep_all", keep_all)))
         warn_of_model(scene, whole.get("status", 0), whole.attrs.get("model_change"))
         return whole
@@ -67,7 +67,7 @@ def write_table(scene: Scene, path: Path, *, evaluator: str = "vulkan", device: 
     """
     if key := next((name for name in axes if "." in name), None):
         raise InputError(f"axes: {key} is no axis of a file; write a file for each value, of scene.with_({{{key!r}: VALUE}})")
-    on_axes = with_axes(scene, axes)
+    on_axes = with_axes(native_scene(scene), axes)
     return native_evaluator(evaluator, device).write_table(on_axes, native_path("path", path), flag("keep_all", keep_all),
                                                            flag("resume", resume))
 
@@ -196,16 +196,26 @@ def _table_of(path: str, _: tuple[int, int, int]) -> _native.Table:
 
 
 def native_scene(scene: Scene) -> _native.Scene:
+    if isinstance(scene, Scene) and scene._is_for_response:
+        raise InputError("scene: comes from Scene.for_response, so only dolp.response takes it; write dolp.Scene(...)")
+    return native_surface(scene)
+
+
+def native_surface(scene: Scene) -> _native.Scene:
+    """The scene for a call that needs only its surface."""
     if isinstance(scene, Scene):
         return scene._native
     hint = "; dolp.Scene(path) reads a file" if isinstance(scene, (str, os.PathLike)) else ""
     raise TypeError(f"scene: must be a dolp.Scene, not {type(scene).__name__}{hint}")
 
 
-def with_axes(scene: Scene, axes: Mapping[str, Array]) -> _native.Scene:
+def with_axes(native: _native.Scene, axes: Mapping[str, Array]) -> _native.Scene:
     """Replaces axes of the scene's grid by `axes`. The names in `axes` are column names, such as theta_deg."""
-    native = native_scene(scene)
     check_names("axes", axes, [column for column, *_ in _native.axes()])
+    if np.iscomplexobj(axes.get("n")):
+        if np.size(axes["n"]) > 1:
+            raise InputError("n: several complex values form no grid of n and k; give the lists n and k, or use dolp.evaluate")
+        axes = with_real_index(axes)
     return native.with_([(f"grid.{axis}", label_values(values) if axis in native.labels() else axis_values(axis, values))
                          for axis, values in axes.items()])
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from . import _native
-from ._arguments import Array, Path, check_key, check_names, floats, input_path, native_values, short, word
+from ._arguments import Array, Path, check_key, check_mapping, check_names, floats, input_path, native_values, short, word
 from ._native import InputError
 
 
@@ -29,6 +29,7 @@ class Scene:
     """
 
     _has_model_warning = False  # true after a dolp.ModelWarning for this scene
+    _is_for_response = False  # true for scenes of for_response, whose material is arbitrary
 
     def __init__(self, path: Path | Scene | None = None, overrides: Mapping[str, Any] | None = None, *,
                  text: str | None = None) -> None:
@@ -37,6 +38,7 @@ class Scene:
         values = native_values(overrides)
         if isinstance(path, Scene):
             self._native = path._native.with_(values)
+            self._is_for_response = path._is_for_response
         elif path is not None:
             if isinstance(path, str) and "\n" in path:
                 raise InputError(f"path: {short(path)} is the text of a scene; write Scene(text=...)")
@@ -45,6 +47,19 @@ class Scene:
             self._native = _native.Scene.from_text(text, values, "text")
         else:
             raise TypeError(f"text: must be a str, not {type(text).__name__}")
+
+    @classmethod
+    def for_response(cls, path: Path | Scene | None = None, overrides: Mapping[str, Any] | None = None, *,
+                     text: str | None = None) -> Scene:
+        """A scene for `dolp.response`, which needs no material, no spectrum and no radiation. Other calls refuse it.
+
+        >>> surface = dolp.Scene.for_response(text="surface = { sigma = 0.2, q = 3 }")
+        >>> dolp.moments(dolp.response(surface, theta_deg=60), n=1.5).rho_i.round(3).values.ravel()
+        array([0.08])
+        """
+        scene = cls(path, {**check_mapping("overrides", overrides), **dict(_native.surface_settings())}, text=text)
+        scene._is_for_response = True
+        return scene
 
     def with_(self, values: Mapping[str, Any]) -> Scene:
         """A copy of the scene with new values of some keys. Other keys keep their values, here the title.

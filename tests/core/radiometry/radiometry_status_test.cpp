@@ -102,6 +102,10 @@ TEST(Radiometry, NoRadiation_HasNoDolpAndSaysSo) {
   EXPECT_TRUE(std::isnan(result[Quantity::kDolp]));
   EXPECT_EQ(result.status, kOutsideModelDomain | kIntensityNotPositive);
   EXPECT_GT(result[Quantity::kRhoI], 0.0);
+  Moments uncertain = moments_of({0.3, 0.1}, direction.cos_theta);
+  uncertain.r_i_error = 0.1;
+  EXPECT_EQ(evaluate(scene, direction, uncertain).status,
+            kOutsideModelDomain | kIntensityNotPositive | kRhoToleranceNotMet);
 }
 
 TEST(Radiometry, MomentsThatAreNotNumbers_AreOutsideTheDomainEverywhere) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <iostream>
+#include <map>
 #include <random>
 
 #include "base/text.hpp"
@@ -214,6 +215,77 @@ TEST(SceneOverride_Malformed, IsRefused) {
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface.n.x=1"}), "--set surface.n.x=1: surface.n is not a table"));
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface=3"}), "--set surface=3: must be a table, [surface]"));
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface.n=1\nsurface.k=2"}), "must be a number"));
+}
+
+TEST(SceneKey_UnderAnotherUsualName, IsFoundByItsMeaning) {
+  for (const auto& [name, key] : std::map<std::string, std::string>{
+           {"source.zenith_deg", "grid.theta_deg (in bistatic mode theta is the zenith of the source"},
+           {"source.azimuth_deg", "geometry.relative_azimuth_deg"},
+           {"surface.roughness", "surface.sigma (a slope, not a height; the roughness alpha of GGX is sqrt(2) sigma)"},
+           {"surface.alpha", "surface.sigma"},
+           {"surface.RMS", "surface.sigma"},
+           {"sigma", "surface.sigma"},
+           {"surface.emissivity", "surface.n (the emissivity follows"},
+           {"surface.refractive_index", "surface.n"},
+           {"surface.ior", "surface.n"},
+           {"surface.kappa", "surface.k"},
+           {"surface.temperature_K", "emission.temperature_K"},
+           {"sky.temperature_C", "surroundings"},
+           {"path.temperature_k", "path.temperature_K"},
+           {"wavelength", "spectrum.wavelength_um"},
+           {"grid.wavelength_nm", "grid.wavelength_um"},
+           {"geometry.angle_deg", "geometry.view_zenith_deg"},
+           {"grid.incidence_deg", "grid.theta_deg"},
+           {"surface.polarization", "surface.diffuse_polarisation"},
+           {"surface.shadowing", "surface.masking"}}) {
+    const std::string message = error_of(kMinimal, {name + "=1"});
+    EXPECT_TRUE(contains(message, "unknown key; the nearest known key is " + key)) << message;
+  }
+}
+
+TEST(SceneWord_UnderAnotherUsualName, IsExplained) {
+  for (const auto& [setting, hint] : std::map<std::string, std::string>{
+           {"surface.distribution=ggx", "GGX is \"cauchy\" with surface.q = 2"},
+           {"surface.distribution=Trowbridge-Reitz", "GGX is \"cauchy\" with surface.q = 2"},
+           {"surface.distribution=beckmann", "Beckmann is \"gaussian\""},
+           {"surface.masking=v-groove", "did you mean \"v-cavity\"?"},
+           {"accuracy.precision=float64", "did you mean \"double\"?"}}) {
+    const std::string message = error_of(kMinimal, {setting});
+    EXPECT_TRUE(contains(message, "--set " + setting + ": must be one of ") && contains(message, hint)) << message;
+  }
+  EXPECT_TRUE(error_of(kMinimal, {"surface.masking=foo"}).ends_with("integral, smith"));
+}
+
+TEST(SceneText_WithoutQuotes, IsToldToNeedThem) {
+  for (const auto& [text, word] : {std::pair("[surface]\nmasking = smith\n", "smith"),
+                                   {"surface = { n = 1.5, masking = v-cavity }", "v-cavity"},
+                                   {"surface.material = iron # a metal", "iron"},
+                                   {"surface.material = gold (Ordal)\n", "gold (Ordal)"},
+                                   {"grid.material = [iron, gold]\n", "iron"},
+                                   {"source.file = /tmp/sun.csv", "/tmp/sun.csv"}})
+    EXPECT_TRUE(error_of(text).ends_with(std::string("; a text needs quotes: \"") + word + '"')) << error_of(text);
+  for (const char* text : {"surface.n = 1,5\n", "surface.n 1.5\n", "title = \"iron\n"})
+    EXPECT_FALSE(contains(error_of(text), "needs quotes")) << error_of(text);
+  EXPECT_TRUE(contains(error_of(kMinimal, {"grid.material=[iron, gold]"}),
+                       "--set grid.material=[iron, gold]: not valid TOML: "));
+  EXPECT_TRUE(contains(error_of(kMinimal, {"surface.coating=[{material=PMMA, thickness_um=1}]"}),
+                       "; a text needs quotes: \"PMMA\""));
+  EXPECT_EQ(parse(kMinimal, {"title=[draft"}).title, "[draft");
+}
+
+TEST(SceneOverride_OfTheSky, TakesWhatBelongsToTheOldSkyAway) {
+  const std::string sky =
+      kMinimal + "[surroundings]\nprofile = \"clear-sky\"\nvapour_cm = 0.5\nair_temperature_K = 280\n";
+  const SceneValues uniform = parse(sky, {"surroundings.temperature_K=250"});
+  EXPECT_EQ(uniform.surroundings->temperature_K, 250.0);
+  EXPECT_FALSE(uniform.surroundings->profile);
+  EXPECT_TRUE(contains(error_of(sky, {"surroundings.temperature_K=250", "surroundings.vapour_cm=1"}),
+                       "--set surroundings.vapour_cm=1: needs surroundings.profile"));
+  TemporaryFile own("own_sky.csv", "zenith_deg,temperature_K\n0,200\n90,280\n");
+  EXPECT_TRUE(contains(error_of(sky, {"surroundings.profile=" + own.path(), "surroundings.air_temperature_K=none"}),
+                       own.path() +
+                           ": surroundings.vapour_cm in the scene needs surroundings.profile = \"clear-sky\" or "
+                           "\"overcast\"; surroundings.vapour_cm = none removes it"));
 }
 
 TEST(SceneOverride_OfAnAxis, IsNamedWhereItLacksAnEnd) {

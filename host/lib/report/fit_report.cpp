@@ -121,11 +121,11 @@ void add_correlations(ReportBuilder& report, const FitResult& result) {
 }
 
 void add_misfit(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
-  const std::string quality = fit::fit_quality(result.p_value);  // Fit::fit_quality may be lower
+  const std::string quality = fit::fit_quality(result.p_value);  // result.fit_quality also judges the model
   report.row("minimum", "chi_square {:.6g}, {} degrees of freedom{}{}", key("chi_square", result.chi_square),
              key("degrees_of_freedom", result.degrees_of_freedom),
              result.reduced_chi_square ? fmt::format(", reduced {:.4g}", *result.reduced_chi_square) : "",
-             result.p_value ? fmt::format(", p-value {:.3g}: {}", *result.p_value, quality) : "");
+             result.p_value ? fmt::format(", p-value {:.3g}: {}", *result.p_value, result.fit_quality) : "");
   report.value("fit_quality", quality.empty() ? Json(nullptr) : Json(result.fit_quality));
   report.value("reduced_chi_square", result.reduced_chi_square);
   report.value("p_value", result.p_value);

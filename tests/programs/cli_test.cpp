@@ -410,8 +410,11 @@ TEST_F(CommandLine, Materials_List_HasNameRangeAndSource) {
   ASSERT_EQ(report.status, 0) << report.err;
   EXPECT_EQ(text.status, 0) << text.err;
   const json materials = json::parse(report.out)["materials"];
-  EXPECT_EQ(materials.size(), 34U);
-  EXPECT_EQ(std::ranges::count(text.out, '\n'), 34);
+  EXPECT_EQ(materials.size(), 41U);
+  EXPECT_EQ(std::ranges::count(text.out, '\n'), 41);
+  const std::string one = dolp({"materials", "iron"}).out;
+  EXPECT_EQ(one, text.out.substr(0, one.size()));
+  EXPECT_EQ(std::ranges::count(one, '\n'), 1);
   EXPECT_EQ(materials.at(0), json({{"name", "iron"},
                                    {"from_um", 2.0},
                                    {"to_um", 20.0},

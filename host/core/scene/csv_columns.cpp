@@ -117,10 +117,11 @@ CsvHeader examine(std::vector<std::string> names, const std::vector<CsvColumn>& 
     const std::optional<SpectralUnit> unit = spectral_unit(name);
     if (column) ++header.known;
     if (!column && std::ranges::find(ignored, name) == ignored.end()) add_fault(unknown_column(name, known));
-    if (column && std::ranges::find(header.cells, column) != header.cells.end()) {
-      const bool is_same_unit = !unit || std::ranges::find(header.units, *unit) != header.units.end();
+    const auto first = column ? std::ranges::find(header.cells, column) : header.cells.end();
+    if (first != header.cells.end()) {
+      const bool is_other_unit = unit && header.units[static_cast<std::size_t>(first - header.cells.begin())] != *unit;
       const std::string& more = known[*column].if_twice;
-      if (is_same_unit)
+      if (!is_other_unit)
         add_fault(fmt::format("column \"{}\" appears twice{}", known[*column].name, more.empty() ? "" : "; " + more));
       column.reset();
     }

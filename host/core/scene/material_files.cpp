@@ -115,7 +115,7 @@ constexpr const char* kReflectanceHint =
     "; if the file has a reflectance: a diffuse reflectance goes in surface.diffuse, one number from 0 to 1";
 
 /// True if a file may be a spectrum of a reflectance library: ECOSTRESS, USGS, MODTRAN.
-bool has_word_of_reflectances(std::string_view text) {
+bool mentions_reflectance(std::string_view text) {
   constexpr std::size_t kHeadBytes = 4096;
   const std::string head = lower_case(text.substr(0, kHeadBytes));
   return std::ranges::any_of(std::array{"reflectance", "albedo", "splib"},
@@ -180,7 +180,7 @@ void parse_csv(Material& material, IndexRows& rows, std::string_view text) {
     read_tables(material, rows, row);
   } catch (const InputError& error) {
     const std::string what = error.what();
-    if (!has_word_of_reflectances(text) || what.ends_with(kReflectanceHint)) throw;
+    if (!mentions_reflectance(text) || what.ends_with(kReflectanceHint)) throw;
     throw InputError(what + kReflectanceHint);
   }
 }

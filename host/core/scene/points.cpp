@@ -79,7 +79,7 @@ std::vector<CsvColumn> csv_columns(const std::vector<ColumnRule>& rules) {
 }
 
 /// The words above the first row of numbers or names, and those of this row.
-std::vector<std::string> words_of_header(std::string_view text) {
+std::vector<std::string> header_words(std::string_view text) {
   std::vector<std::string> words;
   bool is_comment = true;
   while (is_comment && !text.empty()) {
@@ -240,7 +240,7 @@ Points parse_points(const std::string& text, const std::string& path_name, Point
   Points points;
   points.name = input_name(path_name);
   CsvReader row(text, points.name, {.separator = std::nullopt, .has_blank_lines = false});
-  const std::vector<ColumnRule> rules = column_rules(kind, words_of_header(text));
+  const std::vector<ColumnRule> rules = column_rules(kind, header_words(text));
   const CsvColumns columns = CsvColumns::first_of(row, csv_columns(rules), results);
   points.header_line = row.line_number();
   add_columns(columns, rules, points);

@@ -86,7 +86,7 @@ std::vector<OptionRow> option_rows() {
        "scene, or session of the window (TOML); - is stdin; without it, paint at night"},
       {"verify lookup!", "TABLE", &Options::table_path, "table file (.nc) that dolp table wrote"},
       {"merge!", "SHARD", &Options::shards, "all shards of one table (.nc)"},
-      {"materials", "NAME", &Options::material, "n and k of this one"},
+      {"materials", "NAME", &Options::material, "only this one"},
       {"keys", "KEY", &Options::key, "only this one, or the keys of a table, e.g. surface"},
       {"completion!", "FORM", &Options::completion, "what to print",
        CLI::IsMember({"bash", "zsh", "fish", "words", "man"})},
@@ -180,13 +180,12 @@ CLI::Option* add_option(CLI::App& command, const OptionRow& row, Options& option
       row.value);
 }
 
-void add_conditions(CLI::App& verify, CLI::App& materials) {
+void add_conditions(CLI::App& verify) {
   for (const char* of_table : {"--samples", "--seed", "--named-files"})
     verify.get_option(of_table)->needs(verify.get_option("TABLE"));
   for (const char* of_device : {"--device", "--precision", "--evaluator", "--tolerance", "--all"})
     verify.get_option(of_device)->needs(verify.get_option("--hard-cases"));
   verify.get_option("--hard-cases")->excludes(verify.get_option("TABLE"));
-  materials.get_option("NAME")->needs(materials.get_option("--at"));
 }
 
 }  // namespace
@@ -211,7 +210,7 @@ std::unique_ptr<CLI::App> command_line(Options& options) {
       }
     }
   }
-  add_conditions(*app->get_subcommand("verify"), *app->get_subcommand("materials"));
+  add_conditions(*app->get_subcommand("verify"));
   return app;
 }
 

@@ -136,11 +136,13 @@ int run_keys(const Options& options) {
 }
 
 int run_materials(const Options& options) {
-  if (!options.material.empty()) return show_material(options);
-  if (!options.wavelength_um.empty()) return show_all_materials(options);
+  const bool is_one = !options.material.empty();
+  if (!options.wavelength_um.empty()) return is_one ? show_material(options) : show_all_materials(options);
+  const std::string wanted = is_one ? material(options.material).name : "";
   Report report;
   Json list = Json::array();
   for (const BuiltInMaterial& material : materials()) {
+    if (is_one && material.name != wanted) continue;
     report.text += fmt::format("{:<46}  {:>7} to {:<8} um  {}\n", material.name, material.from_um, material.to_um,
                                material.source);
     list.push_back({{"name", material.name},

@@ -83,6 +83,7 @@ TEST(IndexFile_OfEachForm, HasTheSameValues) {
            {"conjugate.csv", "wavelength_um,eps_1,eps_2\n10.6,3.0208,-2.5806\n"},
            {"names and units.dat", "wavelength  n  k\n   (um)    -  -\n10.6 1.87 0.69\n"},
            {"both.dat", "wavelength wavenumber n k\n(um) (cm-1) - -\n10.6 943.4 1.87 0.69\n"},
+           {"both in one line.csv", "n,wavelength_um,wavenumber_cm,k\n1.87,10.6,943.4,0.69\n"},
            {"named.lnk", "# lambda[um] n k\n1 3.3\n10.6 1.87 0.69\n"},
            {"bare.LNK", "10.6 1.87 0.69\n"},
        }) {

@@ -89,7 +89,7 @@ TEST(Material_BuiltIn, IsWithinTheThinningOfTheWholeRecord) {
       {"water 25C", 1.1786, 0.07232},
       {"Ge germanium", 4.0036, 0.0},
       {"Si3N4 silicon nitride film", 1.9402, 1.5458},
-      {"ZnS", 2.1895, 0.002},
+      {"ZnS sulfide", 2.1895, 0.002},
       {"CaF2 calcium fluoride (Li)", 1.2811, 0.0},
       {"CaF2 calcium fluoride (Kaiser)", 1.286, 0.003597},
       {"kaolinite pellet", 1.5555, 0.46781},
@@ -146,6 +146,7 @@ TEST(Material_NameUnknown, NamesTheNearest) {
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface.material=aluminium"}), "aluminium (Rakic), aluminium (Ordal)"));
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface.material=sea water"}), "known: water 25C"));
   EXPECT_TRUE(contains(error_of(kMinimal, {"surface.material=kaolinit"}), "known: kaolinite pellet"));
+  EXPECT_TRUE(contains(error_of(kMinimal, {"surface.material=zinc sulfide"}), "known: zinc selenide, ZnS sulfide"));
 }
 
 TEST(Material_NameOfNoBuiltIn, SaysHowToGiveNAndK) {

@@ -365,6 +365,7 @@ PYBIND11_MODULE(_native, module) {
       .def("toml", [](const dolp::Scene& scene) { return text_of(scene.toml()); })
       .def("values", &values_of)
       .def("value", [](const dolp::Scene& scene, const py::str& key) { return value_of_key(scene, bytes_of(key)); })
+      .def("model_advice", &dolp::Scene::model_advice)
       .def("labels", [](const dolp::Scene& scene) { return labels_of(scene.labels()); })
       .def("refractive_index", &dolp::Scene::refractive_index)
       .def("__deepcopy__", [](const dolp::Scene& scene, const py::dict&) { return scene; })

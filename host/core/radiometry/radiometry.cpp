@@ -17,6 +17,8 @@ namespace {
 using std::numbers::pi;
 
 constexpr double kRightAngle_deg = 90.0;
+constexpr std::size_t kMostGroups = 8;
+constexpr double kNegligibleDolpChange = 1e-4;  // may_change_dolp() is false below it
 
 using enum Quantity;
 
@@ -150,7 +152,21 @@ PointResult grazing_limit(const SceneModel& scene, const SpectralRule& rule, std
   return result;
 }
 
+double dolp_with(const PointResult& result, double more_i, double more_q) {
+  const double i = result[kStokesI] + more_i;
+  const double q = result[kStokesQ] + more_q;
+  const double u = result[kStokesU];
+  return i > 0.0 ? std::min((u == 0.0 ? std::abs(q) : std::hypot(q, u)) / i, 1.0) : 1.0;
+}
+
 }  // namespace
+
+std::vector<std::size_t> middle_samples(std::size_t samples) {
+  const std::size_t groups = std::min(samples, kMostGroups);
+  std::vector<std::size_t> middles;
+  for (std::size_t i = 0; i < groups; ++i) middles.push_back((2 * i + 1) * samples / (2 * groups));
+  return middles;
+}
 
 Radiometry::Radiometry(const SceneModel& scene, const KeptEffects& kept, double dropped,
                        const std::shared_ptr<const SkyBasis>& sky, TransmissionIntegral transmission)
@@ -166,6 +182,16 @@ Radiometry::Radiometry(const SceneModel& scene, const KeptEffects& kept, double 
   if (!kept.diffuse) scene_.surface.diffuse = 0.0;
   if (kept.surroundings && kept.profile) basis_ = sky ? sky : sky_basis(scene, {{}});
   sky_ = sky_weights(kept_rule_, basis_.get());
+  nets_.resize(middle_samples(kept_rule_.samples.size()).size());
+  for (std::size_t j = 0; j < kept_rule_.samples.size(); ++j) {
+    const SpectralSample& sample = kept_rule_.samples[j];
+    Net& net = nets_[j * nets_.size() / kept_rule_.samples.size()];
+    net.thermal += emission_model(scene) == EmissionModel::kFresnel ? sample.surroundings : sample.excess;
+    net.source += scene.geometry.mode == Mode::kHemispherical ? sample.irradiance : 0.0;
+    emitted_ += sample.emitted;
+  }
+  scale_ = scene.path ? scene.path->transmittance : 1.0;
+  if (scene.geometry.mode == Mode::kBistatic) scale_ /= pi;
   optics_ = optics_with(rule_.indices());
 }
 
@@ -215,6 +241,35 @@ PointResult Radiometry::bistatic_point(const Direction& view, double cos_theta_i
     return result;
   }
   return finished(assemble(moments, view.cos_theta, optics, cos_theta_i, scattered));
+}
+
+bool Radiometry::may_change_dolp(const PointResult& result, double cos_theta) const {
+  const bool is_judged = scene_.surface.scattering == Scattering::kSingle && scene_.surface.specular > 0.0;
+  if (!is_judged || !promises_dolp(result.status) || std::isnan(result[kAlbedo])) return false;
+  if (emission_model(scene_) == EmissionModel::kDirect) return true;
+  double most = 0.0;
+  for (const Net& net : nets_) most += std::abs(net.thermal + cos_theta * net.source);
+  most *= scale_ * scene_.surface.specular * std::abs(1.0 - result[kAlbedo]);
+  return most * (1.0 + result[kDolp]) > kNegligibleDolpChange * (result[kStokesI] - most);
+}
+
+void Radiometry::judge_dolp(PointResult& result, double cos_theta, std::span<const FurtherLight> further) const {
+  const double lost = scene_.surface.specular * (1.0 - result[kAlbedo]);
+  double i = 0.0;
+  double q = 0.0;
+  for (std::size_t j = 0; j < nets_.size(); ++j) {
+    const FurtherLight& light = further[std::min(j, further.size() - 1)];
+    const double net = lost * (nets_[j].thermal + cos_theta * nets_[j].source);
+    i += net * light.i;
+    q += net * light.q;
+  }
+  if (emission_model(scene_) == EmissionModel::kDirect) {  // such a surface emits less than it absorbs
+    i += emitted_ * (1.0 - result[kRhoI] - 0.5 * (result[kEmissivityS] + result[kEmissivityP]));
+    q -= emitted_ * (result[kRhoQ] + 0.5 * (result[kEmissivityS] - result[kEmissivityP]));
+  }
+  result.model_change_dolp = std::abs(dolp_with(result, scale_ * i, scale_ * q) - result[kDolp]);
+  const double allowed = std::max(kLargestModelChange * result[kDolp], kLeastModelChangeDolp);
+  if (result.model_change_dolp > allowed) result.status |= kModelInaccurate;
 }
 
 PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_theta, const Optics& optics,

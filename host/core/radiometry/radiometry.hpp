@@ -5,6 +5,7 @@
 
 #include <dolp/results.hpp>
 #include "model/direction.hpp"
+#include "model/further_light.hpp"
 #include "model/moments.hpp"
 #include "model/scattering.hpp"
 #include "radiometry/diffuse.hpp"
@@ -13,6 +14,10 @@
 #include "spectrum/spectral_rule.hpp"
 
 namespace dolp {
+
+/// Neighbouring spectral samples form up to eight groups. Each group has one FurtherLight, computed for the sample in
+/// its middle. Returns the middle sample of each group, for a rule with `samples` samples.
+std::vector<std::size_t> middle_samples(std::size_t samples);
 
 /// Converts moments to the quantities that a sensor measures.
 /// Equation: the light that leaves the surface has I = pi B (1 - rho_I) + X rho_I and Q = (X - pi B) rho_Q. B is the
@@ -56,7 +61,21 @@ class Radiometry {
                              const Optics& optics, std::span<const Scattered> scattered) const;
   const Optics& optics() const { return optics_; }
 
+  /// True if light that single scattering loses, or that the masking creates, may change DOLP by more than 1e-4.
+  bool may_change_dolp(const PointResult& result, double cos_theta) const;
+
+  /// Sets model_change_dolp of a result of point() or bistatic_point(), and the status bit that follows from it. The
+  /// light that a surface with the albedo A loses, 1 - A, is reflected as `further` tells.
+  /// Shape: one FurtherLight per group of middle_samples(), or one for all groups.
+  void judge_dolp(PointResult& result, double cos_theta, std::span<const FurtherLight> further) const;
+
  private:
+  /// Exitance that the surroundings add to the reflected light minus what Kirchhoff's law takes from the emission.
+  struct Net {
+    double thermal = 0.0;
+    double source = 0.0;  ///< irradiance of the source, in hemispherical mode
+  };
+
   PointResult assemble(std::span<const Moments> moments, double cos_theta, const Optics& optics, double cos_theta_i,
                        std::span<const Scattered> scattered) const;
 
@@ -71,6 +90,9 @@ class Radiometry {
   SpectralRule rule_;
   SpectralRule kept_rule_;                 ///< rule_, with 0 for the radiation of dropped effects
   std::shared_ptr<const SkyBasis> basis_;  ///< functions of the sky; null if the scene has no sky profile or drops it
+  std::vector<Net> nets_;                  ///< for each group of middle_samples()
+  double emitted_ = 0.0;                   ///< exitance of a black body, summed over the samples
+  double scale_ = 1.0;                     ///< what turns an exitance at the surface into I at the sensor
   std::vector<SkyWeights> sky_;            ///< for each spectral sample, the weights of the functions in basis_
   Optics optics_;
 };

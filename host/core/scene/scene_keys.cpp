@@ -262,7 +262,8 @@ std::vector<SceneKey> radiation_keys() {
       choice(
           "emission.model", Emission().model,
           "moments: emissivity 1 - rho of the rough surface; fresnel: emissivity 1 - R of the smooth surface; direct: "
-          "light that facets emit straight to the viewer (only masking smith or v-cavity)",
+          "light that facets emit straight to the viewer, without the light that one facet emits and another reflects; "
+          "for comparison with Masuda et al. 1988 (only masking smith or v-cavity)",
           [](auto& s) { return s.emission ? &s.emission->model : nullptr; }),
       flag("emission.bracket",
            "adds dolp_low and dolp_high, which enclose the DOLP that all bounces of light give (only masking smith "

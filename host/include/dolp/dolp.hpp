@@ -103,6 +103,7 @@ class DOLP_EXPORT Scene {
   const AxisLabels& labels() const;
   /// One line for each suspicious value (nm instead of um) and for each assumption (k = 0, if a file lacks k).
   std::vector<std::string> remarks() const;
+  std::string model_advice() const;  ///< the keys to change if entries have the status bit kModelInaccurate
   /// n and k of the surface at a wavelength. Errors: InputError if n or k is unknown at this wavelength.
   std::pair<double, double> refractive_index(double wavelength_um) const;
 

@@ -27,6 +27,8 @@ inline constexpr NumberRange kWavelengthUmRange{0.1, 1e4};
 inline constexpr double kLikelyNanometres = 1000.0;
 /// A temperature below this number is probably in degrees Celsius instead of K, because few surfaces are so cold.
 inline constexpr double kLikelyCelsius_K = 60.0;
+/// If all zeniths in degrees are below this number, they are probably in radians.
+inline constexpr double kLikelyRadians = 1.6;
 inline constexpr NumberRange kToleranceRange{1e-10, 1e-2};
 inline constexpr NumberRange kAxisCountRange{1.0, 1e6};
 inline constexpr NumberRange kLabelRange{0.0, 1e6};  ///< positions in the list of labels (names) of an axis

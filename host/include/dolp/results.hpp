@@ -16,6 +16,9 @@ struct PointResult {
   /// Estimated error of I, as a fraction of I, due to light that the model loses or creates. If it is above
   /// kLargestModelChange, the status has kModelInaccurate. Files do not contain this number.
   double model_change = 0.0;
+  /// Estimated error of DOLP (from 0 to 1) due to the same light. The status has kModelInaccurate if it is above
+  /// kLargestModelChange times DOLP and above kLeastModelChangeDolp. Estimates below 1e-4 may count as 0.
+  double model_change_dolp = 0.0;
 
   PointResult() { values.fill(std::numeric_limits<double>::quiet_NaN()); }
   double& operator[](Quantity quantity) { return values[quantity]; }

@@ -12,13 +12,17 @@ enum Status : std::uint32_t {
   kOutsideModelDomain = 4,           ///< the entry is outside the model's domain; undefined quantities are NaN
   kIntensityNotPositive = 8,         ///< I <= 0: such radiation does not exist
   kRhoToleranceNotMet = 16,          ///< rho misses the scene's tolerance; DOLP may still meet it
-  /// The estimated error of I is above 5 %, because single scattering loses light or a masking function creates light.
-  /// If no other bit is set, the numbers are right for the model, but the model is wrong for the surface.
+  /// The estimated error of I is above 5 % of I, or that of DOLP above 5 % of DOLP and above 0.001, because single
+  /// scattering loses light or a masking function creates light. If no other bit is set, the numbers are right for the
+  /// model, but the model is wrong for the surface.
   kModelInaccurate = 32,
 };
 
-/// If the estimated error of I is above this fraction of I, the status gets the bit kModelInaccurate.
+/// If the estimated error of I or of DOLP is above this fraction of I or DOLP, the status gets the bit
+/// kModelInaccurate.
 inline constexpr double kLargestModelChange = 0.05;
+/// Smaller errors of DOLP (0.1 points) never set the bit kModelInaccurate, even if DOLP is nearly 0.
+inline constexpr double kLeastModelChangeDolp = 1e-3;
 
 struct StatusBit {
   std::uint32_t mask;

@@ -73,6 +73,7 @@ std::vector<double> Scene::numbers(std::string_view key) const {
 const AxisLabels& Scene::labels() const { return impl_->scene.labels; }
 
 std::vector<std::string> Scene::remarks() const { return remarks_on(impl_->scene); }
+std::string Scene::model_advice() const { return dolp::model_advice(impl_->scene); }
 
 std::pair<double, double> Scene::refractive_index(double wavelength_um) const {
   const Material& used = impl_->scene.surface.material;

@@ -20,7 +20,6 @@ constexpr std::array kObservables = {Observable::kDolp, Observable::kQOverI, Obs
                                      Observable::kEmissivityP};
 constexpr NumberRange kFractionOfOneRange{-1.0, 1.0};
 constexpr NumberRange kUncertaintyRange{0.0, std::numeric_limits<double>::infinity(), NumberRange::Ends::kOpenBelow};
-constexpr double kLikelyRadians = 1.6;  // zenith angles are probably in radians if all are below this
 constexpr double kLikelyPercent = 0.9;  // a DOLP of at least this is probably in percent; no surface has so much
 
 const std::vector<CsvColumn>& known_columns() {

@@ -13,6 +13,7 @@
 #include "run/estimates.hpp"
 #include "run/lookup_run.hpp"
 #include "run/prediction.hpp"
+#include "run/scene_remarks.hpp"
 #include "run/scene_run.hpp"
 
 namespace dolp {
@@ -23,7 +24,7 @@ struct PlannedRun {
   EffectPlan plan;
   std::vector<Effect> effects;
   Looked looked;  ///< entries and wavelengths from which add_influences() computed influences
-  double model_change = 0.0;
+  ModelChange model_change;
   RunPrediction run;
   double rule_digits = 0.0;
   int most_nodes = 0;                  ///< largest number of nodes per slope interval or azimuth arc; 0 without moments
@@ -133,10 +134,11 @@ ReportBuilder effect_report(const Effect& row) {
   return report;
 }
 
-void add_model_change(ReportBuilder& report, double change) {
-  report.line("  model: single scattering, or a masking that creates light, changes I by up to about {:.2g} %{}",
-              kPercent * change, change > kLargestModelChange ? ": status 32" : "");
-  report.value("model_change", change);
+void add_model_change(ReportBuilder& report, const SceneValues& scene, const ModelChange& change) {
+  report.line("  model: {}{}", model_change_text(change), change.status != 0 ? ": status 32" : "");
+  if (change.status != 0) report.line("    {}", model_advice(scene));
+  add_direct_emission(report, scene, change);
+  report.values({{"model_change", change.i}, {"model_change_dolp", change.dolp_points}});
 }
 
 void add_effects(ReportBuilder& report, const PlannedRun& plan) {
@@ -283,7 +285,7 @@ ReportBuilder plan_report(const SceneValues& scene, const std::string& device, E
              key("entries", plan.run.entries), key("spectral_samples", plan.run.spectral_samples));
   report.line("");
   add_effects(report, plan);
-  add_model_change(report, plan.model_change);
+  add_model_change(report, scene, plan.model_change);
   report.line("");
   report.row("dropped", "{}", dropped_text(plan.plan, scene.accuracy.tolerance));
   report.row("output", "{}", output_text(scene, plan.plan));

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include <dolp/status.hpp>
+#include "run/scene_remarks.hpp"
 #include "run/scene_table.hpp"
 
 namespace dolp {
@@ -96,6 +97,20 @@ void add_title(ReportBuilder& report, const SceneValues& scene) {
   report.row_if(!changed.empty(), "changed", "{}", key("changed", changed));
 }
 
+std::string model_change_text(const ModelChange& change) {
+  return fmt::format(
+      "light that single scattering loses, or that the masking creates, changes I by up to about {:.2g} % and DOLP by "
+      "up to about {:.2g} points",
+      kPercent * change.i, change.dolp_points);
+}
+
+void add_direct_emission(ReportBuilder& report, const SceneModel& scene, const ModelChange& change) {
+  const bool is_direct = scene.emission && scene.emission->model == EmissionModel::kDirect;
+  report.row_if(is_direct, "emission",
+                "direct: leaves out what one facet emits and another reflects, up to {:.2g} % of I",
+                kPercent * change.i);
+}
+
 ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, const std::optional<ScatteringGap>& gap,
                          const std::string& shape, const std::string& path) {
   const RunSummary& summary = run.summary;
@@ -124,12 +139,10 @@ ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, const 
                 kPoints * (gap ? gap->dolp : 0.0), gap ? gap->looked.text() : "");
   report.value("scattering_gap", gap ? std::optional(gap->dolp) : std::nullopt);
   add_status(report, summary);
-  report.row_if(summary.count(kModelInaccurate) > 0, "model",
-                "up to {:.0f} % of I is light that single scattering loses or the masking creates; {}",
-                kPercent * summary.model_change,
-                scene.surface.masking == Masking::kVCavity ? "surface.scattering = multiple follows it"
-                                                           : "masking v-cavity with scattering multiple follows it");
-  report.value("model_change", summary.model_change);
+  report.row_if(summary.count(kModelInaccurate) > 0, "model", "{}", model_change_text(summary.model_change));
+  report.row_if(summary.count(kModelInaccurate) > 0, "", "{}", model_advice(scene));
+  report.values({{"model_change", summary.model_change.i}, {"model_change_dolp", summary.model_change.dolp_points}});
+  add_direct_emission(report, scene, summary.model_change);
   add_energy(report, summary, run.plan.kept.moments);
   const EvaluationReport& evaluation = run.evaluation;
   const bool is_faster_on_cpu =

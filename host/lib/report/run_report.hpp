@@ -14,7 +14,13 @@
 namespace dolp {
 
 inline constexpr const char* kModelInaccurateText =
-    "single scattering, or a masking that creates light, changes I by an estimated more than 5 %";
+    "light that single scattering loses, or that the masking creates, changes I or DOLP by an estimated more than 5 %";
+
+/// "... changes I by up to about 6 % and DOLP by up to about 1.2 points"
+std::string model_change_text(const ModelChange& change);
+
+/// What direct emission leaves out, as a row of the report.
+void add_direct_emission(ReportBuilder& report, const SceneModel& scene, const ModelChange& change);
 
 /// The report of a run that wrote `path`. `gap`: result of scattering_gap(). `shape`: for example "200 points".
 ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, const std::optional<ScatteringGap>& gap,

@@ -103,12 +103,15 @@ PointResult sum_of(std::span<const PointResult> results, std::span<const double>
   PointResult sum;
   for (const Quantity stokes : {kStokesI, kStokesQ, kStokesU}) sum[stokes] = 0.0;
   double changed = 0.0;
+  double dolp_changed = 0.0;
   for (std::size_t j = 0; j < results.size(); ++j) {
     for (const Quantity stokes : {kStokesI, kStokesQ, kStokesU}) sum[stokes] += weights[j] * results[j][stokes];
     changed += weights[j] * results[j].model_change * std::abs(results[j][kStokesI]);
+    dolp_changed += weights[j] * results[j].model_change_dolp * std::abs(results[j][kStokesI]);
     sum.status |= results[j].status;
   }
   sum.model_change = changed / std::abs(sum[kStokesI]);
+  sum.model_change_dolp = dolp_changed / std::abs(sum[kStokesI]);
   sum[kDolp] = std::hypot(sum[kStokesQ], sum[kStokesU]) / sum[kStokesI];
   return sum;
 }
@@ -199,11 +202,9 @@ std::optional<ScatteringGap> scattering_gap(const SceneValues& scene, const Scen
   return dolp ? std::optional(ScatteringGap{*dolp, looked_at(sample)}) : std::nullopt;
 }
 
-double estimated_model_change(const SceneValues& scene, const SceneEntries& entries) {
-  double largest = 0.0;
-  for (const PointResult& result : results_of(sample_of(scene, entries))) {
-    if (promises_dolp(result.status)) largest = std::max(largest, result.model_change);
-  }
+ModelChange estimated_model_change(const SceneValues& scene, const SceneEntries& entries) {
+  ModelChange largest;
+  for (const PointResult& result : results_of(sample_of(scene, entries))) largest.add(result);
   return largest;
 }
 

@@ -9,6 +9,7 @@
 
 #include "model/scene_entry.hpp"
 #include "plan/effects.hpp"
+#include "run/run_summary.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp {
@@ -40,7 +41,7 @@ struct ScatteringGap {
 std::optional<ScatteringGap> scattering_gap(const SceneValues& scene, const SceneEntries& entries,
                                             const EffectPlan& plan);
 
-/// The largest PointResult::model_change of a few entries for which promises_dolp() holds.
-double estimated_model_change(const SceneValues& scene, const SceneEntries& entries);
+/// The ModelChange of a few entries.
+ModelChange estimated_model_change(const SceneValues& scene, const SceneEntries& entries);
 
 }  // namespace dolp

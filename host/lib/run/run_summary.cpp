@@ -19,6 +19,7 @@ constexpr std::size_t kManyMoments = std::size_t{1} << 22U;
 // The check may take 1 / kShare of the run. A checked moment is assumed to take as long as kCostOfOne others.
 constexpr std::size_t kShare = 50;
 constexpr std::size_t kCostOfOne = 4;
+constexpr double kPointsInAll = 100.0;  // percentage points of DOLP = 1
 
 double ratio(double difference, double bounds) {
   if (!(std::abs(difference) > 0.0)) return 0.0;  // equal values, or NaN
@@ -58,7 +59,9 @@ void for_each_number(Summary& s, const Use& use) {
     use(range->entries);
     for (auto* ends : {&range->theta_deg, &range->sigma}) use(ends->first), use(ends->second);
   }
-  use(s.model_change);
+  use(s.model_change.i);
+  use(s.model_change.dolp_points);
+  use(s.model_change.status);
   use(s.check.entries);
   use(s.check.worst_ratio);
   use(s.radiometry_s);
@@ -75,7 +78,7 @@ void add_result(RunSummary& summary, double theta_deg, double sigma, const Point
     summary.status[bit] += (result.status & kStatusBits[bit].mask) != 0 ? 1 : 0;
   if ((result.status & kNoDolpPromised) == 0) raise(summary.worst_error, result[Quantity::kErrorEstimate]);
   if ((result.status & kOutsideModelDomain) == 0) raise(summary.worst_rho_error, result[Quantity::kRhoErrorEstimate]);
-  if (promises_dolp(result.status)) summary.model_change = std::max(summary.model_change, result.model_change);
+  summary.model_change.add(result);
   if (std::isnan(result[Quantity::kAlbedo])) return;
   widen(summary.albedo, summary.albedos++ == 0, {result[Quantity::kAlbedo], result[Quantity::kAlbedo]});
   const EnergyRange here{1, {theta_deg, theta_deg}, {sigma, sigma}};
@@ -95,6 +98,17 @@ void SelfCheck::add(const PointResult& result, const PointResult& again) {
   const double rho = rho_bound(result) + rho_bound(again);
   for (const Quantity quantity : {Quantity::kRhoI, Quantity::kRhoQ})
     worst_ratio = std::max(worst_ratio, ratio(difference(quantity), rho));
+}
+
+void ModelChange::add(const PointResult& result) {
+  if (promises_dolp(result.status))
+    add({result.model_change, kPointsInAll * result.model_change_dolp, result.status & kModelInaccurate});
+}
+
+void ModelChange::add(const ModelChange& other) {
+  i = std::max(i, other.i);
+  dolp_points = std::max(dolp_points, other.dolp_points);
+  status |= other.status;
 }
 
 void SelfCheck::add(const SelfCheck& other) {
@@ -136,7 +150,7 @@ void RunSummary::add(const RunSummary& other) {
   albedos += other.albedos;
   add_range(loses, other.loses);
   add_range(gains, other.gains);
-  model_change = std::max(model_change, other.model_change);
+  model_change.add(other.model_change);
   check.add(other.check);
   radiometry_s += other.radiometry_s;
   work += other.work;

@@ -42,6 +42,16 @@ struct EnergyRange {
   std::pair<double, double> sigma;
 };
 
+/// How much further bounces change some entries. Entries for which promises_dolp() is false do not count.
+struct ModelChange {
+  double i = 0.0;            ///< largest PointResult::model_change
+  double dolp_points = 0.0;  ///< largest PointResult::model_change_dolp, in percentage points
+  std::uint32_t status = 0;  ///< kModelInaccurate if an entry has this bit
+
+  void add(const PointResult& result);
+  void add(const ModelChange& other);
+};
+
 struct RunSummary {
   std::size_t entries = 0;
   std::array<std::size_t, kStatusBits.size()> status{};
@@ -50,7 +60,7 @@ struct RunSummary {
   std::size_t albedos = 0;
   std::pair<double, double> albedo;
   EnergyRange loses, gains;
-  double model_change = 0.0;  ///< largest PointResult::model_change of entries for which promises_dolp() holds
+  ModelChange model_change;
   SelfCheck check;
   double radiometry_s = 0.0;
   Work work;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -26,6 +27,11 @@ constexpr double kUsualSpacings = 10.0;
 // Rows get a remark if CoarseRows::change (see below) is at least kCoarseChange. Its divisor is at least kLeastPart.
 constexpr double kCoarseChange = 0.05;
 constexpr double kLeastPart = 0.01;
+
+// Fewer zeniths, or zeniths only below kLeastLikelyRadians, may be meant as degrees near normal incidence.
+constexpr std::size_t kFewAngles = 4;
+constexpr double kLeastLikelyRadians = 0.5;
+constexpr double kSteepSigma = 2.0;
 
 using Interval = std::pair<double, double>;
 
@@ -149,13 +155,40 @@ class Remarks {
   }
 
   void add_mode() {
-    if (scene_.geometry.mode == Mode::kBistatic && !scene_.source)
-      add("geometry.mode", "without [source] nothing depends on theta, the zenith of the source");
+    if (scene_.geometry.mode == Mode::kBistatic) {
+      if (!scene_.source) add("geometry.mode", "without [source] nothing depends on theta, the zenith of the source");
+      return;
+    }
+    if (scene_.source)
+      add(source_key(),
+          "mode hemispherical adds the light that the surface reflects from the source into all directions; a camera "
+          "needs geometry.mode = \"bistatic\"");
+    for (const char* key : {"geometry.view_zenith_deg", "geometry.relative_azimuth_deg"})
+      if (scene_.document->find(key))
+        add(key, "has no effect: mode hemispherical has its view at grid.theta_deg; mode bistatic uses it");
+  }
+
+  void add_angles_and_slopes() {
+    const std::vector<double>& theta_deg = scene_.grid[Axis::kTheta];
+    if (theta_deg.size() >= kFewAngles && std::ranges::max(theta_deg) < kLikelyRadians &&
+        std::ranges::max(theta_deg) > kLeastLikelyRadians)
+      add("grid.theta_deg", fmt::format("is at most {} degrees; is it in radians?", std::ranges::max(theta_deg)));
+    const double roughest = std::ranges::max(scene_.grid[Axis::kSigma]);
+    if (roughest > kSteepSigma)
+      add(scene_.document->find("grid.sigma") ? "grid.sigma" : "surface.sigma",
+          fmt::format("{} is a slope of {:.0f} degrees, not a height; real surfaces have less than {:g}", roughest,
+                      std::atan(roughest) * 180.0 / std::numbers::pi, kSteepSigma));
   }
 
   std::vector<std::string> lines() && { return std::move(lines_); }
 
  private:
+  const char* source_key() const {
+    for (const char* key : {"source.preset", "source.file", "source.relative_irradiance"})
+      if (scene_.document->find(key)) return key;
+    return "source.irradiance";
+  }
+
   const char* surroundings_key() const {
     return scene_.names.profile.empty() ? "surroundings.temperature_K" : "surroundings.profile";
   }
@@ -228,12 +261,35 @@ class Remarks {
 
 }  // namespace
 
+std::string model_advice(const SceneModel& scene) {
+  const Surface& surface = scene.surface;
+  const bool is_direct = scene.emission && scene.emission->model == EmissionModel::kDirect;
+  const bool has_bracket = scene.emission && scene.emission->has_bracket;
+  const bool can_have_bracket =
+      scene.emission && scene.emission->model != EmissionModel::kFresnel && scene.geometry.mode == Mode::kHemispherical;
+  if (surface.is_bare()) {
+    std::vector<std::string> keys;
+    if (surface.masking != Masking::kVCavity) keys.emplace_back("surface.masking = \"v-cavity\"");
+    keys.emplace_back("surface.scattering = \"multiple\"");
+    if (is_direct) keys.emplace_back("emission.model = \"moments\"");
+    if (has_bracket) keys.emplace_back("emission.bracket = false");
+    return fmt::format("{} to follow all bounces", fmt::join(keys, ", "));
+  }
+  const std::string none = "no model follows all bounces of a coating or of measured reflectances";
+  if (has_bracket) return none + "; dolp_low and dolp_high enclose the DOLP with all bounces";
+  if (!can_have_bracket) return none;
+  const bool has_masking = keeps_projected_area(surface.masking);
+  return fmt::format("{}; emission.bracket = true{} gives limits of DOLP", none,
+                     has_masking ? "" : " with surface.masking = \"smith\" or \"v-cavity\"");
+}
+
 std::vector<std::string> remarks_on(const SceneValues& scene) {
   Remarks remarks(scene);
   remarks.add_wavelengths();
   remarks.add_temperatures();
   remarks.add_files();
   remarks.add_mode();
+  remarks.add_angles_and_slopes();
   return std::move(remarks).lines();
 }
 

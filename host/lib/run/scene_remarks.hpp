@@ -11,4 +11,8 @@ namespace dolp {
 /// begins like an error message, with the scene file and the line of the key. Domain: a scene that was read from text.
 std::vector<std::string> remarks_on(const SceneValues& scene);
 
+/// The keys to change if entries of the scene have the status bit kModelInaccurate. Names only what the scene allows:
+/// no model follows all bounces of a coating or of measured reflectances. Domain: scattering is single.
+std::string model_advice(const SceneModel& scene);
+
 }  // namespace dolp

@@ -12,9 +12,11 @@
 #include "base/stopwatch.hpp"
 #include "evaluate/planned_moments.hpp"
 #include "model/angles.hpp"
+#include "plan/further_light.hpp"
 #include "plan/moments_plan.hpp"
 #include "plan/refinement.hpp"
 #include "run/closed_forms.hpp"
+#include "run/groove_table.hpp"
 #include "run/part_requests.hpp"
 #include "run/table_scene.hpp"
 
@@ -47,7 +49,8 @@ struct RunContext {
   const Spectra& spectra;
   ModelEvaluator* evaluator;
   std::shared_ptr<const ResponseBasis> basis;
-  RunSummary& summary;  ///< summary of the run so far
+  RunSummary& summary;                         ///< summary of the run so far
+  std::shared_ptr<const GrooveTable> grooves;  ///< null for a list of points
 };
 
 struct EvaluatorResults {
@@ -62,7 +65,9 @@ class MemberResults {
  public:
   MemberResults(const RunContext& context, const Selection& selection, const PartRequests& requests,
                 const EvaluatorResults& evaluated)
-      : context_(context), selection_(selection), requests_(requests), evaluated_(evaluated) {}
+      : context_(context), selection_(selection), requests_(requests), evaluated_(evaluated) {
+    if (context.grooves) grooves_.emplace(*context.grooves, selection.part);
+  }
 
   PointResult operator()(std::size_t member) {
     const SceneEntry entry = selection_[member];
@@ -82,12 +87,28 @@ class MemberResults {
     }
     const Radiometry::Optics& optics = entry.index ? own_optics_ : radiometry.optics();
     const std::span<const Moments> moments = moments_of(member, entry, direction, optics.facets);
-    if (context_.scene.geometry.mode != Mode::kBistatic) return radiometry.point(direction, moments, optics);
-    fill_beams(member, entry);
-    return radiometry.bistatic_point(direction, cos_sin_deg(entry.theta_deg).cos, moments, optics, beams_);
+    const bool is_bistatic = context_.scene.geometry.mode == Mode::kBistatic;
+    if (is_bistatic) fill_beams(member, entry);
+    PointResult result =
+        is_bistatic ? radiometry.bistatic_point(direction, cos_sin_deg(entry.theta_deg).cos, moments, optics, beams_)
+                    : radiometry.point(direction, moments, optics);
+    if (radiometry.may_change_dolp(result, direction.cos_theta))
+      radiometry.judge_dolp(result, direction.cos_theta, further(member, direction, entry, optics.facets));
+    return result;
   }
 
  private:
+  std::span<const FurtherLight> further(std::size_t member, const Direction& direction, const SceneEntry& entry,
+                                        std::span<const FacetOptics> facets) {
+    if (grooves_) return grooves_->at(selection_.position(member));
+    further_.clear();
+    const bool is_equal = entry.index && facets.front().is_bare();  // at all wavelengths
+    for (const std::size_t j : middle_samples(is_equal ? 1 : facets.size()))
+      further_.push_back(
+          further_light(context_.scene.surface.distribution, direction.theta_deg, entry.shape, facets[j]));
+    return further_;
+  }
+
   /// The direction for which an entry needs moments. It is cached, because neighbouring entries mostly share it.
   const Direction& view_direction(const SceneEntry& entry) {
     const Surface& surface = context_.scene.surface;
@@ -134,6 +155,8 @@ class MemberResults {
   const EvaluatorResults& evaluated_;
   std::vector<Moments> moments_;
   std::vector<Scattered> beams_;
+  std::optional<GrooveTable::Reader> grooves_;
+  std::vector<FurtherLight> further_;
   std::optional<OpticalConstants> index_;  ///< own_optics_ was computed for index_ and variant_
   std::uint32_t variant_ = 0;
   Radiometry::Optics own_optics_;
@@ -414,6 +437,8 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
   if (entries.is_grid() && plan.kept.moments)
     checked = checked_positions(whole, checked_count(whole * samples), scene_seed(scene));
   const std::shared_ptr<const ResponseBasis> basis = evaluator ? run_basis(scene, entries, plan) : nullptr;
+  const bool is_judged = entries.is_grid() && plan.kept.moments && scene.surface.scattering == Scattering::kSingle;
+  const auto grooves = is_judged ? std::make_shared<const GrooveTable>(scene, entries) : nullptr;
   RunSummary summary = sink.summary_of_done();
   const auto with_evaluation = [&] {
     RunSummary all = summary;
@@ -430,7 +455,7 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
       --left;
     } else {
       const Spectra spectra(scene, plan, part.variants(), evaluator);
-      const RunContext context{scene, plan, spectra, evaluator, basis, summary};
+      const RunContext context{scene, plan, spectra, evaluator, basis, summary, grooves};
       std::vector<PointResult> results = part_results(context, part, checked, summary.check, part_progress);
       summary.add(scene, part, results);
       sink.write(part, std::move(results), with_evaluation());

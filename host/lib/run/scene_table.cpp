@@ -115,7 +115,8 @@ std::vector<Attribute> RunRecord::attributes(const std::string& command_line) co
           {"precision", evaluation.precision},
           {"effects", effects},
           {"rule", rule},
-          {kModelChange, model_change},
+          {kModelChange, model_change.i},
+          {kModelChangeDolp, model_change.dolp_points},
           {"self_check_entries", static_cast<double>(check.entries)},
           {"self_check_worst_ratio", check.worst_ratio},
           {"wall_time_s", wall_s}};

@@ -13,7 +13,8 @@
 
 namespace dolp {
 
-inline constexpr const char* kModelChange = "model_change";  ///< attribute with the largest PointResult::model_change
+inline constexpr const char* kModelChange = "model_change";           ///< attribute with ModelChange::i
+inline constexpr const char* kModelChangeDolp = "model_change_dolp";  ///< attribute with ModelChange::dolp_points
 
 /// The quantities in the results of a scene. With a plan: only the quantities that the run computes.
 Quantities quantities_of(const SceneValues& scene, const EffectPlan* plan = nullptr);
@@ -33,7 +34,7 @@ TableValues table_part(const TableLayout& layout, const SceneEntries& part, cons
 struct RunRecord {
   EvaluationReport evaluation;
   std::string effects, rule;
-  double model_change = 0.0;
+  ModelChange model_change;
   SelfCheck check;
   double wall_s = 0.0;
 

@@ -153,7 +153,7 @@ void add_run(RunRecord& whole, const TableHead& shard) {
   const double most = static_cast<double>(kMostTableEntries);
   whole.check.entries += static_cast<std::size_t>(std::min(number_of(shard, "self_check_entries"), most));
   whole.check.worst_ratio = std::max(whole.check.worst_ratio, number_of(shard, "self_check_worst_ratio"));
-  whole.model_change = std::max(whole.model_change, number_of(shard, kModelChange));
+  whole.model_change.add(ModelChange{number_of(shard, kModelChange), number_of(shard, kModelChangeDolp)});
   whole.wall_s += number_of(shard, "wall_time_s");
   const std::string device = text_of(shard, "device");
   std::string& devices = whole.evaluation.device;

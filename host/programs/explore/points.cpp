@@ -98,7 +98,7 @@ std::string status_text(std::uint32_t status) {
   constexpr std::array<const char*, kStatusBits.size()> kMeanings = {
       "ρ outside [0, 1]",           "tolerance missed",
       "outside the model's domain", "I ≤ 0",
-      "tolerance of ρ missed",      "single scattering changes I by over 5 %"};
+      "tolerance of ρ missed",      "single scattering changes I or DOLP by over 5 %"};
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < kMeanings.size(); ++i) {
     if (status & kStatusBits[i].mask) texts.push_back(kMeanings[i]);

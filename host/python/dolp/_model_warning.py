@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import warnings
 
+from collections.abc import Hashable, Mapping
 from typing import Any
 
 import numpy as np
@@ -13,19 +14,24 @@ _MODEL_INACCURATE = 32  # status bit
 
 
 class ModelWarning(UserWarning):
-    """Warns that the estimated error of the intensity I is above 5 % (status 32), because single scattering loses light
-    or the masking function creates light. Also warns that this light may change a fit by more than the uncertainties."""
+    """Warns that the estimated error of the intensity I or of DOLP is above 5 % (status 32), because single scattering
+    loses light or the masking function creates light. Also warns that this light may change a fit by more than the
+    uncertainties."""
 
 
-def warn_of_model(scene: Scene, status: Any, change: float | None = None, stacklevel: int = 3) -> None:
-    """Warns once for each scene if an entry has status 32. `change`: the largest relative change of I, if known."""
+def warn_of_model(scene: Scene, status: Any, attributes: Mapping[Hashable, Any] | None = None,
+                  stacklevel: int = 3) -> None:
+    """Warns once for each scene if an entry has status 32. `attributes`: those of the results, with the largest changes
+    of I and of DOLP."""
     if scene._has_model_warning or not np.any(np.asarray(status) & _MODEL_INACCURATE):
         return
     scene._has_model_warning = True
-    much = "an estimated more than 5 %" if change is None else f"up to {100 * float(change):.0f} %"
-    warnings.warn(f"{scene!r}: single scattering, or a masking that creates light, changes I by {much} at some entries "
-                  '(status 32); surface.masking "v-cavity" with surface.scattering "multiple" follows all bounces',
-                  ModelWarning, stacklevel=stacklevel)
+    much = "I or DOLP by an estimated more than 5 %"
+    if attributes and "model_change_dolp" in attributes:
+        much = (f"I by up to {100 * float(attributes['model_change']):.2g} % and DOLP by up to "
+                f"{float(attributes['model_change_dolp']):.2g} points")
+    warnings.warn(f"{scene!r}: light that single scattering loses, or that the masking creates, changes {much} "
+                  f"(status 32); {scene._native.model_advice()}", ModelWarning, stacklevel=stacklevel)
 
 
 def warn_of_gap(scene: Scene, gap: float | None, stacklevel: int = 3) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 import functools
 import json
 import os
+import warnings
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
@@ -43,7 +44,7 @@ def table(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all
     if key is None:
         on_axes = with_axes(native_scene(scene), axes)
         whole = table_dataset(*native_evaluator(evaluator, device).table(on_axes, flag("keep_all", keep_all)))
-        warn_of_model(scene, whole.get("status", 0), whole.attrs.get("model_change"))
+        warn_of_model(scene, whole.get("status", 0), whole.attrs)
         return whole
     columns = [column for column, *_ in _native.axes() if column != "temperature_K" or column in axes]
     _check_varied("axes", [key], columns)
@@ -92,6 +93,7 @@ def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_
     """
     native, engine = native_scene(scene), native_evaluator(evaluator, device)
     frame, columns = columns_of(points, native.labels(), has_keys=True)
+    _warn_of_radians(columns.get("theta_deg", np.zeros(0)))
     _check_labels(native, columns)
     varied = {key: columns.pop(key) for key in [*columns] if "." in key}
     _check_varied("points", varied, columns)
@@ -101,8 +103,16 @@ def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_
 
     results = dataset_at(
         _over_keys(run, native, columns, varied) if varied and 0 not in frame.shape else run(native, columns), frame)
-    warn_of_model(scene, results.get("status", 0), results.attrs.get("model_change"))
+    warn_of_model(scene, results.get("status", 0), results.attrs)
     return results
+
+
+def _warn_of_radians(theta_deg: np.ndarray) -> None:
+    """Warns of zeniths that all lie between 0 and pi / 2. Up to three directions near the normal may be meant."""
+    largest = np.nanmax(theta_deg, initial=0.0)
+    if 0.5 < largest < 1.6 and len(np.unique(theta_deg)) > 3:
+        warnings.warn(f"points: theta_deg is at most {largest:.4g} degrees; is it in radians?", _native.InputWarning,
+                      stacklevel=3)
 
 
 def lookup(table: Path | xr.Dataset, **points: Array) -> xr.Dataset:

@@ -40,6 +40,14 @@ TEST(SceneRemarks, ProbablyMeantOtherwise_IsOneLineThatNamesKeyAndUnit) {
             "is known at 8-14 um; beyond, the air gets the mean emittance 0.13 in the vertical, but real air is opaque "
             "near 6.3 and 15 um and clearer near 4 um"},
            {{"geometry.mode=bistatic"}, "without [source] nothing depends on theta, the zenith of the source"},
+           {{"source.preset=sun"},
+            "mode hemispherical adds the light that the surface reflects from the source into all directions; a camera "
+            "needs geometry.mode = \"bistatic\""},
+           {{"geometry.view_zenith_deg=60"},
+            "has no effect: mode hemispherical has its view at grid.theta_deg; mode bistatic uses it"},
+           {{"grid.theta_deg=[0, 0.5, 1, 1.5]"}, "is at most 1.5 degrees; is it in radians?"},
+           {{"surface.sigma=3"}, "3 is a slope of 72 degrees, not a height; real surfaces have less than 2"},
+           {{"grid.sigma=[0.1, 3]"}, "3 is a slope of 72 degrees, not a height; real surfaces have less than 2"},
        }) {
     const std::vector<std::string> remarks = remarks_of(settings);
     ASSERT_EQ(remarks.size(), 1U) << settings.back();
@@ -55,7 +63,10 @@ TEST(SceneRemarks, OrdinaryScenes_HaveNone) {
                                                    {"grid.wavelength_um=[900, 5000]"},
                                                    {"surface.material=iron"},
                                                    {"geometry.mode=bistatic", "source.irradiance=1"},
-                                                   {"source.preset=sun"}}) {
+                                                   {"geometry.mode=bistatic", "source.preset=sun"},
+                                                   {"grid.theta_deg=[0, 0.5, 1]"},
+                                                   {"grid.theta_deg=[0, 0.1, 0.2, 0.3]"},
+                                                   {"surface.sigma=2"}}) {
     EXPECT_TRUE(remarks_of(settings).empty()) << settings.size() << remarks_of(settings)[0];
   }
 }

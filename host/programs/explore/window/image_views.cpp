@@ -260,8 +260,10 @@ void ShapeView::draw(Session& session, ImVec2 size) {
     session.set_theta(std::asin(std::min(1.0, std::hypot(x, y) / static_cast<double>(radius))) / kDegree);
   }
   ImDrawList* const list = ImGui::GetWindowDrawList();
+  const bool has_profile = session.scene().word("surroundings.profile").has_value();
   draw_text(list, corner, {0.0F, 0.0F}, kTextColour,
-            fmt::format("sphere, and a plate tilted by {:.1f}° (drag){}", session.theta_deg(),
+            fmt::format("sphere, and a plate tilted by {:.1f}° (drag){}{}", session.theta_deg(),
+                        has_profile ? "; a sky profile is right only for horizontal surfaces" : "",
                         remark(session, session.curve())));
   for (const bool is_angle : {false, true}) {
     const Colours colours{dolp_range(session.curve().points(), session.view().theta_max_deg, false), is_angle};

@@ -1,0 +1,205 @@
+#include "run/groove_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <ranges>
+
+#include "base/parallel_ranges.hpp"
+#include "model/chebyshev.hpp"
+#include "plan/further_light.hpp"
+#include "radiometry/radiometry.hpp"
+#include "run/part_requests.hpp"
+#include "spectrum/spectral_rule.hpp"
+
+namespace dolp {
+namespace {
+
+// Shapes with a smaller sigma count as this one: only the tails of their slopes reach a second facet.
+constexpr double kLeastSigma = 0.01;
+constexpr double kLeastK = 0.01;           // differences of k far below this number do not change the reflection
+constexpr double kLeastReflected = 1e-12;  // replaces i = 0 and 1 - i = 0, whose logits do not exist
+constexpr std::size_t kWavelengthNodes = 8;
+constexpr std::size_t kNodesAtOnce = 8;
+
+/// The nodes of an axis are Chebyshev-Lobatto points of `to(value)`; `from` is the inverse of `to`.
+struct Scale {
+  std::size_t most = 1;
+  std::function<double(double)> to, from;
+};
+
+Scale scale_of(Axis axis) {
+  const auto same = [](double x) { return x; };
+  if (axis == Axis::kTheta) return {6, same, same};
+  if (axis == Axis::kN) return {4, [](double n) { return std::log(n); }, [](double x) { return std::exp(x); }};
+  if (axis == Axis::kQ)
+    return {3, [](double q) { return std::log(q - 1.0); }, [](double x) { return 1.0 + std::exp(x); }};
+  const double least = axis == Axis::kK ? kLeastK : 0.0;
+  const double floor = axis == Axis::kSigma ? kLeastSigma : 0.0;
+  return {4, [=](double value) { return std::log(std::max(value, floor) + least); },
+          [=](double x) { return std::exp(x) - least; }};
+}
+
+GrooveTable::AxisNodes polynomial_nodes(const std::vector<double>& values, const Scale& scale) {
+  std::vector<double> places;
+  std::ranges::transform(values, std::back_inserter(places), scale.to);
+  const auto [low, high] = std::ranges::minmax(places);
+  const auto count = static_cast<Eigen::Index>(std::min(scale.most, values.size()));
+  const auto size = static_cast<Eigen::Index>(values.size());
+  if (count < 2 || low == high) return {{scale.from(low)}, Eigen::MatrixXd::Ones(size, 1)};
+  const std::vector<double> points = lobatto_points(count);
+  GrooveTable::AxisNodes axis{{}, Eigen::MatrixXd(size, count)};
+  for (const double point : points) axis.nodes.push_back(scale.from(std::lerp(low, high, 0.5 * (point + 1.0))));
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const double place = places[static_cast<std::size_t>(i)];
+    axis.weights.row(i) = cardinal_values(points, 2.0 * (place - low) / (high - low) - 1.0);
+  }
+  return axis;
+}
+
+/// Nodes at some of the values, with linear interpolation between them.
+GrooveTable::AxisNodes linear_nodes(const std::vector<double>& values, std::size_t most) {
+  std::vector<double> sorted = values;
+  std::ranges::sort(sorted);
+  GrooveTable::AxisNodes axis;
+  const std::size_t count = std::min(most, sorted.size());
+  for (std::size_t i = 0; i < count; ++i)
+    axis.nodes.push_back(sorted[count == 1 ? 0 : i * (sorted.size() - 1) / (count - 1)]);
+  axis.weights.setZero(static_cast<Eigen::Index>(values.size()), static_cast<Eigen::Index>(count));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto above = std::ranges::lower_bound(axis.nodes, values[i]) - axis.nodes.begin();
+    const auto row = static_cast<Eigen::Index>(i);
+    axis.weights(row, above) = 1.0;
+    if (above == 0 || axis.nodes[static_cast<std::size_t>(above)] == values[i]) continue;
+    const double low = axis.nodes[static_cast<std::size_t>(above) - 1];
+    const double share = (values[i] - low) / (axis.nodes[static_cast<std::size_t>(above)] - low);
+    axis.weights(row, above) = share;
+    axis.weights(row, above - 1) = 1.0 - share;
+  }
+  return axis;
+}
+
+}  // namespace
+
+GrooveTable::GrooveTable(const SceneValues& scene, const SceneEntries& grid) {
+  const Axes& axes = grid.whole_axes();
+  for (const Axis axis : {Axis::kN, Axis::kK, Axis::kTheta, Axis::kSigma, Axis::kQ}) {
+    std::vector<double> values = axes[axis];
+    if (axis == Axis::kTheta) {
+      for (double& theta_deg : values) theta_deg = moment_zenith_deg(scene, theta_deg);
+    }
+    if (values.empty()) values = {axis == Axis::kN ? grid.index().n : grid.index().k};
+    axes_[axis] = polynomial_nodes(values, scale_of(axis));
+  }
+  const std::vector<double>& wavelengths = axes[Axis::kWavelength];
+  axes_[Axis::kWavelength] = linear_nodes(wavelengths.empty() ? std::vector{0.0} : wavelengths, kWavelengthNodes);
+  bands_ = std::max<std::size_t>(axes[Axis::kBand].size(), 1);
+  const std::size_t materials = std::max<std::size_t>(axes[Axis::kMaterial].size(), 1);
+  for (std::size_t i = 0; i < materials * bands_; ++i) {
+    SceneVariant variant;
+    if (!axes[Axis::kMaterial].empty()) variant.material = static_cast<std::uint32_t>(i / bands_);
+    if (!axes[Axis::kBand].empty()) variant.band = static_cast<std::uint32_t>(i % bands_);
+    fill(blocks_.emplace_back(), scene, variant, grid);
+  }
+}
+
+std::size_t GrooveTable::outer_nodes() const {
+  std::size_t count = 1;
+  for (const Axis axis : kOuterAxes) count *= axes_[axis].nodes.size();
+  return count;
+}
+
+void GrooveTable::fill(Block& block, const SceneValues& scene, SceneVariant variant, const SceneEntries& grid) {
+  std::vector<FacetOptics> optics;  // for each node of wavelength, n and k: one per group
+  for (const double wavelength_um : axes_[Axis::kWavelength].nodes) {
+    if (wavelength_um > 0.0) variant.wavelength_um = wavelength_um;
+    const std::vector<FacetOptics> samples = spectral_rule(with_variant(scene, variant)).indices();
+    for (const double n : axes_[Axis::kN].nodes) {
+      for (const double k : axes_[Axis::kK].nodes) {
+        const std::optional<OpticalConstants> index =
+            grid.has_own_index() ? std::optional(OpticalConstants{n, k}) : std::nullopt;
+        const std::vector<FacetOptics> own = with_index(samples, index);
+        const std::vector<std::size_t> middles = middle_samples(own.size());
+        block.groups = middles.size();
+        for (const std::size_t j : middles) optics.push_back(own[j]);
+      }
+    }
+  }
+  const std::vector<double>& thetas = axes_[Axis::kTheta].nodes;
+  const std::vector<double>& sigmas = axes_[Axis::kSigma].nodes;
+  const std::vector<double>& qs = axes_[Axis::kQ].nodes;
+  const std::size_t shape_nodes = sigmas.size() * qs.size();
+  block.logits.resize(optics.size() * thetas.size() * shape_nodes);
+  block.quotients.resize(block.logits.size());
+  parallel_ranges(block.logits.size(), kNodesAtOnce, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const std::size_t group = i / shape_nodes % block.groups;
+      const std::size_t shape = i % shape_nodes;
+      const std::size_t outer = i / (block.groups * shape_nodes);
+      const FurtherLight light = further_light(scene.surface.distribution, thetas[outer % thetas.size()],
+                                               {sigmas[shape / qs.size()], qs[shape % qs.size()]},
+                                               optics[outer / thetas.size() * block.groups + group]);
+      const double reflected = std::clamp(light.i, kLeastReflected, 1.0 - kLeastReflected);
+      block.logits[i] = std::log(reflected / (1.0 - reflected));
+      block.quotients[i] = light.q / (reflected * (1.0 - reflected));
+    }
+  });
+}
+
+void GrooveTable::Reader::begin_direction(const PerAxis& on) {
+  const Block& block = table_.blocks_[on[Axis::kMaterial] * table_.bands_ + on[Axis::kBand]];
+  const auto rows = static_cast<Eigen::Index>(block.groups * table_.axes_[Axis::kSigma].nodes.size());
+  const auto columns = static_cast<Eigen::Index>(table_.axes_[Axis::kQ].nodes.size());
+  groups_ = block.groups;
+  logits_.setZero(rows, columns);
+  quotients_.setZero(rows, columns);
+  const auto size = static_cast<std::size_t>(rows * columns);
+  for (std::size_t node = 0; node < table_.outer_nodes(); ++node) {
+    double weight = 1.0;
+    std::size_t rest = node;
+    for (const Axis axis : std::views::reverse(kOuterAxes)) {
+      const Eigen::MatrixXd& weights = table_.axes_[axis].weights;
+      weight *= weights(static_cast<Eigen::Index>(on[axis]), static_cast<Eigen::Index>(rest) % weights.cols());
+      rest /= static_cast<std::size_t>(weights.cols());
+    }
+    if (weight == 0.0) continue;
+    using Nodes = Eigen::Map<const RowMajor>;
+    logits_ += weight * Nodes(block.logits.data() + node * size, rows, columns);
+    quotients_ += weight * Nodes(block.quotients.data() + node * size, rows, columns);
+  }
+}
+
+void GrooveTable::Reader::begin_row(std::size_t position) {
+  const PerAxis part_first = part_.first();
+  PerAxis on = part_.axis_positions(position);
+  first_ = position - on[Axis::kQ];
+  for (const Axis axis : kAllAxes) on[axis] += part_first[axis];
+  if (const std::size_t direction = position / part_.entries_per_direction() + 1; direction != direction_) {
+    direction_ = direction;
+    begin_direction(on);
+  }
+  const auto sigma = table_.axes_[Axis::kSigma].weights.row(static_cast<Eigen::Index>(on[Axis::kSigma]));
+  const auto count = static_cast<Eigen::Index>(part_.q().size());
+  const auto qs =
+      table_.axes_[Axis::kQ].weights.middleRows(static_cast<Eigen::Index>(part_first[Axis::kQ]), count).transpose();
+  const auto groups = static_cast<Eigen::Index>(groups_);
+  row_.resize(part_.q().size() * groups_);
+  for (Eigen::Index group = 0; group < groups; ++group) {
+    const Eigen::Index first = group * sigma.cols();
+    const Eigen::RowVectorXd logits = sigma * logits_.middleRows(first, sigma.cols());
+    const Eigen::RowVectorXd quotients = sigma * quotients_.middleRows(first, sigma.cols());
+    const Eigen::ArrayXd reflected = ((-(logits * qs).transpose()).array().exp() + 1.0).inverse();
+    const Eigen::ArrayXd polarised = reflected * (1.0 - reflected) * (quotients * qs).transpose().array();
+    for (Eigen::Index q = 0; q < count; ++q)
+      row_[static_cast<std::size_t>(q * groups + group)] = {reflected[q], polarised[q]};
+  }
+}
+
+std::span<const FurtherLight> GrooveTable::Reader::at(std::size_t position) {
+  const std::size_t count = part_.q().size();
+  if (direction_ == 0 || position - first_ >= count) begin_row(position);
+  return std::span(row_).subspan((position - first_) * groups_, groups_);
+}
+
+}  // namespace dolp

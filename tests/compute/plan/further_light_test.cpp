@@ -1,0 +1,84 @@
+// The estimate of the light after the first bounce, against the moments of one bounce and of all bounces.
+#include "plan/further_light.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "model/angles.hpp"
+#include "model/moments.hpp"
+
+namespace dolp {
+namespace {
+
+MomentsRequest request_for(Distribution distribution, Scattering scattering) {
+  MomentsRequest request;
+  request.distribution = distribution;
+  request.masking = Masking::kVCavity;
+  request.scattering = scattering;
+  request.tolerance = 1e-6;
+  request.precision = Precision::kDouble;
+  request.theta_deg = {0.0, 30.0, 60.0, 75.0, 85.0};
+  request.optics = {{1.5, 0.1}, {3.4, 0.01}, {10.0, 60.0}, {0.6, 0.3}};
+  request.sigma = {0.1, 0.3, 0.8};
+  request.q = {1.8, 3.0, 6.0};
+  return request;
+}
+
+std::vector<Moments> moments_for(Distribution distribution, Scattering scattering) {
+  CpuEvaluator evaluator;
+  return evaluator.evaluate(request_for(distribution, scattering), {});
+}
+
+// The rays have four slopes and four azimuths on each piece. Among 1,865 random entries the error of i was 1 % in the
+// median and 10 % at the 98th percentile; errors above 15 % had q below 1.7 and a zenith above 80 degrees.
+constexpr double kAccuracy = 0.15;
+constexpr double kLeastLost = 1e-4;  // less lost light has no digits in the difference of two moments
+
+TEST(FurtherLight, AnyShapeAndMaterial_IsWhatAllBouncesAddToOne) {
+  for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
+    const MomentsRequest request = request_for(distribution, Scattering::kSingle);
+    const std::vector<Moments> single = moments_for(distribution, Scattering::kSingle);
+    const std::vector<Moments> all = moments_for(distribution, Scattering::kMultiple);
+    std::size_t compared = 0;
+    for (std::size_t i = 0; i < single.size(); ++i) {
+      const MomentsPoint point = request[i];
+      const double lost = cos_sin_deg(point.theta_deg).cos - single[i].albedo;
+      if (lost < kLeastLost) continue;
+      ++compared;
+      const double expected = (all[i].r_i - single[i].r_i) / lost;
+      const FurtherLight light = further_light(distribution, point.theta_deg, point.shape, point.index);
+      EXPECT_NEAR(light.i, expected, kAccuracy * expected) << "entry " << i;
+      EXPECT_NEAR(light.q, (all[i].r_q - single[i].r_q) / lost, kAccuracy * expected) << "entry " << i;
+    }
+    EXPECT_GT(compared, single.size() / 2);
+  }
+}
+
+TEST(FurtherLight, FacetsThatReflectEverything_AreWhite) {
+  const FacetOptics mirror(1e6, 1e6);
+  for (const double theta_deg : {0.0, 60.0, 90.0}) {
+    const FurtherLight light = further_light(Distribution::kCauchy, theta_deg, {0.3, 2.0}, mirror);
+    EXPECT_NEAR(light.i, 1.0, 1e-3) << theta_deg;
+    EXPECT_NEAR(light.q, 0.0, 1e-3) << theta_deg;
+  }
+}
+
+TEST(FurtherLight, ShapesAtTheEndsOfTheirRanges_AreNumbersFromZeroToOne) {
+  for (const double theta_deg : {0.0, 1e-6, 45.0, 90.0}) {
+    for (const double sigma : {1e-4, 10.0}) {
+      for (const double q : {1.001, 2.0, 1e4}) {
+        for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
+          const FurtherLight light = further_light(distribution, theta_deg, {sigma, q}, {1.5, 0.1});
+          EXPECT_GE(light.i, 0.0) << theta_deg << " " << sigma << " " << q;
+          EXPECT_LE(light.i + std::abs(light.q), 1.0) << theta_deg << " " << sigma << " " << q;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace dolp

@@ -1,10 +1,12 @@
 #include "radiometry/radiometry.hpp"
 
 #include <algorithm>
+#include <array>
 #include <boost/container/small_vector.hpp>
 #include <cassert>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <dolp/status.hpp>
 #include "base/numbers.hpp"
@@ -152,18 +154,19 @@ PointResult grazing_limit(const SceneModel& scene, const SpectralRule& rule, std
 
 }  // namespace
 
-Radiometry::Radiometry(const SceneModel& scene, const KeptEffects& kept, double dropped,
+Radiometry::Radiometry(const SceneModel& scene, SpectralRule rule, const KeptEffects& kept, double dropped,
                        const std::shared_ptr<const SkyBasis>& sky)
     : scene_(scene),
       beam_specular_(scene.surface.specular),
       kept_(kept),
       dropped_(dropped),
       knows_rho_(kept.moments || scene.surface.specular == 0.0),
-      rule_(spectral_rule(scene)),
+      rule_(std::move(rule)),
       kept_rule_(kept_rule(rule_, kept)) {
   if (!kept.moments) scene_.surface.specular = 0.0;
   if (!kept.diffuse) scene_.surface.diffuse = 0.0;
-  if (kept.surroundings && kept.profile) basis_ = sky ? sky : sky_basis(scene, {{}});
+  if (kept.surroundings && kept.profile)
+    basis_ = sky ? sky : sky_basis(scene, std::array<const SpectralRule*, 1>{&rule_});
   sky_ = sky_weights(kept_rule_, basis_.get());
   optics_ = optics_with(rule_.indices());
 }

@@ -25,8 +25,10 @@ class Radiometry {
   /// `kept`: effects that contribute. If kept.moments is false, the specular part of rho counts as 0, and quantities
   /// that need it are NaN. `dropped`: how much the effects that are not kept can change DOLP. The error estimate of
   /// DOLP includes it. `sky`: has the functions of Moments::columns. If null, they are computed from the scene.
-  explicit Radiometry(const SceneModel& scene, const KeptEffects& kept = {}, double dropped = 0.0,
-                      const std::shared_ptr<const SkyBasis>& sky = nullptr);
+  /// `rule`: samples for the spectrum of the scene.
+  Radiometry(const SceneModel& scene, SpectralRule rule, const KeptEffects& kept, double dropped = 0.0,
+             const std::shared_ptr<const SkyBasis>& sky = nullptr);
+  explicit Radiometry(const SceneModel& scene) : Radiometry(scene, spectral_rule(scene), {}) {}
 
   /// The spectral samples of the scene. `point` needs Moments for each sample's refractive index, in this order.
   const SpectralRule& rule() const { return rule_; }

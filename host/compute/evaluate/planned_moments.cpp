@@ -73,8 +73,16 @@ class PlannedMoments {
       const std::size_t so_far = done_ + count * done / std::max<std::size_t>(all, 1);
       return !progress_ || progress_(plan_.size() * so_far / std::max<std::size_t>(kernel_moments_, 1), plan_.size());
     };
-    std::vector<Moments> moments = evaluator_.evaluate(request, of_plan);
+    std::vector<Moments> moments = evaluated(request, of_plan);
     done_ += count;
+    return moments;
+  }
+
+  std::vector<Moments> evaluated(const MomentsRequest& request, const Progress& progress) {
+    const EvaluationReport before = evaluator_.report();
+    const Clock::time_point start = Clock::now();
+    std::vector<Moments> moments = evaluator_.evaluate(request, progress);
+    work_.transfer_s += transfer_time(before, evaluator_.report(), seconds_since(start));
     return moments;
   }
 
@@ -107,7 +115,7 @@ class PlannedMoments {
     direct.wanted = std::move(is_left);
     work_.interpolated -= direct.wanted_count();
     const Progress is_wanted = [&](std::size_t, std::size_t) { return !progress_ || progress_(1, 1); };
-    const std::vector<Moments> computed = evaluator_.evaluate(direct, is_wanted);
+    const std::vector<Moments> computed = evaluated(direct, is_wanted);
     for (std::size_t i = 0; i < computed.size(); ++i) {
       if (direct.wanted[i] != 0) moments[i] = computed[i];
     }

@@ -152,9 +152,8 @@ struct EffectBounds::Sums {
   double most_polarisation = kInfinity;
 };
 
-EffectBounds::EffectBounds(const SceneModel& scene, const EntriesExtent& extent)
+EffectBounds::EffectBounds(const SceneModel& scene, const SpectralRule& rule, const EntriesExtent& extent)
     : scene_(scene), is_bistatic_(scene.geometry.mode == Mode::kBistatic) {
-  const SpectralRule rule = spectral_rule(scene);
   for (const SpectralSample& sample : rule.samples) {
     total_.emitted += sample.emitted;
     total_.surroundings += std::abs(sample.surroundings);

@@ -14,12 +14,12 @@ namespace {
 constexpr std::array kDroppingOrder = {Part::kSource,       Part::kSurroundings, Part::kProfile,       Part::kEmission,
                                        Part::kPathRadiance, Part::kMoments,      Part::kFurtherBounces};
 
-std::vector<EffectBounds> bounds_of(const SceneValues& scene, const SceneEntries& entries) {
+std::vector<EffectBounds> bounds_of(const SceneValues& scene, const SceneEntries& entries, const SpectralRules& rules) {
   const std::vector<EntriesExtent> extents = extents_of(entries);
   std::vector<EffectBounds> bounds;
   for (const SceneVariant& variant : entries.variants()) {
     const EntriesExtent& extent = extents[std::min(bounds.size(), extents.size() - 1)];
-    bounds.emplace_back(with_variant(scene, variant), extent);
+    bounds.emplace_back(with_variant(scene, variant), *rules.at(variant), extent);
   }
   return bounds;
 }
@@ -159,6 +159,11 @@ Effect scattering_row(const SceneValues& scene, const EffectPlan& plan, const Sc
   return part_row(scene, plan, Part::kFurtherBounces, row);
 }
 
+/// The spectral rule of the first entries. A scene has the first material and band of its grid.
+std::shared_ptr<const SpectralRule> first_rule(const EffectPlan& plan, const SceneEntries& entries) {
+  return plan.rules->at(entries.variants().front());
+}
+
 Effect complex_index_row(const SceneValues& scene, const EffectPlan& plan, const SceneEntries& entries) {
   constexpr const char* kName = "complex index";
   const auto is_complex = [](const FacetOptics& optics) {
@@ -169,7 +174,7 @@ Effect complex_index_row(const SceneValues& scene, const EffectPlan& plan, const
       entries.is_grid()
           ? std::ranges::any_of(entries.axes()[Axis::kK], [](double k) { return k > 0.0; })
           : std::ranges::any_of(entries.all(), [&](const SceneEntry& e) { return e.index && is_complex(*e.index); });
-  if (!has_complex_entry && std::ranges::none_of(spectral_rule(scene).indices(), is_complex))
+  if (!has_complex_entry && std::ranges::none_of(first_rule(plan, entries)->indices(), is_complex))
     return absent(kName, "k is 0");
   const bool is_used = plan.kept.moments || plan.needs_beams || (is_fresnel(scene) && plan.kept.emission);
   if (!is_used) return {kName, EffectState::kNotNeeded, "nothing depends on the index"};
@@ -233,9 +238,9 @@ Effect diffuse_row(const SceneValues& scene, const EffectPlan& plan) {
   return part_row(scene, plan, Part::kDiffuse, {"diffuse", EffectState::kKept, "adds to rho_I", "closed form"});
 }
 
-Effect band_row(const SceneValues& scene) {
+Effect band_row(const SceneValues& scene, const EffectPlan& plan, const SceneEntries& entries) {
   if (!scene.spectrum.is_band()) return absent("band", "a single wavelength");
-  const std::size_t count = spectral_rule(scene).samples.size();
+  const std::size_t count = first_rule(plan, entries)->samples.size();
   const std::string band = fmt::format("{:g}..{:g} um", scene.spectrum.min_um, scene.spectrum.max_um);
   return {"band", EffectState::kKept,
           scene.bands.size() > 1 ? fmt::format("{} bands, the first {}", scene.bands.size(), band) : band,
@@ -249,30 +254,40 @@ bool gives_emissivity(const SceneValues& scene, const EffectPlan& plan) {
 }
 
 EffectPlan plan_effects(const SceneValues& scene, const SceneEntries& entries, bool keep_all) {
-  const std::vector<EffectBounds> bounds = bounds_of(scene, entries);
   EffectPlan plan;
+  plan.rules = std::make_shared<const SpectralRules>(scene, entries);
   plan.keep_all = keep_all;
+  const std::vector<EffectBounds> bounds = bounds_of(scene, entries, *plan.rules);
   if (!keep_all && !entries.empty()) drop_effects(plan, scene, bounds);
   set_needs(plan, scene, bounds);
-  return entries.empty() ? plan : with_sky(std::move(plan), scene, entries);
+  if (!entries.empty()) return with_spectra(std::move(plan), scene, entries);
+  plan.rules = nullptr;
+  return plan;
 }
 
-EffectPlan with_sky(EffectPlan plan, const SceneValues& scene, const SceneEntries& entries) {
-  if (!plan.sky && plan.kept.moments && plan.kept.surroundings && plan.kept.profile)
-    plan.sky = sky_basis(scene, entries.variants());
+EffectPlan with_spectra(EffectPlan plan, const SceneValues& scene, const SceneEntries& entries) {
+  if (!plan.rules) plan.rules = std::make_shared<const SpectralRules>(scene, entries);
+  const bool needs_sky = has_profile(scene) && plan.kept.moments && plan.kept.surroundings && plan.kept.profile;
+  if (plan.sky || !needs_sky) return plan;
+  std::vector<std::shared_ptr<const SpectralRule>> rules;
+  std::vector<const SpectralRule*> all;
+  for (const SceneVariant& variant : entries.variants())
+    all.push_back(rules.emplace_back(plan.rules->at(variant)).get());
+  plan.sky = sky_basis(scene, all);
   return plan;
 }
 
 EffectPlan plan_to_keep(const SceneValues& scene, const KeptEffects& kept) {
   EffectPlan plan;
   plan.kept = kept;
-  set_needs(plan, scene, bounds_of(scene, {}));
+  set_needs(plan, scene, bounds_of(scene, {}, SpectralRules(scene, {})));
   return plan;
 }
 
 EffectPlan keep_everything(const SceneValues& scene) { return plan_effects(scene, {}, true); }
 
-std::vector<Effect> effects_of(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan) {
+std::vector<Effect> effects_of(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& given) {
+  const EffectPlan plan = with_spectra(given, scene, entries);
   return {specular_row(scene, plan),
           diffuse_row(scene, plan),
           model_row(scene, plan, "distribution", name_of(scene.surface.distribution), entries),
@@ -284,7 +299,7 @@ std::vector<Effect> effects_of(const SceneValues& scene, const SceneEntries& ent
           surroundings_row(scene, plan),
           profile_row(scene, plan),
           path_row(scene, plan),
-          band_row(scene)};
+          band_row(scene, plan, entries)};
 }
 
 std::string effects_text(const std::vector<Effect>& rows, const EffectPlan& plan) {

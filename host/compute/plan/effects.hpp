@@ -12,6 +12,7 @@
 #include "scene/scene.hpp"
 #include "spectrum/sky_factors.hpp"
 #include "spectrum/spectral_rule.hpp"
+#include "spectrum/spectral_rules.hpp"
 
 namespace dolp {
 
@@ -34,7 +35,7 @@ std::vector<EntriesExtent> extents_of(const SceneEntries& entries);
 /// exitances E of the emission, S of the surroundings, X of the source. Bounds of the reflectance rho bound I and Q.
 class EffectBounds {
  public:
-  EffectBounds(const SceneModel& scene, const EntriesExtent& extent);
+  EffectBounds(const SceneModel& scene, const SpectralRule& rule, const EntriesExtent& extent);
 
   /// Bound of the change of (Q/I, U/I), at any entry, if `part` is dropped from `kept`. The bound is 0 if the part
   /// contributes nothing, and infinite if no bound is known.
@@ -71,8 +72,9 @@ struct EffectPlan {
   double bound = 0.0;                   ///< bound of the change by all dropped parts together
   bool needs_direct = false;            ///< the run needs the moments of the direct emission
   bool needs_beams = false;             ///< the run needs the pBRDF from the source to the viewer
-  std::shared_ptr<const SkyBasis> sky;  ///< functions of the sky, set by with_sky; null without a profile
+  std::shared_ptr<const SkyBasis> sky;  ///< functions of the sky, set by with_spectra; null without a profile
   bool gives_rho = true;                ///< the run gives rho_i, rho_q and rho_error_estimate
+  std::shared_ptr<const SpectralRules> rules = {};  ///< for the entries of the run, set by with_spectra
 };
 
 /// Drops parts as long as their bounds (EffectBounds) sum to at most kDroppedShare of the tolerance. The order is:
@@ -84,8 +86,8 @@ EffectPlan plan_to_keep(const SceneValues& scene, const KeptEffects& kept);
 
 EffectPlan keep_everything(const SceneValues& scene);
 
-/// Sets EffectPlan::sky for the wavelengths of these entries, if the moments need it and the plan has none.
-EffectPlan with_sky(EffectPlan plan, const SceneValues& scene, const SceneEntries& entries);
+/// Sets EffectPlan::rules for these entries, and EffectPlan::sky if the moments need it, unless the plan has them.
+EffectPlan with_spectra(EffectPlan plan, const SceneValues& scene, const SceneEntries& entries);
 
 /// True if the run gives an emissivity: the scene emits, and the plan keeps all moments that the emissivity needs.
 bool gives_emissivity(const SceneValues& scene, const EffectPlan& plan);

@@ -73,6 +73,7 @@ struct KernelData {
   bool has_total_reflection = false;     ///< true if total reflection begins at some angle for an index
   bool has_curves = false;               ///< the kernel reads reflectances from tables
   std::vector<CurveError> curve_errors;  ///< per index; empty without reflectance tables
+  double curves_s = 0.0;                 ///< time that the reflectance tables took
   bool is_grid = false;
   std::size_t directions = 0;  ///< directions of the request
   std::vector<kernel::ThetaNode> thetas;
@@ -104,9 +105,12 @@ struct KernelData {
 
 struct RuleModel;
 
+/// kCounted: reflectance tables have no values, and sizes that one of them suggests. This suffices to count work.
+enum class Tables : std::uint8_t { kComputed, kCounted };
+
 /// The kernel's inputs for a request. `model` sets the numbers of nodes; the default is rule_model().
-KernelData kernel_data(const MomentsRequest& request);
-KernelData kernel_data(const MomentsRequest& request, const RuleModel& model);
+KernelData kernel_data(const MomentsRequest& request, Tables tables = Tables::kComputed);
+KernelData kernel_data(const MomentsRequest& request, const RuleModel& model, Tables tables = Tables::kComputed);
 
 /// How many numbers the kernels store for columns (physics/columns.glsl): per MomentsNode and per AzimuthNode.
 inline std::size_t column_sums(const KernelData& data) { return DOLP_COLUMN_PARTS * data.column_count(); }

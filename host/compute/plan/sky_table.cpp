@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <numbers>
 #include <span>
+#include <utility>
 
 #include "model/angles.hpp"
 #include "plan/constants.hpp"
@@ -24,11 +25,41 @@ double u_at(double zenith_deg) { return std::numbers::sqrt2 * std::sin(0.5 * zen
 
 Eigen::RowVectorXd values_at(const SkyBasis& basis, double u) { return basis.at(zenith_deg_at(u)); }
 
-Eigen::MatrixXd at_ends(const SkyBasis& basis, std::uint32_t cells) {
-  Eigen::MatrixXd ends(cells + 1, static_cast<Eigen::Index>(basis.size()));
-  for (std::uint32_t i = 0; i <= cells; ++i) ends.row(i) = values_at(basis, static_cast<double>(i) / cells);
-  return ends;
-}
+/// Values of the basis at the ends of all cells, and in their middles. Doubling the cells keeps the known values.
+class Cells {
+ public:
+  Cells(const SkyBasis& basis, std::uint32_t count) : basis_(basis), ends_(at(0.0, count + 1, count)) { add_middles(); }
+
+  const Eigen::MatrixXd& ends() const { return ends_; }
+
+  void divide() {
+    Eigen::MatrixXd all(ends_.rows() + middles_.rows(), ends_.cols());
+    for (Eigen::Index i = 0; i < ends_.rows(); ++i) all.row(2 * i) = ends_.row(i);
+    for (Eigen::Index i = 0; i < middles_.rows(); ++i) all.row(2 * i + 1) = middles_.row(i);
+    ends_ = std::move(all);
+    add_middles();
+  }
+
+  /// For each function, the largest error of straight lines between the ends of the cells.
+  Eigen::RowVectorXd middle_distances() const {
+    const Eigen::Index cells = middles_.rows();
+    const Eigen::MatrixXd lines = 0.5 * ends_.topRows(cells) + 0.5 * ends_.bottomRows(cells);
+    return (lines - middles_).cwiseAbs().colwise().maxCoeff();
+  }
+
+ private:
+  Eigen::MatrixXd at(double shift, Eigen::Index count, Eigen::Index cells) const {
+    Eigen::MatrixXd values(count, static_cast<Eigen::Index>(basis_.size()));
+    for (Eigen::Index i = 0; i < count; ++i)
+      values.row(i) = values_at(basis_, (static_cast<double>(i) + shift) / static_cast<double>(cells));
+    return values;
+  }
+  void add_middles() { middles_ = at(0.5, ends_.rows() - 1, ends_.rows() - 1); }
+
+  const SkyBasis& basis_;
+  Eigen::MatrixXd ends_;
+  Eigen::MatrixXd middles_;
+};
 
 /// Error of the table at u, for each function: the table is a straight line between the ends of a cell.
 Eigen::RowVectorXd distances_at(const SkyBasis& basis, double u, double cells) {
@@ -44,13 +75,6 @@ Eigen::RowVectorXd corner_distances(const SkyBasis& basis, double cells) {
   Eigen::RowVectorXd largest = Eigen::RowVectorXd::Zero(static_cast<Eigen::Index>(basis.size()));
   for (const double end_deg : basis.nodes().ends_deg())
     largest = largest.cwiseMax(distances_at(basis, u_at(end_deg), cells));
-  return largest;
-}
-
-Eigen::RowVectorXd middle_distances(const SkyBasis& basis, double cells) {
-  Eigen::RowVectorXd largest = Eigen::RowVectorXd::Zero(static_cast<Eigen::Index>(basis.size()));
-  for (double cell = 0.0; cell < cells; ++cell)
-    largest = largest.cwiseMax(distances_at(basis, (cell + 0.5) / cells, cells));
   return largest;
 }
 
@@ -105,11 +129,12 @@ SkyTable append_sky(const SkyBasis& basis, double tolerance, bool splits, std::v
   std::uint32_t cells = kLeastSkyCells;
   const auto may_double = [&] { return 2 * cells * table.count <= most; };
   while (corner_distances(basis, cells).maxCoeff() > allowed && may_double()) cells *= 2;
-  Eigen::RowVectorXd errors = middle_distances(basis, cells);
-  while (errors.maxCoeff() > allowed && may_double()) errors = middle_distances(basis, cells *= 2);
+  Cells table_cells(basis, cells);
+  for (; table_cells.middle_distances().maxCoeff() > allowed && may_double(); cells *= 2) table_cells.divide();
+  Eigen::RowVectorXd errors = table_cells.middle_distances();
   errors = kSkyTableSafety * errors.cwiseMax(corner_distances(basis, cells));
   table.log2_cells = static_cast<std::uint32_t>(std::countr_zero(cells));
-  const Eigen::MatrixXd ends = at_ends(basis, cells);
+  const Eigen::MatrixXd& ends = table_cells.ends();
   table.has_cusp = splits && (ends.row(1) - ends.row(0)).cwiseAbs().maxCoeff() * cells > kLeastBend;
   std::vector<Corner> corners = corners_of(basis);
   const auto split = static_cast<std::ptrdiff_t>(splits ? split_corners(corners, ends.cols(), tolerance) : 0);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <dolp/errors.hpp>
 #include <string>
@@ -15,6 +16,8 @@ struct Work {
   double evaluations = 0.0;  ///< number of evaluations of the integrand
   double kernel_s = 0.0;     ///< time of the kernels, from timestamps of the device or from a clock on the CPU
   double sums_s = 0.0;       ///< host time to sum over slopes, interpolate, and add up responses (response_basis.hpp)
+  double curves_s = 0.0;     ///< host time to compute tables of reflectances (plan/reflectance_curve.hpp)
+  double transfer_s = 0.0;   ///< host time to make the other inputs of the kernels and to read their results
   std::uint64_t dispatches = 0;
   std::uint64_t interpolated = 0;         ///< entries with moments from interpolation or from responses
   std::uint64_t interpolation_nodes = 0;  ///< entries that a kernel integrates so that others can be interpolated
@@ -23,6 +26,8 @@ struct Work {
     evaluations += other.evaluations;
     kernel_s += other.kernel_s;
     sums_s += other.sums_s;
+    curves_s += other.curves_s;
+    transfer_s += other.transfer_s;
     dispatches += other.dispatches;
     interpolated += other.interpolated;
     interpolation_nodes += other.interpolation_nodes;
@@ -39,6 +44,12 @@ struct EvaluationReport : Work {
   double setup_s = 0.0;            ///< time to create pipelines, plus the time to create a device if needed
   double pipelines_s = 0.0;        ///< the part of setup_s that creates pipelines
 };
+
+/// The part of a call's time that no other time in the reports of the evaluator, before and after the call, covers.
+inline double transfer_time(const EvaluationReport& before, const EvaluationReport& after, double call_s) {
+  const auto covered = [](const EvaluationReport& r) { return r.kernel_s + r.sums_s + r.curves_s + r.setup_s; };
+  return std::max(call_s - (covered(after) - covered(before)), 0.0);
+}
 
 inline void note_precision(std::string& used, bool in_double) {
   const char* name = in_double ? "double" : "float";

@@ -38,6 +38,7 @@ struct Response {
   double c0 = 1.0;
   double bend = 1.0;  ///< see ResponseBasis::bend
   Of of = Of::kReflected;
+  friend bool operator==(const Response&, const Response&) = default;
 };
 
 /// The entries form a grid or a list. A grid has all combinations of `optics`, `theta_deg`, `sigma` and `q`; q varies
@@ -73,6 +74,7 @@ struct MomentsRequest {
   /// This request for only some directions of a grid, given by their positions in `theta_deg`.
   MomentsRequest of_directions(std::span<const std::size_t> directions) const;
   void append(const MomentsPoint& point);  ///< adds an entry; the request becomes a list
+  friend bool operator==(const MomentsRequest&, const MomentsRequest&) = default;
 };
 
 /// Moments of one entry with a function g in the integrands, |g| <= 1. There are two kinds of columns:

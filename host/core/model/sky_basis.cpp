@@ -65,7 +65,7 @@ Eigen::RowVectorXd SkyNodes::at(double zenith_deg, const Eigen::MatrixXd& values
   const double start = *(above - 1);
   const double x = std::clamp((end - zenith_deg + (start - zenith_deg)) / (end - start), -1.0, 1.0);
   const Eigen::Index first = (above - ends_deg_.begin() - 1) * kPoints;
-  // Like cardinal_values, but without memory allocations: the kernels' table of a sky needs 10,000 zeniths.
+  // Like cardinal_values, but with one memory allocation: the kernels' table of a sky needs 10,000 zeniths.
   Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(values.cols());
   double total = 0.0;
   for (Eigen::Index i = 0; i < kPoints; ++i) {
@@ -73,9 +73,10 @@ Eigen::RowVectorXd SkyNodes::at(double zenith_deg, const Eigen::MatrixXd& values
     if (distance == 0.0) return values.row(first + i);
     const double weight = ((i % 2 == 0) ? 1.0 : -1.0) * ((i == 0 || i == kPoints - 1) ? 0.5 : 1.0) / distance;
     total += weight;
-    sum.noalias() += weight * values.row(first + i);
+    for (Eigen::Index k = 0; k < sum.size(); ++k) sum[k] += weight * values(first + i, k);
   }
-  return sum / total;
+  sum /= total;
+  return sum;
 }
 
 double SkyNodes::error(const Eigen::VectorXd& values) const {

@@ -1,10 +1,12 @@
 #include "radiometry/radiometry.hpp"
 
 #include <algorithm>
+#include <array>
 #include <boost/container/small_vector.hpp>
 #include <cassert>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <dolp/status.hpp>
 #include "base/numbers.hpp"
@@ -168,19 +170,18 @@ std::vector<std::size_t> middle_samples(std::size_t samples) {
   return middles;
 }
 
-Radiometry::Radiometry(const SceneModel& scene, const KeptEffects& kept, double dropped,
-                       const std::shared_ptr<const SkyBasis>& sky, TransmissionIntegral transmission)
+Radiometry::Radiometry(const SceneModel& scene, SpectralRule rule, const RadiometrySettings& settings)
     : scene_(scene),
       beam_specular_(scene.surface.specular),
-      transmission_(transmission),
-      kept_(kept),
-      dropped_(dropped),
-      knows_rho_(kept.moments || scene.surface.specular == 0.0),
-      rule_(spectral_rule(scene)),
-      kept_rule_(kept_rule(rule_, kept)) {
+      settings_(settings),
+      knows_rho_(settings.kept.moments || scene.surface.specular == 0.0),
+      rule_(std::move(rule)),
+      kept_rule_(kept_rule(rule_, settings.kept)) {
+  const KeptEffects& kept = settings.kept;
   if (!kept.moments) scene_.surface.specular = 0.0;
   if (!kept.diffuse) scene_.surface.diffuse = 0.0;
-  if (kept.surroundings && kept.profile) basis_ = sky ? sky : sky_basis(scene, {{}});
+  if (kept.surroundings && kept.profile)
+    basis_ = settings.sky ? settings.sky : sky_basis(scene, std::array<const SpectralRule*, 1>{&rule_});
   sky_ = sky_weights(kept_rule_, basis_.get());
   nets_.resize(middle_samples(kept_rule_.samples.size()).size());
   for (std::size_t j = 0; j < kept_rule_.samples.size(); ++j) {
@@ -197,7 +198,7 @@ Radiometry::Radiometry(const SceneModel& scene, const KeptEffects& kept, double 
 
 Radiometry::Optics Radiometry::optics_with(std::vector<FacetOptics> facets) const {
   Optics optics;
-  for (const FacetOptics& facet : facets) optics.diffuse.emplace_back(scene_.surface, facet, transmission_);
+  for (const FacetOptics& facet : facets) optics.diffuse.emplace_back(scene_.surface, facet, settings_.transmission);
   for (std::size_t j = 0; scene_.surface.diffuse > 0.0 && j < sky_.size(); ++j) {
     const std::vector<double>& sky = kept_rule_.samples[j].sky;
     const Eigen::Map<const Eigen::VectorXd> values(sky.data(), static_cast<Eigen::Index>(sky.size()));
@@ -208,11 +209,11 @@ Radiometry::Optics Radiometry::optics_with(std::vector<FacetOptics> facets) cons
 }
 
 PointResult Radiometry::finished(PointResult result) const {
-  if (!kept_.moments) result[kAlbedo] = kNan;
+  if (!settings_.kept.moments) result[kAlbedo] = kNan;
   if (!knows_rho_ && emission_model(scene_) != EmissionModel::kFresnel)
     result[kEmissivityS] = result[kEmissivityP] = kNan;
   if (!knows_rho_) result[kRhoI] = result[kRhoQ] = result[kRhoErrorEstimate] = kNan;
-  result[kErrorEstimate] += dropped_;
+  result[kErrorEstimate] += settings_.dropped;
   result.status |= tolerance_status(result, scene_.accuracy.tolerance);
   return result;
 }

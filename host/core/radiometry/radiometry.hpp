@@ -19,6 +19,16 @@ namespace dolp {
 /// its middle. Returns the middle sample of each group, for a rule with `samples` samples.
 std::vector<std::size_t> middle_samples(std::size_t samples);
 
+struct RadiometrySettings {
+  /// Effects that contribute. If kept.moments is false, the specular part of rho counts as 0, and quantities that need
+  /// it are NaN.
+  KeptEffects kept = {};
+  double dropped = 0.0;  ///< how much the other effects can change DOLP; the error estimate of DOLP includes it
+  /// The functions of Moments::columns. If null, they are computed from the scene.
+  std::shared_ptr<const SkyBasis> sky = nullptr;
+  TransmissionIntegral transmission = transmission_integral;  ///< integrates for a polarised diffuse part
+};
+
 /// Converts moments to the quantities that a sensor measures.
 /// Equation: the light that leaves the surface has I = pi B (1 - rho_I) + X rho_I and Q = (X - pi B) rho_Q. B is the
 /// Planck radiance at the temperature of the surface. X = E0 cos(theta) + pi B(T_surr) is the incident light: a
@@ -27,13 +37,9 @@ std::vector<std::size_t> middle_samples(std::size_t samples);
 /// divided by pi. Then the source is not part of X: it adds E0 cos(theta_i) f, with the pBRDF f from source to view.
 class Radiometry {
  public:
-  /// `kept`: effects that contribute. If kept.moments is false, the specular part of rho counts as 0, and quantities
-  /// that need it are NaN. `dropped`: how much the effects that are not kept can change DOLP. The error estimate of
-  /// DOLP includes it. `sky`: has the functions of Moments::columns. If null, they are computed from the scene.
-  /// `transmission`: integrates for a polarised diffuse part.
-  explicit Radiometry(const SceneModel& scene, const KeptEffects& kept = {}, double dropped = 0.0,
-                      const std::shared_ptr<const SkyBasis>& sky = nullptr,
-                      TransmissionIntegral transmission = transmission_integral);
+  /// `rule`: samples for the spectrum of the scene.
+  Radiometry(const SceneModel& scene, SpectralRule rule, const RadiometrySettings& settings);
+  explicit Radiometry(const SceneModel& scene) : Radiometry(scene, spectral_rule(scene), {}) {}
 
   /// The spectral samples of the scene. `point` needs Moments for each sample's refractive index, in this order.
   const SpectralRule& rule() const { return rule_; }
@@ -83,9 +89,7 @@ class Radiometry {
 
   SceneModel scene_;  ///< the scene; its specular or diffuse part is 0 if KeptEffects drops it
   double beam_specular_;
-  TransmissionIntegral transmission_;
-  KeptEffects kept_;
-  double dropped_;
+  RadiometrySettings settings_;
   bool knows_rho_;
   SpectralRule rule_;
   SpectralRule kept_rule_;                 ///< rule_, with 0 for the radiation of dropped effects

@@ -50,13 +50,12 @@ Eigen::VectorXd SkySampler::at(double wavelength_um) {
   return exitances;
 }
 
-std::shared_ptr<const SkyBasis> sky_basis(const SceneModel& scene, const std::vector<SceneVariant>& variants) {
+std::shared_ptr<const SkyBasis> sky_basis(const SceneModel& scene, std::span<const SpectralRule* const> rules) {
   if (!scene.surroundings || !scene.surroundings->profile) return nullptr;
   std::vector<Eigen::VectorXd> functions;
-  const auto add = [&](const SpectralRule& rule) {
-    for (const SpectralSample& sample : rule.samples) functions.push_back(vector_of(sample.sky));
-  };
-  for (const SceneVariant& variant : variants) add(spectral_rule(with_variant(scene, variant)));
+  for (const SpectralRule* rule : rules) {
+    for (const SpectralSample& sample : rule->samples) functions.push_back(vector_of(sample.sky));
+  }
   SkyNodes nodes(scene.surroundings->profile->ends_deg());
   auto basis = std::make_shared<const SkyBasis>(std::move(nodes), functions, kBasisShare * scene.accuracy.tolerance);
   return basis->size() > 0 ? basis : nullptr;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "model/sky_basis.hpp"
@@ -30,9 +31,9 @@ class SkySampler {
   std::vector<double> emitted_shares_;  ///< SkyProfile::emitted_share at each node
 };
 
-/// Functions of the zenith. For each sample of each variant, a weighted sum of the functions approximates
+/// Functions of the zenith. For each sample of the rules, a weighted sum of the functions approximates
 /// SpectralSample::sky. Null if the sky is uniform.
-std::shared_ptr<const SkyBasis> sky_basis(const SceneModel& scene, const std::vector<SceneVariant>& variants);
+std::shared_ptr<const SkyBasis> sky_basis(const SceneModel& scene, std::span<const SpectralRule* const> rules);
 
 /// Weights for each sample of `rule`: `basis`, summed with them, approximates the sky. Empty without basis or sky.
 std::vector<SkyWeights> sky_weights(const SpectralRule& rule, const SkyBasis* basis);

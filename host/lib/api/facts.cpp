@@ -58,8 +58,9 @@ Report plan(const Scene& scene, const std::string& device, bool keep_all) {
 std::vector<Effect> effects(const Scene& scene, const std::vector<Column>& points, bool keep_all) {
   const SceneValues& values = scene.impl().scene;
   const SceneEntries entries = point_entries(values, points_of_columns(points, PointsKind::kDirections));
-  std::vector<Effect> all = effects_of(values, entries, plan_effects(values, entries, keep_all));
-  add_influences(all, values, entries);
+  const EffectPlan plan = plan_effects(values, entries, keep_all);
+  std::vector<Effect> all = effects_of(values, entries, plan);
+  add_influences(all, values, entries, plan);
   return all;
 }
 

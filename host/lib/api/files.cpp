@@ -37,6 +37,13 @@ Points load_points(const std::filesystem::path& path, PointsKind kind, std::vect
   return read_points(path.string(), kind, results);
 }
 
+std::optional<ScatteringGap> timed_gap(const SceneValues& scene, const SceneEntries& entries, RunOutcome& run) {
+  const Clock::time_point start = Clock::now();
+  std::optional<ScatteringGap> gap = scattering_gap(scene, entries, run.plan);
+  run.estimates_s = seconds_since(start);
+  return gap;
+}
+
 void add_remarks(Report& report, const Points& points) {
   const Points::Column& um = points[Axis::kWavelength];
   if (um && !um->empty() && std::ranges::min(*um) > kLikelyNanometres)
@@ -105,8 +112,9 @@ Report Evaluator::write_table(const Scene& scene, const std::filesystem::path& p
       report.row("kept", "{}: the whole shard is there already", key("output", job.path.string()));
       return public_report(report, true, job.path);
     }
-    const RunOutcome run = dolp::write_table(values, job, impl_->maker(values));
-    const std::optional<ScatteringGap> gap = scattering_gap(values, entries, run.plan);
+    RunOutcome run = dolp::write_table(values, job, impl_->maker(values));
+    const std::optional<ScatteringGap> gap = timed_gap(values, entries, run);
+    run.wall_s += run.estimates_s;
     return public_report(run_report(values, run, gap, grid_text(entries.axes()), job.path.string()),
                          run.summary.meets_tolerance(), job.path);
   });
@@ -121,10 +129,17 @@ Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& 
     check_writable(path);
     Run run(values, std::move(entries), options, impl_->maker(values));
     ResultCsv csv = csv_of(path, points, quantities_of(values));
-    CallbackSink rows([&](const SceneEntries&, const std::vector<PointResult>& results) { csv.append(results); });
+    double rows_s = 0.0;
+    CallbackSink rows([&](const SceneEntries&, const std::vector<PointResult>& results) {
+      const Clock::time_point start = Clock::now();
+      csv.append(results);
+      rows_s += seconds_since(start);
+    });
     RunOutcome outcome = run.compute(rows);
-    const std::optional<ScatteringGap> gap = scattering_gap(values, run.entries(), outcome.plan);
+    const std::optional<ScatteringGap> gap = timed_gap(values, run.entries(), outcome);
+    const Clock::time_point start = Clock::now();
     csv.commit();
+    outcome.file_s = rows_s + seconds_since(start);
     outcome.wall_s = run.wall_s();
     ReportBuilder report = run_report(values, outcome, gap, fmt::format("{} points", points.size()), path.string());
     add_left_out(report, points);

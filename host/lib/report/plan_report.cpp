@@ -23,8 +23,7 @@ struct PlannedRun {
   SceneValues scene;
   EffectPlan plan;
   std::vector<Effect> effects;
-  Looked looked;  ///< entries and wavelengths from which add_influences() computed influences
-  ModelChange model_change;
+  Influences influences;
   RunPrediction run;
   double rule_digits = 0.0;
   int most_nodes = 0;                  ///< largest number of nodes per slope interval or azimuth arc; 0 without moments
@@ -71,7 +70,7 @@ void add_pipeline(PlannedRun& planned, const char* kernel, Precision precision, 
 
 void add_request(PlannedRun& planned, const MomentsRequest& request, const Device& device) {
   add_dispatches(planned, count_dispatches(request, device));
-  const KernelData data = kernel_data(request);
+  const KernelData data = kernel_data(request, Tables::kCounted);
   planned.rule_digits = data.rule.digits;
   planned.most_nodes = data.rule_order;
   std::string more;
@@ -92,10 +91,9 @@ PlannedRun planned_run(const SceneValues& scene, const std::string& device, Effe
   const Device limits = device_of(device, scene, planned);
   const std::size_t without_a_run = peak_resident_bytes();  // peak memory of scene and driver, before the prediction
   const SceneEntries entries = grid_entries(scene);
-  planned.plan = std::move(plan);
+  planned.plan = with_spectra(std::move(plan), scene, entries);
   planned.effects = effects_of(scene, entries, planned.plan);
-  planned.looked = add_influences(planned.effects, scene, entries);
-  planned.model_change = estimated_model_change(scene, entries);
+  planned.influences = add_influences(planned.effects, scene, entries, planned.plan);
   planned.run = predict_run(scene, entries, planned.plan, limits.has_double,
                             {[&](const MomentsRequest& request) { add_request(planned, request, limits); },
                              [&](const ScatteringRequest& request) { add_request(planned, request, limits); }});
@@ -106,7 +104,11 @@ PlannedRun planned_run(const SceneValues& scene, const std::string& device, Effe
         static_cast<double>(planned.dispatches.rows) / static_cast<double>(planned.run.moments);
     planned.run.is_exact = false;
   }
-  planned.lookup = lookup_forecast(scene, planned.plan);
+  const RunPrediction& run = planned.run;
+  const double of_moment = run.first_evaluations / static_cast<double>(std::max<std::size_t>(run.moments, 1));
+  planned.lookup =
+      lookup_forecast(scene, planned.plan, allowed_evaluations(run.first_evaluations + run.again_evaluations),
+                      of_moment * static_cast<double>(run.spectral_samples));
   planned.run.host_bytes += static_cast<double>(without_a_run);
   return planned;
 }
@@ -150,7 +152,7 @@ void add_effects(ReportBuilder& report, const PlannedRun& plan) {
   report.line(
       "  influence: change of (Q/I, U/I) without the effect, in points of DOLP (0.01): a bound of what is dropped, an "
       "estimate from {} of what is kept",
-      plan.looked.text());
+      plan.influences.looked.text());
 }
 
 std::string dropped_text(const EffectPlan& plan, double tolerance) {
@@ -174,8 +176,8 @@ std::string output_text(const SceneValues& scene, const EffectPlan& plan) {
 
 std::string how_counted(const RunPrediction& run) {
   if (run.is_exact) return "counted";
-  return run.counts_directions ? fmt::format("estimated from {} directions", kCountedDirections)
-                               : fmt::format("estimated from {} entries", kCountedEntries);
+  return run.counts_directions ? fmt::format("estimated from {} directions", run.counted_directions)
+                               : fmt::format("estimated from {} entries", run.counted_entries);
 }
 
 void add_attempts(ReportBuilder& report, const PlannedRun& plan, bool is_idle) {
@@ -229,8 +231,14 @@ void add_cost(ReportBuilder& report, const PlannedRun& plan) {
              key("estimated_cpu_s", run.cpu_s));
 }
 
+std::string error_text(double error) {
+  if (std::isnan(error)) return "error not examined";
+  return std::isfinite(error) ? fmt::format("error about {:.1g}", error) : "no error can be stated";
+}
+
 std::string needed_text(const AxisForecast& axis) {
-  if (axis.needed_values == 0) return fmt::format("no number of values up to {} is enough", kMostForecastValues);
+  if (axis.needed_values == 0 && axis.examined == 0) return "not examined: it would take a large part of the run";
+  if (axis.needed_values == 0) return fmt::format("no number of values up to {} is enough", axis.examined);
   return fmt::format("{} values are about enough for {:.1g}", axis.needed_values, axis.wanted);
 }
 
@@ -239,8 +247,7 @@ void add_lookup(ReportBuilder& report, const PlannedRun& plan) {
   for (const AxisForecast& axis : plan.lookup) {
     ReportBuilder& row = axes.emplace_back(kLabelWidth);
     row.row("lookup", "along {}: {} between {} values; {}", key("axis", description_of(axis.axis).name),
-            std::isfinite(axis.error) ? fmt::format("error about {:.1g}", axis.error) : "no error can be stated",
-            key("values", axis.values), needed_text(axis));
+            error_text(axis.error), key("values", axis.values), needed_text(axis));
     row.value("error", axis.error);
     row.value("wanted_error", axis.wanted);
     row.value("needed_values", axis.needed_values > 0 ? std::optional(axis.needed_values) : std::nullopt);
@@ -285,7 +292,7 @@ ReportBuilder plan_report(const SceneValues& scene, const std::string& device, E
              key("entries", plan.run.entries), key("spectral_samples", plan.run.spectral_samples));
   report.line("");
   add_effects(report, plan);
-  add_model_change(report, scene, plan.model_change);
+  add_model_change(report, scene, plan.influences.model_change);
   report.line("");
   report.row("dropped", "{}", dropped_text(plan.plan, scene.accuracy.tolerance));
   report.row("output", "{}", output_text(scene, plan.plan));

@@ -1,5 +1,6 @@
 #include "report/run_report.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <dolp/status.hpp>
@@ -55,6 +56,22 @@ void add_work(ReportBuilder& report, const EvaluationReport& e, std::size_t entr
   report.row("work", "{:.4g} integrand evaluations, {:.0f} an entry", key("evaluations", e.evaluations), per_entry);
   report.row_if(e.interpolated > 0, "of these", "{} moments interpolated or combined, from {}",
                 key("interpolated_moments", e.interpolated), key("interpolation_nodes", e.interpolation_nodes));
+}
+
+/// The parts of the time of a run. No two of them overlap, and `other_s` is what they leave of `wall_s`.
+void add_times(ReportBuilder& report, const RunOutcome& run) {
+  const EvaluationReport& e = run.evaluation;
+  const RunSummary& summary = run.summary;
+  const double named_s = e.setup_s + e.kernel_s + e.sums_s + e.curves_s + e.transfer_s + summary.response_basis_s +
+                         summary.radiometry_s + summary.check_s + run.spectral_rule_s + run.estimates_s + run.file_s;
+  report.row_if(e.evaluator != "vulkan", "of that", "{:.3f} s in sums of the host", e.sums_s);
+  report.row("", "{:.3f} s in the spectral rule, {:.3f} s in the response basis, {:.3f} s in reflectance curves",
+             key("spectral_rule_s", run.spectral_rule_s), key("response_basis_s", summary.response_basis_s),
+             key("reflectance_curves_s", e.curves_s));
+  report.row("", "{:.3f} s to move data of kernels, {:.3f} s in radiometry, {:.3f} s waiting for the file",
+             key("transfer_s", e.transfer_s), key("radiometry_s", summary.radiometry_s), key("file_s", run.file_s));
+  report.row("", "{:.3f} s in the check, {:.3f} s in estimates, {:.3f} s in the rest", key("check_s", summary.check_s),
+             key("estimates_s", run.estimates_s), key("other_s", std::max(run.wall_s - named_s, 0.0)));
 }
 
 void add_errors(ReportBuilder& report, const RunOutcome& run, double tolerance) {
@@ -120,8 +137,7 @@ ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, const 
   report.value("entries", summary.entries);
   add_effects(report, run);
   add_evaluation(report, run.evaluation, run.wall_s);
-  report.row("", "{:.3f} s in radiometry, {:.3f} s waiting for the file", key("radiometry_s", summary.radiometry_s),
-             key("file_s", run.file_s));
+  add_times(report, run);
   add_work(report, run.evaluation, summary.entries);
   report.value("rule", rule_text(scene.accuracy.tolerance, run.evaluation));
   add_errors(report, run, scene.accuracy.tolerance);

@@ -8,6 +8,7 @@
 
 #include <dolp/status.hpp>
 #include <set>
+#include <utility>
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "model/direction.hpp"
 #include "run/scene_run.hpp"
@@ -64,12 +65,12 @@ struct Sample {
   std::vector<double> weights;  ///< weights of the wavelengths in the integral over a band; {1} without a band
 };
 
-Sample sample_of(const SceneValues& scene, const SceneEntries& entries) {
+Sample sample_of(const SceneValues& scene, const SceneEntries& entries, const SpectralRules& rules) {
   Sample sample{scene, spread_entries(entries), {1.0}};
   // Float is enough for an estimate. Repeating inaccurate entries in double could take longer than the whole table.
   sample.scene.accuracy = {.tolerance = kTolerance, .precision = Precision::kFloat};
   if (sample.scene.emission) sample.scene.emission->has_bracket = false;
-  if (spectral_samples(scene, entries) <= kBandWavelengths) return sample;
+  if (rules.most_samples(entries) <= kBandWavelengths) return sample;
   using Rule = boost::math::quadrature::gauss<double, kBandWavelengths>;
   std::vector<double> shares;  // positions of the nodes in the band, from 0 (lower end) to 1 (upper end)
   sample.weights.clear();
@@ -116,8 +117,25 @@ PointResult sum_of(std::span<const PointResult> results, std::span<const double>
   return sum;
 }
 
-std::vector<PointResult> results_of(const Sample& sample, const std::optional<EffectPlan>& plan = {}) {
-  CpuEvaluator evaluator;
+/// Computes on the CPU. Remembers moments, because the same moments with and without an effect give its influence.
+class RememberingEvaluator final : public ModelEvaluator {
+ public:
+  std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
+    const auto known = std::ranges::find(known_, request, &std::pair<MomentsRequest, std::vector<Moments>>::first);
+    if (known != known_.end()) return known->second;
+    return known_.emplace_back(request, cpu_.evaluate(request, progress)).second;
+  }
+  std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override {
+    return cpu_.scatter(request, progress);
+  }
+  EvaluationReport report() const override { return cpu_.report(); }
+
+ private:
+  CpuEvaluator cpu_;
+  std::vector<std::pair<MomentsRequest, std::vector<Moments>>> known_;
+};
+
+std::vector<PointResult> results_of(const Sample& sample, ModelEvaluator& evaluator, const EffectPlan& plan) {
   const std::vector<PointResult> all = evaluate_scene(sample.scene, sample.entries, evaluator, {}, plan);
   std::vector<PointResult> sums;
   const std::size_t count = sample.weights.size();
@@ -125,6 +143,11 @@ std::vector<PointResult> results_of(const Sample& sample, const std::optional<Ef
     sums.push_back(sum_of(std::span(all).subspan(i, count), sample.weights));
   }
   return sums;
+}
+
+std::vector<PointResult> results_of(const Sample& sample) {
+  CpuEvaluator evaluator;
+  return results_of(sample, evaluator, keep_everything(sample.scene));
 }
 
 double polarisation_change(const PointResult& a, const PointResult& b) {
@@ -175,24 +198,28 @@ std::string Looked::text() const {
   return fmt::format("{} entries and {} wavelengths of the band", entries, wavelengths);
 }
 
-Looked add_influences(std::vector<Effect>& rows, const SceneValues& scene, const SceneEntries& entries) {
-  const Sample sample = sample_of(scene, entries);
-  const auto results_with = [&](const KeptEffects& kept) {
-    return results_of(sample, plan_to_keep(sample.scene, kept));
-  };
-  std::vector<PointResult> whole;
+Influences add_influences(std::vector<Effect>& rows, const SceneValues& scene, const SceneEntries& entries,
+                          const EffectPlan& plan) {
+  const Sample sample = sample_of(scene, entries, *with_spectra(plan, scene, entries).rules);
+  const EffectPlan all = with_spectra(plan_to_keep(sample.scene, {}), sample.scene, sample.entries);
+  RememberingEvaluator evaluator;
+  const std::vector<PointResult> whole = results_of(sample, evaluator, all);
   for (Effect& row : rows) {
     if (row.state != EffectState::kKept || !row.part || row.influence) continue;
-    if (whole.empty()) whole = results_with({});
-    row.influence = largest_change(whole, results_with(without({}, *row.part)), polarisation_change);
+    EffectPlan others = plan_to_keep(sample.scene, without({}, *row.part));
+    others.rules = all.rules;
+    if (others.kept.moments && others.kept.surroundings && others.kept.profile) others.sky = all.sky;
+    row.influence = largest_change(whole, results_of(sample, evaluator, others), polarisation_change);
   }
-  return looked_at(sample);
+  Influences influences{looked_at(sample)};
+  for (const PointResult& result : whole) influences.model_change.add(result);
+  return influences;
 }
 
 std::optional<ScatteringGap> scattering_gap(const SceneValues& scene, const SceneEntries& entries,
                                             const EffectPlan& plan) {
   if (!has_gap(scene, plan)) return {};
-  Sample sample = sample_of(scene, entries);
+  Sample sample = sample_of(scene, entries, *plan.rules);
   sample.scene.emission->model = EmissionModel::kMoments;
   const std::vector<PointResult> kirchhoff = results_of(sample);
   sample.scene.emission->model = EmissionModel::kDirect;
@@ -200,12 +227,6 @@ std::optional<ScatteringGap> scattering_gap(const SceneValues& scene, const Scen
   const std::optional<double> dolp = largest_change(
       kirchhoff, direct, [](const PointResult& a, const PointResult& b) { return std::abs(a[kDolp] - b[kDolp]); });
   return dolp ? std::optional(ScatteringGap{*dolp, looked_at(sample)}) : std::nullopt;
-}
-
-ModelChange estimated_model_change(const SceneValues& scene, const SceneEntries& entries) {
-  ModelChange largest;
-  for (const PointResult& result : results_of(sample_of(scene, entries))) largest.add(result);
-  return largest;
 }
 
 }  // namespace dolp

@@ -25,10 +25,16 @@ struct Looked {
   std::string text() const;     ///< "32 entries and 8 wavelengths of the band"
 };
 
+struct Influences {
+  Looked looked;
+  ModelChange model_change;  ///< of the entries
+};
+
 /// Sets Effect::influence of each effect that the plan keeps: the largest change of the vector (Q/I, U/I) if a few
 /// entries are computed without the effect. If the accuracy of DOLP is unknown for all of these entries, the influence
 /// stays empty. Accuracy: within a factor of 2 of the largest change in all entries (tests Estimates_*).
-Looked add_influences(std::vector<Effect>& rows, const SceneValues& scene, const SceneEntries& entries);
+Influences add_influences(std::vector<Effect>& rows, const SceneValues& scene, const SceneEntries& entries,
+                          const EffectPlan& plan);
 
 struct ScatteringGap {
   double dolp = 0.0;
@@ -40,8 +46,5 @@ struct ScatteringGap {
 /// for example in bistatic mode or if the scene follows all bounces. Accuracy: within a factor of 2.
 std::optional<ScatteringGap> scattering_gap(const SceneValues& scene, const SceneEntries& entries,
                                             const EffectPlan& plan);
-
-/// The ModelChange of a few entries.
-ModelChange estimated_model_change(const SceneValues& scene, const SceneEntries& entries);
 
 }  // namespace dolp

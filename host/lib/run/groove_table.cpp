@@ -11,7 +11,6 @@
 #include "plan/further_light.hpp"
 #include "radiometry/radiometry.hpp"
 #include "run/part_requests.hpp"
-#include "spectrum/spectral_rule.hpp"
 
 namespace dolp {
 namespace {
@@ -82,7 +81,7 @@ GrooveTable::AxisNodes linear_nodes(const std::vector<double>& values, std::size
 
 }  // namespace
 
-GrooveTable::GrooveTable(const SceneValues& scene, const SceneEntries& grid) {
+GrooveTable::GrooveTable(const SceneValues& scene, const SceneEntries& grid, const SpectralRules& rules) {
   const Axes& axes = grid.whole_axes();
   for (const Axis axis : {Axis::kN, Axis::kK, Axis::kTheta, Axis::kSigma, Axis::kQ}) {
     std::vector<double> values = axes[axis];
@@ -100,7 +99,8 @@ GrooveTable::GrooveTable(const SceneValues& scene, const SceneEntries& grid) {
     SceneVariant variant;
     if (!axes[Axis::kMaterial].empty()) variant.material = static_cast<std::uint32_t>(i / bands_);
     if (!axes[Axis::kBand].empty()) variant.band = static_cast<std::uint32_t>(i % bands_);
-    fill(blocks_.emplace_back(), scene, variant, grid);
+    const std::vector<FacetOptics> optics = optics_at_nodes(blocks_.emplace_back(), variant, grid, rules);
+    fill(blocks_.back(), scene, optics);
   }
 }
 
@@ -110,11 +110,12 @@ std::size_t GrooveTable::outer_nodes() const {
   return count;
 }
 
-void GrooveTable::fill(Block& block, const SceneValues& scene, SceneVariant variant, const SceneEntries& grid) {
-  std::vector<FacetOptics> optics;  // for each node of wavelength, n and k: one per group
+std::vector<FacetOptics> GrooveTable::optics_at_nodes(Block& block, SceneVariant variant, const SceneEntries& grid,
+                                                      const SpectralRules& rules) const {
+  std::vector<FacetOptics> optics;
   for (const double wavelength_um : axes_[Axis::kWavelength].nodes) {
     if (wavelength_um > 0.0) variant.wavelength_um = wavelength_um;
-    const std::vector<FacetOptics> samples = spectral_rule(with_variant(scene, variant)).indices();
+    const std::vector<FacetOptics> samples = rules.at(variant)->indices();
     for (const double n : axes_[Axis::kN].nodes) {
       for (const double k : axes_[Axis::kK].nodes) {
         const std::optional<OpticalConstants> index =
@@ -126,6 +127,10 @@ void GrooveTable::fill(Block& block, const SceneValues& scene, SceneVariant vari
       }
     }
   }
+  return optics;
+}
+
+void GrooveTable::fill(Block& block, const SceneValues& scene, const std::vector<FacetOptics>& optics) const {
   const std::vector<double>& thetas = axes_[Axis::kTheta].nodes;
   const std::vector<double>& sigmas = axes_[Axis::kSigma].nodes;
   const std::vector<double>& qs = axes_[Axis::kQ].nodes;

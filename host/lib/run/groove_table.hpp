@@ -8,6 +8,7 @@
 #include "model/further_light.hpp"
 #include "model/scene_entry.hpp"
 #include "scene/scene.hpp"
+#include "spectrum/spectral_rules.hpp"
 
 namespace dolp {
 
@@ -16,7 +17,7 @@ namespace dolp {
 class GrooveTable {
  public:
   /// `grid`: the whole grid of a run. All of its parts get the same values.
-  GrooveTable(const SceneValues& scene, const SceneEntries& grid);
+  GrooveTable(const SceneValues& scene, const SceneEntries& grid, const SpectralRules& rules);
 
   /// Nodes of an axis, and for each value of the axis the weights with which values at the nodes add up.
   struct AxisNodes {
@@ -56,7 +57,10 @@ class GrooveTable {
   };
 
   std::size_t outer_nodes() const;
-  void fill(Block& block, const SceneValues& scene, SceneVariant variant, const SceneEntries& grid);
+  /// The optics of each group at each node of wavelength, n and k. Sets block.groups.
+  std::vector<FacetOptics> optics_at_nodes(Block& block, SceneVariant variant, const SceneEntries& grid,
+                                           const SpectralRules& rules) const;
+  void fill(Block& block, const SceneValues& scene, const std::vector<FacetOptics>& optics) const;
 
   AxisArray<AxisNodes> axes_;
   std::vector<Block> blocks_;  ///< for each material, for each band

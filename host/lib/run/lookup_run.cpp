@@ -132,7 +132,8 @@ double value_at(const std::vector<double>& values, double share) {
 
 class Forecast {
  public:
-  Forecast(const SceneValues& scene, const EffectPlan& plan) : scene_(scene), grid_(scene.grid), plan_(plan) {
+  Forecast(const SceneValues& scene, const EffectPlan& plan, double evaluations, double of_entry)
+      : scene_(scene), grid_(scene.grid), plan_(plan), allowed_(evaluations), of_entry_(of_entry) {
     scene_.wind_m_s.clear();
     scene_.accuracy.may_interpolate = false;
   }
@@ -149,21 +150,31 @@ class Forecast {
         if (other != axis) wanted /= is_read_with_four(other) ? kWeightsOfFour : kWeightsOfSix;
       }
       const std::size_t lines = axes.size() > 1 ? kLines : 1, values = grid_[axis].size();
-      forecasts.push_back({axis, values, error_with(axis, values, lines), wanted, needed(axis, wanted, lines)});
+      AxisForecast& forecast = forecasts.emplace_back(AxisForecast{axis, values, kNan, wanted});
+      if (values < kLeastValues || has_left(values, lines)) forecast.error = error_with(axis, values, lines);
+      find_needed(forecast, lines);
     }
     return forecasts;
   }
 
  private:
-  std::size_t needed(Axis axis, double wanted, std::size_t lines) {
-    const double order = is_read_with_four(axis) ? kOrderOfFour : kOrderOfSix;
+  void find_needed(AxisForecast& forecast, std::size_t lines) {
+    const double order = is_read_with_four(forecast.axis) ? kOrderOfFour : kOrderOfSix;
     for (std::size_t values = 2 * kLeastValues; values <= kMostForecastValues; values *= 2) {
-      const double error = error_with(axis, values, lines);
-      if (error > wanted) continue;
-      const double steps = static_cast<double>(values - 1) * std::pow(error / wanted, 1.0 / order);
-      return std::clamp(static_cast<std::size_t>(std::ceil(steps)) + 1, values / 2, values);
+      if (!has_left(values, lines)) return;
+      forecast.examined = values;
+      const double error = error_with(forecast.axis, values, lines);
+      if (error > forecast.wanted) continue;
+      const double steps = static_cast<double>(values - 1) * std::pow(error / forecast.wanted, 1.0 / order);
+      forecast.needed_values = std::clamp(static_cast<std::size_t>(std::ceil(steps)) + 1, values / 2, values);
+      return;
     }
-    return 0;
+  }
+
+  /// True if error_with() takes no more evaluations than are left.
+  bool has_left(std::size_t values, std::size_t lines) const {
+    const auto entries = static_cast<double>(lines * std::min(values, (kParts + 1) * kStretch));
+    return evaluator_.report().evaluations + entries * of_entry_ <= allowed_;
   }
 
   double error_with(Axis axis, std::size_t values, std::size_t lines) {
@@ -220,6 +231,8 @@ class Forecast {
   SceneValues scene_;  ///< the given scene, but with the grid of the line that is examined
   const Axes& grid_;   ///< the grid of the given scene
   const EffectPlan& plan_;
+  double allowed_;
+  double of_entry_;
   CpuEvaluator evaluator_;
 };
 
@@ -237,8 +250,9 @@ std::vector<PointResult> lookup_points(const TableLookup& lookup, const SceneVal
   return results;
 }
 
-std::vector<AxisForecast> lookup_forecast(const SceneValues& scene, const EffectPlan& plan) {
-  return Forecast(scene, plan).all();
+std::vector<AxisForecast> lookup_forecast(const SceneValues& scene, const EffectPlan& plan, double evaluations,
+                                          double of_entry) {
+  return Forecast(scene, plan, evaluations, of_entry).all();
 }
 
 }  // namespace dolp

@@ -48,8 +48,8 @@ constexpr std::size_t kLeastEntries = 24;
 // responses only if they need at least 1 / kMostOfPoints of these combinations.
 constexpr std::size_t kMostOfPoints = 2;
 
-std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const SceneEntries& entries) {
-  const SpectralIndices spectral = spectral_indices(scene, entries);
+std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const SceneEntries& entries,
+                                           const SpectralIndices& spectral) {
   const bool has_one_index =
       spectral.size() == 1 && spectral.front().size() == 1 &&
       std::ranges::none_of(entries.all(), [](const SceneEntry& e) { return e.index.has_value(); });
@@ -69,14 +69,14 @@ std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const Scene
   return {indices.begin(), indices.end()};
 }
 
-std::vector<FacetOptics> indices_of_grid(const SceneValues& scene, const SceneEntries& entries) {
+std::vector<FacetOptics> indices_of_grid(const EffectPlan& plan, const SceneEntries& entries) {
   const PerAxis& counts = entries.whole();
   if (counts[Axis::kTheta] * counts[Axis::kSigma] * counts[Axis::kQ] < kLeastEntries) return {};
   const SceneEntries whole = SceneEntries::of_grid(entries.whole_axes(), entries.index());
   std::vector<FacetOptics> indices;
   if (whole.has_own_index()) {
     PerAxis on_axes{};
-    for (const std::vector<FacetOptics>& samples : spectral_indices(scene, whole)) {
+    for (const std::vector<FacetOptics>& samples : spectral_indices(plan, whole)) {
       for (std::size_t& n = on_axes[Axis::kN] = 0; n < whole.counts()[Axis::kN]; ++n) {
         for (std::size_t& k = on_axes[Axis::kK] = 0; k < whole.counts()[Axis::kK]; ++k) {
           const std::vector<FacetOptics> with_this_index = with_index(samples, whole.index_at(on_axes));
@@ -87,7 +87,7 @@ std::vector<FacetOptics> indices_of_grid(const SceneValues& scene, const SceneEn
     }
     return indices;
   }
-  for (const std::vector<FacetOptics>& of_variant : spectral_indices(scene, whole)) {
+  for (const std::vector<FacetOptics>& of_variant : spectral_indices(plan, whole)) {
     if (indices.size() < of_variant.size() ||
         !std::ranges::equal(of_variant, std::span(indices).last(of_variant.size())))
       indices.insert(indices.end(), of_variant.begin(), of_variant.end());
@@ -125,10 +125,9 @@ std::vector<FacetOptics> with_index(const std::vector<FacetOptics>& samples,
   return changed;
 }
 
-SpectralIndices spectral_indices(const SceneValues& scene, const SceneEntries& entries) {
+SpectralIndices spectral_indices(const EffectPlan& plan, const SceneEntries& entries) {
   SpectralIndices indices;
-  for (const SceneVariant& variant : entries.variants())
-    indices.push_back(spectral_rule(with_variant(scene, variant)).indices());
+  for (const SceneVariant& variant : entries.variants()) indices.push_back(plan.rules->at(variant)->indices());
   return indices;
 }
 
@@ -332,8 +331,9 @@ std::shared_ptr<const ResponseBasis> run_basis(const SceneValues& scene, const S
                                                const EffectPlan& plan) {
   const bool has_bounces = plan.kept.further_bounces && scene.surface.scattering == Scattering::kMultiple;
   if (!scene.accuracy.may_interpolate || !plan.kept.moments || has_bounces) return nullptr;
-  const std::vector<FacetOptics> indices =
-      entries.is_grid() ? indices_of_grid(scene, entries) : indices_of_points(scene, entries);
+  const std::vector<FacetOptics> indices = entries.is_grid()
+                                               ? indices_of_grid(plan, entries)
+                                               : indices_of_points(scene, entries, spectral_indices(plan, entries));
   const std::size_t passes = response_passes(plan.needs_direct, plan.sky ? plan.sky->size() : 0);
   return indices.empty() ? nullptr : ResponseBasis::of(indices, scene.accuracy.tolerance, passes);
 }

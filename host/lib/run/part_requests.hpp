@@ -43,7 +43,7 @@ Scattered beam_without_evaluator(const SceneValues& scene, double theta_deg);
 
 /// For each variant (material, band, wavelength or temperature) of the entries: n and k at each spectral sample.
 using SpectralIndices = std::vector<std::vector<FacetOptics>>;
-SpectralIndices spectral_indices(const SceneValues& scene, const SceneEntries& entries);
+SpectralIndices spectral_indices(const EffectPlan& plan, const SceneEntries& entries);
 
 /// Replaces n and k of the surface by `index` in each of `samples`, and keeps the films. If there are no films, all
 /// samples become equal, so the result has only one. An empty `index` replaces nothing.

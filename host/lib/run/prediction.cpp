@@ -14,14 +14,13 @@
 namespace dolp {
 namespace {
 
-/// The entries of a few directions, spread evenly over the grid, at one temperature. If `has_responses`, they have all
-/// wavelengths and indices of the grid, which share responses (see run_basis). Otherwise they have one of each.
-SceneEntries entries_of_drawn_directions(const SceneEntries& grid, bool has_responses) {
+/// The entries of `count` directions, spread evenly over the grid, at one temperature. If `has_responses`, they have
+/// all wavelengths and indices of the grid, which share responses (see run_basis). Otherwise they have one of each.
+SceneEntries entries_of_drawn_directions(const SceneEntries& grid, std::size_t count, bool has_responses) {
   Axes axes = grid.axes();
   std::vector<double>& theta_deg = axes[Axis::kTheta];
   std::ranges::sort(theta_deg);
   std::vector<double> drawn;
-  const std::size_t count = std::min(theta_deg.size(), kCountedDirections);
   for (std::size_t i = 0; i < count; ++i) drawn.push_back(theta_deg[(2 * i + 1) * theta_deg.size() / (2 * count)]);
   theta_deg = drawn;
   for (const Axis axis : kAllAxes) {
@@ -87,7 +86,7 @@ double scale_of(std::size_t all, const Count& counted) {
 
 struct FirstLevel {
   FirstLevel(const SceneValues& scene, const SceneEntries& part, const EffectPlan& plan, const RefinementLevel& level)
-      : indices(spectral_indices(scene, part)),
+      : indices(spectral_indices(plan, part)),
         requests(scene, indices, plan, {part}, level),
         moments(requests.moments()) {}
   std::size_t kernel_requests() const {
@@ -100,19 +99,55 @@ struct FirstLevel {
   MomentsPlan moments;
 };
 
-void count_work(RunPrediction& run, const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
-                bool has_double, std::size_t given) {
-  const SceneEntries drawn = run.counts_directions ? entries_of_drawn_directions(entries, run.first.basis != nullptr)
-                                                   : drawn_entries(entries, kCountedEntries);
-  const SceneEntries part = run_parts(drawn, run.spectral_samples).front();
+struct Sample {
+  SceneEntries entries;
+  Count moments;
+  Count beams;
+  double evaluations() const {
+    return moments.first_evaluations + moments.again_evaluations + beams.first_evaluations + beams.again_evaluations;
+  }
+};
+
+/// Computes a sample of `count` entries or, if the entries of a direction share work, of `count` directions.
+Sample counted(const RunPrediction& run, const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
+               std::size_t count) {
+  const SceneEntries drawn = run.counts_directions
+                                 ? entries_of_drawn_directions(entries, count, run.first.basis != nullptr)
+                                 : drawn_entries(entries, count);
+  Sample sample{run_parts(drawn, run.spectral_samples).front(), {}, {}};
   RefinementLevel level = run.first;
-  level.basis = run_basis(scene, part, plan);
-  CountingEvaluator counting(has_double, FirstLevel(scene, part, plan, level).kernel_requests());
-  evaluate_scene(scene, part, counting, {}, plan);
-  const Count& moments = counting.moments();
-  const Count& beams = counting.beams();
+  level.basis = run_basis(scene, sample.entries, plan);
+  CountingEvaluator counting(run.has_double, FirstLevel(scene, sample.entries, plan, level).kernel_requests());
+  evaluate_scene(scene, sample.entries, counting, {}, plan);
+  sample.moments = counting.moments();
+  sample.beams = counting.beams();
+  return sample;
+}
+
+/// Counts the work of a small sample first. If the run allows it, counts a larger sample instead.
+Sample counted_sample(const RunPrediction& run, const SceneValues& scene, const SceneEntries& entries,
+                      const EffectPlan& plan) {
+  const std::size_t all = run.counts_directions ? entries.theta_deg().size() : entries.size();
+  const std::size_t most = std::min(all, run.counts_directions ? kCountedDirections : kCountedEntries);
+  const std::size_t entries_of_few = std::max<std::size_t>(1, kFewCountedMoments / run.spectral_samples);
+  const std::size_t few = run.counts_directions ? 1 : std::min(most, entries_of_few);
+  Sample sample = counted(run, scene, entries, plan, few);
+  const double each = sample.evaluations() / static_cast<double>(few);
+  const double allowed = allowed_evaluations(each * static_cast<double>(all));
+  const double fit = each > 0.0 ? std::min(allowed / each, static_cast<double>(most)) : static_cast<double>(most);
+  const auto count = static_cast<std::size_t>(fit);
+  return count > few ? counted(run, scene, entries, plan, count) : sample;
+}
+
+void count_work(RunPrediction& run, const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
+                std::size_t given) {
+  const Sample sample = counted_sample(run, scene, entries, plan);
+  const Count& moments = sample.moments;
+  const Count& beams = sample.beams;
   const double moments_scale = scale_of(run.moments, moments);
   const double beams_scale = scale_of(run.beams, beams);
+  run.counted_entries = sample.entries.size();
+  if (run.counts_directions) run.counted_directions = sample.entries.theta_deg().size();
   run.first_evaluations = moments_scale * moments.first_evaluations;
   run.again_evaluations = moments_scale * moments.again_evaluations;
   run.again_beams = beams_scale * static_cast<double>(beams.again);
@@ -131,11 +166,14 @@ std::size_t response_bytes(const MomentsStep& step) {
 
 }  // namespace
 
+double allowed_evaluations(double of_run) { return std::max(kFreeEvaluations, of_run / kPlanShare); }
+
 RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
                           bool has_double, const RequestVisitor& visit) {
   RunPrediction run;
   run.entries = entries.size();
-  run.spectral_samples = spectral_samples(scene, entries);
+  run.has_double = has_double;
+  run.spectral_samples = plan.rules->most_samples(entries);
   run.first = first_level(scene.accuracy, has_double);
   std::size_t largest = 0, columns_before = 0, given = 0;
   run.first.basis = run_basis(scene, entries, plan);
@@ -163,7 +201,7 @@ RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries,
     columns_before = columns;
   }
   run.host_bytes = static_cast<double>(largest);
-  if (run.moments + run.beams > 0) count_work(run, scene, entries, plan, has_double, given);
+  if (run.moments + run.beams > 0) count_work(run, scene, entries, plan, given);
   return run;
 }
 

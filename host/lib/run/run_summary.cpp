@@ -64,8 +64,7 @@ void for_each_number(Summary& s, const Use& use) {
   use(s.model_change.status);
   use(s.check.entries);
   use(s.check.worst_ratio);
-  use(s.radiometry_s);
-  for (auto* number : {&s.work.evaluations, &s.work.kernel_s, &s.work.sums_s}) use(*number);
+  use(s.work.evaluations);
   for (auto* number : {&s.work.dispatches, &s.work.interpolated, &s.work.interpolation_nodes}) use(*number);
 }
 
@@ -152,7 +151,9 @@ void RunSummary::add(const RunSummary& other) {
   add_range(gains, other.gains);
   model_change.add(other.model_change);
   check.add(other.check);
+  response_basis_s += other.response_basis_s;
   radiometry_s += other.radiometry_s;
+  check_s += other.check_s;
   work += other.work;
 }
 

@@ -62,7 +62,9 @@ struct RunSummary {
   EnergyRange loses, gains;
   ModelChange model_change;
   SelfCheck check;
+  double response_basis_s = 0.0;  ///< time to plan which moments kernels compute (MomentsPlan), with its responses
   double radiometry_s = 0.0;
+  double check_s = 0.0;  ///< time of the check, which the other times do not contain
   Work work;
 
   void add(const SceneValues& scene, const SceneEntries& part, std::span<const PointResult> results);
@@ -71,7 +73,8 @@ struct RunSummary {
   std::size_t count(std::uint32_t bit) const;
   bool meets_tolerance() const { return count(kToleranceNotMet) + count(kRhoToleranceNotMet) == 0; }
 
-  /// text() writes the summary as one line; from_text() reads that line, and returns nothing for any other line.
+  /// text() writes the summary as one line; from_text() reads that line, and returns nothing for any other line. The
+  /// line has no times, because they are parts of the time of one run.
   std::string text() const;
   static std::optional<RunSummary> from_text(const std::string& text);
 };

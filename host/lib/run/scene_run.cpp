@@ -36,7 +36,8 @@ struct Spectra {
           const ModelEvaluator* evaluator) {
     const TransmissionIntegral transmission = evaluator ? evaluator->transmission() : transmission_integral;
     for (const SceneVariant& variant : variants)
-      radiometries.emplace_back(with_variant(scene, variant), plan.kept, plan.bound, plan.sky, transmission);
+      radiometries.emplace_back(with_variant(scene, variant), *plan.rules->at(variant),
+                                RadiometrySettings{plan.kept, plan.bound, plan.sky, transmission});
     for (const Radiometry& radiometry : radiometries) indices.push_back(radiometry.rule().indices());
   }
   std::vector<Radiometry> radiometries;
@@ -180,7 +181,11 @@ EvaluatorResults run_requests(const RunContext& context, const PartRequests& req
   if (moments > 0) {
     evaluated.moments = planned_moments(plan, *context.evaluator, part_of(progress, 0, total), context.summary.work);
   }
-  if (beams > 0) evaluated.beams = context.evaluator->scatter(requests.beams(), part_of(progress, moments, total));
+  if (beams == 0) return evaluated;
+  const EvaluationReport before = context.evaluator->report();
+  const auto start = std::chrono::steady_clock::now();
+  evaluated.beams = context.evaluator->scatter(requests.beams(), part_of(progress, moments, total));
+  context.summary.work.transfer_s += transfer_time(before, context.evaluator->report(), seconds_since(start));
   return evaluated;
 }
 
@@ -199,8 +204,11 @@ std::vector<PointResult> results_of(const RunContext& context, const Selection& 
 
 std::vector<PointResult> computed_at(const RunContext& context, const Selection& selection,
                                      const RefinementLevel& level, const Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
   const PartRequests requests(context.scene, context.spectra.indices, context.plan, selection, level);
-  return results_of(context, selection, requests, MomentsPlan(requests.moments()), progress);
+  const MomentsPlan plan(requests.moments());
+  context.summary.response_basis_s += seconds_since(start);
+  return results_of(context, selection, requests, plan, progress);
 }
 
 bool is_better(const PointResult& a, const PointResult& b) {
@@ -265,8 +273,10 @@ FirstResults first_results(const RunContext& context, const SceneEntries& part, 
   first.level = first_level(context.scene.accuracy, context.evaluator->has_double());
   if (context.evaluator->computes_each_entry()) first.level.may_interpolate = false;
   if (first.level.may_interpolate) first.level.basis = context.basis;
+  const auto start = std::chrono::steady_clock::now();
   const PartRequests requests(context.scene, context.spectra.indices, context.plan, {part}, first.level);
   const MomentsPlan plan(requests.moments());
+  context.summary.response_basis_s += seconds_since(start);
   first.results = results_of(context, {part}, requests, plan, progress);
   const std::vector<char> saves = plan.saving_directions();
   for (std::size_t i = 0; !saves.empty() && i < part.size(); i += part.entries_per_direction()) {
@@ -314,7 +324,19 @@ std::vector<PointResult> recompute_for_check(const RunContext& context, const Sc
                                              const RefinementLevel& first, std::span<const std::size_t> positions) {
   if (positions.empty()) return {};
   const Progress none = [](std::size_t, std::size_t) { return true; };
-  return computed_at(context, {part, positions}, check_level(first), none);
+  const RunSummary before = context.summary;
+  const EvaluationReport evaluated_before = context.evaluator->report();
+  const auto start = std::chrono::steady_clock::now();
+  std::vector<PointResult> results = computed_at(context, {part, positions}, check_level(first), none);
+  // The times of the check become one time, so that they do not count twice.
+  const EvaluationReport evaluated = context.evaluator->report();
+  RunSummary& summary = context.summary;
+  summary.check_s += seconds_since(start) - (evaluated.setup_s - evaluated_before.setup_s);
+  summary.response_basis_s = before.response_basis_s;
+  summary.radiometry_s = before.radiometry_s;
+  for (double Work::*const time : {&Work::kernel_s, &Work::sums_s, &Work::curves_s, &Work::transfer_s})
+    summary.work.*time = before.work.*time - (evaluated.*time - evaluated_before.*time);
+  return results;
 }
 
 /// `checked`: positions in the whole table. Returns the positions in `part` of the checked entries that have moments.
@@ -381,19 +403,6 @@ std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spe
   return entries.parts(std::max<std::size_t>(1, moments / spectral_samples));
 }
 
-std::size_t spectral_samples(const SceneValues& scene, const SceneEntries& entries) {
-  if (!scene.spectrum.is_band()) return 1;
-  std::size_t most = 0;
-  const SceneVariant* last = nullptr;
-  for (const SceneVariant& variant : entries.variants()) {
-    const bool is_new =
-        !last || variant.material != last->material || variant.band != last->band || variant.films != last->films;
-    if (is_new) most = std::max(most, spectral_rule(with_variant(scene, variant)).samples.size());
-    last = &variant;
-  }
-  return most;
-}
-
 void report_start(const Progress& progress, std::size_t total) {
   if (progress && !progress(0, total)) throw Cancelled();
 }
@@ -405,6 +414,7 @@ Run::Run(const SceneValues& scene, SceneEntries entries, const RunOptions& optio
       entries_.is_grid() ? SceneEntries::of_grid(entries_.whole_axes(), entries_.index()) : entries_;
   outcome_.plan = plan_effects(scene, whole, options.keep_all);
   outcome_.effects = effects_of(scene, whole, outcome_.plan);
+  outcome_.spectral_rule_s = wall_s();
   report_start(progress_, entries_.size());
   if (wants_evaluator(scene, entries_, outcome_.plan)) evaluator_ = make_evaluator();
   if (evaluator_) {
@@ -414,7 +424,7 @@ Run::Run(const SceneValues& scene, SceneEntries entries, const RunOptions& optio
   }
 }
 
-std::vector<SceneEntries> Run::parts() const { return run_parts(entries_, spectral_samples(scene_, entries_)); }
+std::vector<SceneEntries> Run::parts() const { return run_parts(entries_, plan().rules->most_samples(entries_)); }
 
 RunOutcome Run::compute(Sink& sink) {
   outcome_.summary = run_scene(scene_, entries_, outcome_.plan, evaluator_, sink, progress_);
@@ -430,16 +440,18 @@ double Run::wall_s() const { return seconds_since(start_); }
 
 RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& given,
                      ModelEvaluator* evaluator, Sink& sink, const Progress& progress) {
-  const EffectPlan plan = with_sky(given, scene, entries);
-  const std::size_t samples = spectral_samples(scene, entries);
+  const EffectPlan plan = with_spectra(given, scene, entries);
+  const std::size_t samples = plan.rules->most_samples(entries);
   const std::size_t whole = entries.is_grid() ? size_of(entries.whole()) : entries.size();
   std::vector<std::size_t> checked;
   if (entries.is_grid() && plan.kept.moments)
     checked = checked_positions(whole, checked_count(whole * samples), scene_seed(scene));
-  const std::shared_ptr<const ResponseBasis> basis = evaluator ? run_basis(scene, entries, plan) : nullptr;
-  const bool is_judged = entries.is_grid() && plan.kept.moments && scene.surface.scattering == Scattering::kSingle;
-  const auto grooves = is_judged ? std::make_shared<const GrooveTable>(scene, entries) : nullptr;
   RunSummary summary = sink.summary_of_done();
+  const auto start = std::chrono::steady_clock::now();
+  const std::shared_ptr<const ResponseBasis> basis = evaluator ? run_basis(scene, entries, plan) : nullptr;
+  summary.response_basis_s += seconds_since(start);
+  const bool is_judged = entries.is_grid() && plan.kept.moments && scene.surface.scattering == Scattering::kSingle;
+  const auto grooves = is_judged ? std::make_shared<const GrooveTable>(scene, entries, *plan.rules) : nullptr;
   const auto with_evaluation = [&] {
     RunSummary all = summary;
     if (evaluator) all.work += evaluator->report();
@@ -454,7 +466,9 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
     if (left > 0) {
       --left;
     } else {
+      const auto spectra_start = std::chrono::steady_clock::now();
       const Spectra spectra(scene, plan, part.variants(), evaluator);
+      summary.radiometry_s += seconds_since(spectra_start);
       const RunContext context{scene, plan, spectra, evaluator, basis, summary, grooves};
       std::vector<PointResult> results = part_results(context, part, checked, summary.check, part_progress);
       summary.add(scene, part, results);

@@ -76,7 +76,10 @@ struct RunOutcome {
   RunSummary summary;           ///< summary of all parts, also of those that an earlier run finished
   EvaluationReport evaluation;  ///< device and precision of this run, and the work for all parts
   double wall_s = 0.0;
-  double file_s = 0.0;  ///< time in s in which the run waited for the table to be written; a part of wall_s
+  // Parts of wall_s. `summary` and `evaluation` have others.
+  double spectral_rule_s = 0.0;  ///< for the samples of the spectrum, and for the effects that follow from them
+  double estimates_s = 0.0;      ///< for the estimated error of single scattering
+  double file_s = 0.0;           ///< in which the run waited for the table to be written
 };
 
 /// A run of a scene over a grid, a part of a grid, or points. The constructor decides which effects are computed. It
@@ -111,9 +114,6 @@ class Run {
 };
 
 std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spectral_samples);
-
-/// Largest number of wavelengths at which an entry is computed, over all bands, materials and films.
-std::size_t spectral_samples(const SceneValues& scene, const SceneEntries& entries);
 
 void report_start(const Progress& progress, std::size_t total);
 

@@ -163,7 +163,11 @@ TEST(SkyBasis, FewFunctions_StandForAllWavelengths) {
   SceneValues scene = parse(kMinimal + "[surroundings]\nprofile = \"clear-sky\"\n");
   std::vector<double> wavelengths;
   for (double um = 3.0; um <= 14.0; um += 0.5) wavelengths.push_back(um);
-  const std::shared_ptr<const SkyBasis> basis = sky_basis(scene, variants_of(axes_of({}, {}, {}, wavelengths)));
+  std::vector<SpectralRule> rules;
+  for (const double um : wavelengths) rules.push_back(spectral_rule(at_wavelength(scene, um)));
+  std::vector<const SpectralRule*> all;
+  for (const SpectralRule& rule : rules) all.push_back(&rule);
+  const std::shared_ptr<const SkyBasis> basis = sky_basis(scene, all);
   ASSERT_TRUE(basis);
   EXPECT_LE(basis->size(), 3U);  // the air has three emittances
   SkySampler sampler(*scene.surroundings->profile);

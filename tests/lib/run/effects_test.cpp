@@ -117,7 +117,7 @@ TEST(EffectBounds, RandomScenes_HoldWhatEachPartChanges) {
     SceneValues scene = scenes.next();
     scene.accuracy.tolerance = 1e-3;
     const std::vector<SceneEntry> entries = scenes.entries(scene);
-    const EffectBounds bounds(scene, extents_of(entries).front());
+    const EffectBounds bounds(scene, spectral_rule(scene), extents_of(entries).front());
     const std::vector<PointResult> whole = run(scene, entries, keep_everything(scene));
     for (const Part part : kBounded) {
       const double bound = bounds.bound(part, {});

@@ -131,8 +131,9 @@ TEST(Influences, Bands_AreWithinAFactorOfTwoOfTheDifferenceOfTwoTables) {
     without.surroundings.reset();
     const double difference = largest_change(whole, without);
     const SceneEntries entries = grid_entries(whole);
-    std::vector<Effect> effects = effects_of(whole, entries, plan_effects(whole, entries, true));
-    add_influences(effects, whole, entries);
+    const EffectPlan plan = plan_effects(whole, entries, true);
+    std::vector<Effect> effects = effects_of(whole, entries, plan);
+    add_influences(effects, whole, entries, plan);
     const auto row = std::ranges::find(effects, Part::kSurroundings, &Effect::part);
     ASSERT_TRUE(row != effects.end() && row->influence.has_value()) << overrides.front();
     EXPECT_GT(*row->influence, 0.5 * difference) << overrides.front();

@@ -126,7 +126,7 @@ TEST_P(ShippedScene, Plan_EstimatesTheChangesThatTheCommentStates) {
     const SceneValues scene = read_scene(scene_path(name), settings_from_text(statement.overrides));
     const SceneEntries entry = {{statement.theta_deg, {scene.surface.sigma, scene.surface.q}, {}}};
     std::vector<Effect> rows = effects_of(scene, entry, keep_everything(scene));
-    add_influences(rows, scene, entry);
+    add_influences(rows, scene, entry, keep_everything(scene));
     std::size_t compared = 0;
     for (const auto& [effect, change] : statement.changes) {
       if (!part_of(effect)) continue;

@@ -46,6 +46,7 @@ class RowRun final : public Run<Moments> {
   }
 
   std::optional<std::vector<Moments>> compute(const Progress& progress) override {
+    cost_.curves_s = data_.curves_s;
     std::vector<kernel::MomentsNode> results(rows_.rows.size() * rows_.width);
     column_results_.assign(results.size() * column_sums(data_), 0.0);
     const std::size_t wanted = request_.wanted_count();

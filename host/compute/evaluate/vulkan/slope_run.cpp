@@ -30,6 +30,7 @@ class SlopeRun final : public Run<Moments> {
     std::vector<Moments> moments(request_.size());
     const std::size_t wanted = request_.wanted_count();
     const std::size_t at_once = tiles_.batch_directions();
+    cost_.curves_s = data_.curves_s;
     context_.stream.begin();
     upload_rule(data_);
     for (std::size_t first = 0; first < data_.directions; first += at_once) {

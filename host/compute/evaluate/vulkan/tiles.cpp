@@ -61,9 +61,10 @@ Packing packing_of(Precision precision) { return Packing(precision == Precision:
 
 }  // namespace
 
-RowTiles::RowTiles(const MomentsRequest& request, const dolp::Device& device, const VulkanOptions& options)
+RowTiles::RowTiles(const MomentsRequest& request, const dolp::Device& device, const VulkanOptions& options,
+                   Tables tables)
     : packing(packing_of(request.precision)),
-      data(kernel_data(request)),
+      data(kernel_data(request, tables)),
       rows(rows_of(request, data)),
       costs{.invocation_bytes = sizeof(EntryWords) + packing.node_bytes<kernel::ThetaNode>() +
                                 packing.node_bytes<kernel::IndexNode>() +
@@ -107,10 +108,11 @@ DispatchCount RowTiles::count() const {
   return count;
 }
 
-SlopeTiles::SlopeTiles(const MomentsRequest& of_request, const dolp::Device& device, const VulkanOptions& options)
+SlopeTiles::SlopeTiles(const MomentsRequest& of_request, const dolp::Device& device, const VulkanOptions& options,
+                       Tables tables)
     : request(of_request),
       packing(packing_of(request.precision)),
-      data(kernel_data(request)),
+      data(kernel_data(request, tables)),
       sampling(data),
       costs{.invocation_bytes = packing.node_bytes<kernel::SlopeNode>() + packing.node_bytes<kernel::ThetaNode>() +
                                 packing.node_bytes<kernel::IndexNode>() +
@@ -188,8 +190,8 @@ namespace dolp {
 vulkan::DispatchCount count_dispatches(const MomentsRequest& request, const dolp::Device& device) {
   if (request.wanted_count() == 0) return {};
   const VulkanOptions options = for_device({}, device, request.precision);
-  if (has_slope_samples(request)) return vulkan::SlopeTiles(request, device, options).count();
-  return vulkan::RowTiles(request, device, options).count();
+  if (has_slope_samples(request)) return vulkan::SlopeTiles(request, device, options, Tables::kCounted).count();
+  return vulkan::RowTiles(request, device, options, Tables::kCounted).count();
 }
 
 vulkan::DispatchCount count_dispatches(const ScatteringRequest& request, const dolp::Device& device) {

@@ -63,7 +63,8 @@ struct DispatchCount {
 
 /// The dispatches of a request for moments, if the kernel computes rows of entries (plan/rows.hpp).
 struct RowTiles {
-  RowTiles(const MomentsRequest& request, const dolp::Device& device, const VulkanOptions& options);
+  RowTiles(const MomentsRequest& request, const dolp::Device& device, const VulkanOptions& options,
+           Tables tables = Tables::kComputed);
   /// Divides the shapes into blocks of at most sizes.shapes shapes. Shapes that share a kernel row stay in one block.
   std::vector<Block> blocks() const;
   DispatchCount count() const;
@@ -77,7 +78,8 @@ struct RowTiles {
 
 /// The dispatches of a request for moments, if the kernel computes slope samples. The request must outlive the object.
 struct SlopeTiles {
-  SlopeTiles(const MomentsRequest& request, const dolp::Device& device, const VulkanOptions& options);
+  SlopeTiles(const MomentsRequest& request, const dolp::Device& device, const VulkanOptions& options,
+             Tables tables = Tables::kComputed);
   std::size_t batch_directions() const;
   SlopeBatch batch(std::size_t first) const;
   DispatchCount count() const;

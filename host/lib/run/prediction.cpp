@@ -99,7 +99,7 @@ struct FirstLevel {
   MomentsPlan moments;
 };
 
-struct Sample {
+struct CountedPart {
   SceneEntries entries;
   Count moments;
   Count beams;
@@ -109,12 +109,12 @@ struct Sample {
 };
 
 /// Computes a sample of `count` entries or, if the entries of a direction share work, of `count` directions.
-Sample counted(const RunPrediction& run, const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
-               std::size_t count) {
+CountedPart counted(const RunPrediction& run, const SceneValues& scene, const SceneEntries& entries,
+                    const EffectPlan& plan, std::size_t count) {
   const SceneEntries drawn = run.counts_directions
                                  ? entries_of_drawn_directions(entries, count, run.first.basis != nullptr)
                                  : drawn_entries(entries, count);
-  Sample sample{run_parts(drawn, run.spectral_samples).front(), {}, {}};
+  CountedPart sample{run_parts(drawn, run.spectral_samples).front(), {}, {}};
   RefinementLevel level = run.first;
   level.basis = run_basis(scene, sample.entries, plan);
   CountingEvaluator counting(run.has_double, FirstLevel(scene, sample.entries, plan, level).kernel_requests());
@@ -125,13 +125,13 @@ Sample counted(const RunPrediction& run, const SceneValues& scene, const SceneEn
 }
 
 /// Counts the work of a small sample first. If the run allows it, counts a larger sample instead.
-Sample counted_sample(const RunPrediction& run, const SceneValues& scene, const SceneEntries& entries,
-                      const EffectPlan& plan) {
+CountedPart counted_sample(const RunPrediction& run, const SceneValues& scene, const SceneEntries& entries,
+                           const EffectPlan& plan) {
   const std::size_t all = run.counts_directions ? entries.theta_deg().size() : entries.size();
   const std::size_t most = std::min(all, run.counts_directions ? kCountedDirections : kCountedEntries);
   const std::size_t entries_of_few = std::max<std::size_t>(1, kFewCountedMoments / run.spectral_samples);
   const std::size_t few = run.counts_directions ? 1 : std::min(most, entries_of_few);
-  Sample sample = counted(run, scene, entries, plan, few);
+  CountedPart sample = counted(run, scene, entries, plan, few);
   const double each = sample.evaluations() / static_cast<double>(few);
   const double allowed = allowed_evaluations(each * static_cast<double>(all));
   const double fit = each > 0.0 ? std::min(allowed / each, static_cast<double>(most)) : static_cast<double>(most);
@@ -141,7 +141,7 @@ Sample counted_sample(const RunPrediction& run, const SceneValues& scene, const 
 
 void count_work(RunPrediction& run, const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
                 std::size_t given) {
-  const Sample sample = counted_sample(run, scene, entries, plan);
+  const CountedPart sample = counted_sample(run, scene, entries, plan);
   const Count& moments = sample.moments;
   const Count& beams = sample.beams;
   const double moments_scale = scale_of(run.moments, moments);

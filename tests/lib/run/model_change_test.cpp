@@ -121,8 +121,8 @@ std::vector<SceneEntry> random_entries(std::size_t count) {
   return entries;
 }
 
-// The environment variable DOLP_PROPERTY_DRAWS sets the number of entries. With 900 entries and emission alone, all
-// bounces change DOLP of 516 entries by more than 5 % and 0.1 points, and the bit marks 515; it marks 0 of 232 others.
+// The environment variable DOLP_PROPERTY_DRAWS sets the number of entries. Of 900 entries with gaussian slopes and only
+// emission, all bounces change DOLP of 532 by more than 5 % and 0.1 points. The bit marks these, and 0 of 215 others.
 TEST(ModelChange, RandomEntries_HaveBit32WhereAllBouncesChangeDolp) {
   const std::vector<SceneEntry> entries = random_entries(draws_wanted(60));
   for (const Overrides& more : {Overrides{"surface.distribution=gaussian"},
@@ -175,7 +175,7 @@ void expect_points_like_grid(const Overrides& settings) {
             << " of " << list.size() << "\n";
   EXPECT_LT(errors[errors.size() / 2], 0.1) << settings.back();
   EXPECT_LT(errors[errors.size() * 95 / 100], 0.3) << settings.back();
-  EXPECT_LT(differ, list.size() / 30) << settings.back();
+  EXPECT_LT(differ, list.size() / 100 + 1) << settings.back();
 }
 
 TEST(ModelChange, GridOfAnyAxes_IsThatOfPoints) {

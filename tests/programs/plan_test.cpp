@@ -254,6 +254,19 @@ TEST_F(Plan, ManyEntries_PredictionFromSomeIsNearly) {
   EXPECT_NEAR(predicted["evaluations"], evaluations, 2.0 * kSampling * evaluations);
 }
 
+// A plan counts the work of a run in a small part of it: in the sample and in the forecast of lookups. Each may take
+// kFreeEvaluations in any case, and the influences of effects take a few entries with little accuracy.
+TEST_F(Plan, FilmInABand_TakesASmallPartOfTheRun) {
+  constexpr double kFree = 2.0 * 1e6;
+  constexpr double kInfluences = 0.05;
+  const std::string scene = std::string(DOLP_HOST_DIR "/scenes/paint_on_metal.toml");
+  const json predicted = report({"plan", scene, "--tolerance", "1e-5", "--set", "surface.coating.1.thickness_um=40"});
+  const double evaluations = predicted["evaluations"];
+  EXPECT_GT(evaluations, 10.0 * kFree);
+  EXPECT_LE(predicted["plan_evaluations"], kFree + (2.0 / 25.0 + kInfluences) * evaluations);
+  EXPECT_GT(predicted["plan_evaluations"], 0.0);
+}
+
 TEST_F(Plan, NoDevice_PlansAllTheSame) {
   const Outcome outcome = without_device({"plan", "scene.toml", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;

@@ -11,6 +11,8 @@ namespace dolp {
 namespace {
 
 constexpr double kMostError = 1e-11;  // largest stated error of both quadratures, in units of the integral for g = 1
+// An elevation near the vertical rounds by 2e-16. A medium with n = 0.02 lets light through only there.
+constexpr double kElevationRounding = 4e-15;
 const SkyFunction kOne{[](double) { return 1.0; }, {}};
 
 /// Radiance with a corner at 40 degrees that rises steeply toward the horizon, as in a layered sky.
@@ -30,7 +32,7 @@ TEST(Transmission, KinksOfTotalReflection_BothQuadraturesAgreeWithinTheirErrors)
           const Estimate own = transmission_integral(optics, power, *sky);
           const Estimate right = reference::transmission_integral(optics, power, *sky);
           EXPECT_LE(std::abs(own.value - right.value), own.error + right.error) << n << " " << k << " " << power;
-          EXPECT_LE(own.error + right.error, kMostError * unit) << n << " " << k << " " << power;
+          EXPECT_LE(own.error + right.error, kMostError * unit + kElevationRounding) << n << " " << k << " " << power;
         }
       }
     }

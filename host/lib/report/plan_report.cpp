@@ -29,7 +29,7 @@ struct PlannedRun {
   int most_nodes = 0;                  ///< largest number of nodes per slope interval or azimuth arc; 0 without moments
   std::vector<std::string> pipelines;  ///< Vulkan pipelines of the first refinement level; may be empty
   vulkan::DispatchCount dispatches;    ///< dispatches of the first refinement level
-  std::vector<AxisForecast> lookup;
+  LookupForecast lookup;
   std::string device;  ///< name of the device; empty if there is none
   std::string why_no_device;
 };
@@ -196,6 +196,7 @@ void add_attempts(ReportBuilder& report, const PlannedRun& plan, bool is_idle) {
   report.value("first_attempt/is_exact", run.is_exact);
   report.value("further_attempts/beams", run.again_beams);
   report.value("evaluations", run.first_evaluations + run.again_evaluations);
+  report.value("plan_evaluations", run.counted_evaluations + plan.influences.evaluations + plan.lookup.evaluations);
 }
 
 void add_kernels(ReportBuilder& report, const PlannedRun& plan) {
@@ -244,7 +245,7 @@ std::string needed_text(const AxisForecast& axis) {
 
 void add_lookup(ReportBuilder& report, const PlannedRun& plan) {
   std::vector<ReportBuilder> axes;
-  for (const AxisForecast& axis : plan.lookup) {
+  for (const AxisForecast& axis : plan.lookup.axes) {
     ReportBuilder& row = axes.emplace_back(kLabelWidth);
     row.row("lookup", "along {}: {} between {} values; {}", key("axis", description_of(axis.axis).name),
             error_text(axis.error), key("values", axis.values), needed_text(axis));

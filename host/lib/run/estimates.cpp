@@ -213,6 +213,7 @@ Influences add_influences(std::vector<Effect>& rows, const SceneValues& scene, c
   }
   Influences influences{looked_at(sample)};
   for (const PointResult& result : whole) influences.model_change.add(result);
+  influences.evaluations = evaluator.report().evaluations;
   return influences;
 }
 

@@ -28,6 +28,7 @@ struct Looked {
 struct Influences {
   Looked looked;
   ModelChange model_change;  ///< of the entries
+  double evaluations = 0.0;  ///< integrand evaluations that the influences took
 };
 
 /// Sets Effect::influence of each effect that the plan keeps: the largest change of the vector (Q/I, U/I) if a few

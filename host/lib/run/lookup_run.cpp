@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "base/numbers.hpp"
 #include "base/parallel_ranges.hpp"
@@ -138,7 +139,7 @@ class Forecast {
     scene_.accuracy.may_interpolate = false;
   }
 
-  std::vector<AxisForecast> all() {
+  LookupForecast all() {
     std::vector<Axis> axes;
     for (const Axis axis : kAllAxes) {
       if (grid_[axis].size() > 1 && !description_of(axis).has_labels) axes.push_back(axis);
@@ -154,7 +155,7 @@ class Forecast {
       if (values < kLeastValues || has_left(values, lines)) forecast.error = error_with(axis, values, lines);
       find_needed(forecast, lines);
     }
-    return forecasts;
+    return {std::move(forecasts), evaluator_.report().evaluations};
   }
 
  private:
@@ -250,8 +251,7 @@ std::vector<PointResult> lookup_points(const TableLookup& lookup, const SceneVal
   return results;
 }
 
-std::vector<AxisForecast> lookup_forecast(const SceneValues& scene, const EffectPlan& plan, double evaluations,
-                                          double of_entry) {
+LookupForecast lookup_forecast(const SceneValues& scene, const EffectPlan& plan, double evaluations, double of_entry) {
   return Forecast(scene, plan, evaluations, of_entry).all();
 }
 

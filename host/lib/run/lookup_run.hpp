@@ -33,13 +33,18 @@ struct AxisForecast {
 };
 inline constexpr std::size_t kMostForecastValues = 10'000;
 
+struct LookupForecast {
+  std::vector<AxisForecast> axes;
+  double evaluations = 0.0;  ///< integrand evaluations that the forecast took
+};
+
 /// A forecast for each axis of the grid that has several numbers as values. A cell is an interval between neighbouring
 /// values. The CPU computes the table near a few cells of the axis. AxisForecast::error is the largest error estimate
 /// of a lookup in the middles of these cells. The forecast repeats this with 8, 16, 32, ... values until the error is
 /// at most `wanted`. It misses features between these cells. It ends before it takes more than `evaluations` integrand
 /// evaluations; `of_entry` is the expected number for an entry. Accuracy: with needed_values on each axis, most points
 /// meet the tolerance; with half as many, most miss it (test LookupForecast_TablesOfTheAdvisedDensity_*).
-std::vector<AxisForecast> lookup_forecast(const SceneValues& scene, const EffectPlan& plan,
-                                          double evaluations = kInfinity, double of_entry = 0.0);
+LookupForecast lookup_forecast(const SceneValues& scene, const EffectPlan& plan, double evaluations = kInfinity,
+                               double of_entry = 0.0);
 
 }  // namespace dolp

@@ -125,7 +125,7 @@ CountedPart counted(const RunPrediction& run, const SceneValues& scene, const Sc
 }
 
 /// Counts the work of a small sample first. If the run allows it, counts a larger sample instead.
-CountedPart counted_sample(const RunPrediction& run, const SceneValues& scene, const SceneEntries& entries,
+CountedPart counted_sample(RunPrediction& run, const SceneValues& scene, const SceneEntries& entries,
                            const EffectPlan& plan) {
   const std::size_t all = run.counts_directions ? entries.theta_deg().size() : entries.size();
   const std::size_t most = std::min(all, run.counts_directions ? kCountedDirections : kCountedEntries);
@@ -136,7 +136,11 @@ CountedPart counted_sample(const RunPrediction& run, const SceneValues& scene, c
   const double allowed = allowed_evaluations(each * static_cast<double>(all));
   const double fit = each > 0.0 ? std::min(allowed / each, static_cast<double>(most)) : static_cast<double>(most);
   const auto count = static_cast<std::size_t>(fit);
-  return count > few ? counted(run, scene, entries, plan, count) : sample;
+  run.counted_evaluations = sample.evaluations();
+  if (count <= few) return sample;
+  sample = counted(run, scene, entries, plan, count);
+  run.counted_evaluations += sample.evaluations();
+  return sample;
 }
 
 void count_work(RunPrediction& run, const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
@@ -168,8 +172,9 @@ std::size_t response_bytes(const MomentsStep& step) {
 
 double allowed_evaluations(double of_run) { return std::max(kFreeEvaluations, of_run / kPlanShare); }
 
-RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
+RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& given,
                           bool has_double, const RequestVisitor& visit) {
+  const EffectPlan plan = with_spectra(given, scene, entries);
   RunPrediction run;
   run.entries = entries.size();
   run.has_double = has_double;

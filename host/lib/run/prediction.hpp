@@ -42,6 +42,7 @@ struct RunPrediction {
   bool has_double = false;             ///< the device of the run supports double
   std::size_t counted_entries = 0;     ///< size of the sample
   std::size_t counted_directions = 0;  ///< number of directions of the sample, if counts_directions
+  double counted_evaluations = 0.0;    ///< integrand evaluations that the prediction took
   bool is_exact = true;                ///< the prediction counted all moments and beams, without estimates
   double cpu_s = 0.0;                  ///< time of all levels on this CPU, extrapolated from the computed entries
   double host_bytes = 0.0;  ///< host memory for the largest part of the run and for table columns still being written

@@ -52,7 +52,7 @@ double flagged_share(const SceneValues& scene) {
 TEST(LookupForecast, TablesOfTheAdvisedDensity_AnswerMostPoints_AndHalfOfItTooFew) {
   for (const Masking masking : {Masking::kSmith, Masking::kVCavity, Masking::kIntegral}) {
     const SceneValues scene = scene_with(masking, 12, 9, 7);
-    const std::vector<AxisForecast> axes = lookup_forecast(scene, keep_everything(scene));
+    const std::vector<AxisForecast> axes = lookup_forecast(scene, keep_everything(scene)).axes;
     ASSERT_EQ(axes.size(), 3U);
     std::vector<std::size_t> counts;
     for (const AxisForecast& axis : axes) {
@@ -68,7 +68,7 @@ TEST(LookupForecast, TablesOfTheAdvisedDensity_AnswerMostPoints_AndHalfOfItTooFe
 TEST(LookupForecast, DenseAxis_NeedsFewerValues_AndOneOfThreeHasNoError) {
   SceneValues scene = scene_with(Masking::kVCavity, 200, 3, 1);
   scene.grid[Axis::kQ] = {3.0};
-  const std::vector<AxisForecast> axes = lookup_forecast(scene, keep_everything(scene));
+  const std::vector<AxisForecast> axes = lookup_forecast(scene, keep_everything(scene)).axes;
   ASSERT_EQ(axes.size(), 2U);
   EXPECT_EQ(axes[0].axis, Axis::kTheta);
   EXPECT_LT(axes[0].error, axes[0].wanted);
@@ -78,12 +78,36 @@ TEST(LookupForecast, DenseAxis_NeedsFewerValues_AndOneOfThreeHasNoError) {
   EXPECT_GT(axes[1].needed_values, 3U);
 }
 
+// A forecast that may take no evaluations knows nothing, and one that may take some takes no more.
+TEST(LookupForecast, FewEvaluationsAllowed_AreNotExceeded) {
+  const SceneValues scene = scene_with(Masking::kSmith, 12, 9, 7);
+  const EffectPlan plan = keep_everything(scene);
+  const LookupForecast free = lookup_forecast(scene, plan);
+  const double of_entry =
+      2000.0;  // more than an entry of this scene takes on average, so that no step exceeds its bound
+  for (const double share : {0.0, 0.2, 0.6}) {
+    const double allowed = share * free.evaluations;
+    const LookupForecast forecast = lookup_forecast(scene, plan, allowed, of_entry);
+    EXPECT_LE(forecast.evaluations, allowed);
+    ASSERT_EQ(forecast.axes.size(), free.axes.size());
+    for (std::size_t i = 0; i < free.axes.size(); ++i) {
+      const AxisForecast& axis = forecast.axes[i];
+      EXPECT_TRUE(std::isnan(axis.error) || axis.error == free.axes[i].error);
+      EXPECT_TRUE(axis.needed_values == 0 || axis.needed_values == free.axes[i].needed_values);
+      EXPECT_LE(axis.examined, free.axes[i].examined);
+      if (share == 0.0) {
+        EXPECT_TRUE(std::isnan(axis.error) && axis.examined == 0);
+      }
+    }
+  }
+}
+
 TEST(LookupForecast, FurtherAxes_AreLookedAtToo) {
   SceneValues scene = scene_with(Masking::kVCavity, 10, 5, 1);
   scene.grid[Axis::kQ] = {3.0};
   scene.grid[Axis::kN] = spaced(1.3, 2.0, 6);
   scene.grid[Axis::kWavelength] = spaced(9.0, 11.0, 5);
-  const std::vector<AxisForecast> axes = lookup_forecast(scene, keep_everything(scene));
+  const std::vector<AxisForecast> axes = lookup_forecast(scene, keep_everything(scene)).axes;
   ASSERT_EQ(axes.size(), 4U);
   for (const AxisForecast& axis : axes) EXPECT_TRUE(std::isfinite(axis.error));
 }

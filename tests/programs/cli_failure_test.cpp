@@ -75,7 +75,7 @@ const std::vector<Mistake> kMistakes = {
     {kTableLine + " --set surroundings.profile=clear",
      {"surroundings.profile=clear: no such file, and no built-in sky: clear-sky, overcast; the nearest is clear-sky"}},
     {kTableLine, {"scene.toml:2"}, kInput, scene_with("[surface]", "[surface")},
-    {kTableLine, {"scene.toml:3", "surface.m", "surface.n"}, kInput, scene_with("n = 1.5", "m = 1.5")},
+    {kTableLine, {"scene.toml:3", "surface.nn", "surface.n"}, kInput, scene_with("n = 1.5", "nn = 1.5")},
     {kTableLine + " --set surroundings.profile=mine.csv",
      {"mine.csv: no such file, and no built-in sky: clear-sky, overcast\n"}},
     {"eval scene.toml --points none.csv -o o.csv", {"none.csv"}},

@@ -129,7 +129,8 @@ TEST_P(RunsOfModel, Grid_EqualsThePointsOneByOne) {
     if (has_slope_samples) {
       EXPECT_NEAR(alone[Quantity::kDolp], results[i][Quantity::kDolp],
                   alone[Quantity::kErrorEstimate] + results[i][Quantity::kErrorEstimate]);
-      EXPECT_EQ(alone.status, results[i].status);
+      // A grid interpolates the estimate behind this bit.
+      EXPECT_EQ(alone.status & ~kModelInaccurate, results[i].status & ~kModelInaccurate);
     } else {
       EXPECT_EQ(bits_of(alone), bits_of(results[i]));
     }

@@ -87,7 +87,7 @@ const std::vector<EditCase> kEditCases = {
     {{},
      {"spectrum.band_um=[8,14]", "spectrum.wavelength_um=9", "spectrum.band_um=[8,12]"},
      {"spectrum.band_um=[8, 12]", "spectrum.wavelength_um=-"}},
-    {{}, {"source.preset=sun", "source.irradiance=2"}, {"source.irradiance=2"}},
+    {{}, {"source.preset=sun", "source.irradiance=2"}, {"source.irradiance=2"}, "a camera needs geometry.mode"},
     {{"spectrum.band_um=[8,14]"},
      {"surface.material=oxidised Al mirror"},
      {"surface.n=1.5"},

@@ -63,8 +63,9 @@ def write_table(scene: Scene, path: Path, *, evaluator: str = "vulkan", device: 
     from these parts. Scene keys as axes, such as path.transmittance, are possible only in `table`.
 
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     print(dolp.write_table(scene, folder + "/table.nc").splitlines()[1])
-      entries    5 x 1 x 1 (theta x sigma x q)
+    ...     report = dolp.write_table(scene, folder + "/table.nc")
+    >>> "entries    5 x 1 x 1 (theta x sigma x q)" in report
+    True
     """
     if key := next((name for name in axes if "." in name), None):
         raise InputError(f"axes: {key} is no axis of a file; write a file for each value, of scene.with_({{{key!r}: VALUE}})")

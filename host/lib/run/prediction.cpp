@@ -172,9 +172,9 @@ std::size_t response_bytes(const MomentsStep& step) {
 
 double allowed_evaluations(double of_run) { return std::max(kFreeEvaluations, of_run / kPlanShare); }
 
-RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& given,
+RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& effects,
                           bool has_double, const RequestVisitor& visit) {
-  const EffectPlan plan = with_spectra(given, scene, entries);
+  const EffectPlan plan = with_spectra(effects, scene, entries);
   RunPrediction run;
   run.entries = entries.size();
   run.has_double = has_double;

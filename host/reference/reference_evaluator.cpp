@@ -118,7 +118,7 @@ Moments moments_of(const MomentsRequest& request, const MomentsPoint& point, con
   for (std::size_t k = 0; request.sky && k < request.sky->size(); ++k) {
     const auto column = static_cast<Eigen::Index>(k);
     const SkyFunction sky{[&](double zenith_deg) { return request.sky->at(zenith_deg)[column]; },
-                                     request.sky->nodes().ends_deg()};
+                          request.sky->nodes().ends_deg()};
     Moments with = integrate(&sky);
     std::vector<ColumnMoments> all = std::move(m.columns);
     all.push_back(with.columns.empty() ? ColumnMoments{} : with.columns.front());

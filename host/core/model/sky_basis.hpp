@@ -36,8 +36,8 @@ class SkyNodes {
   double error(const Eigen::VectorXd& values) const;
 
   /// A weight for each node. The weighted sum of a function's values at the nodes is its mean over the solid angle of
-  /// the sky. In this mean, a direction with the cosine c of the zenith has the weight c^(power + 1): the projected area
-  /// c times the reflectance c^power. Domain: power > -1.
+  /// the sky. In this mean, a direction with the cosine c of the zenith has the weight c^(power + 1): the projected
+  /// area c times the reflectance c^power. Domain: power > -1.
   Eigen::VectorXd mean_weights(double power) const;
 
  private:

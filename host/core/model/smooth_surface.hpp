@@ -45,8 +45,8 @@ double reflectance_level(const FacetOptics& optics);
 /// Cosine sqrt(1 - Re N^2) of the angle where total reflection begins; 0 if there is none or if it begins gradually.
 double critical_cosine(const FacetOptics& optics);
 
-/// Angles between ray and smooth surface at which reflectances have kinks or bend sharply: where total reflection begins
-/// at the medium or in a film, and rows of measured reflectances. Ends of integration panels belong there.
+/// Angles between ray and smooth surface at which reflectances have kinks or bend sharply: where total reflection
+/// begins at the medium or in a film, and rows of measured reflectances. Ends of integration panels belong there.
 std::vector<double> kink_elevations_rad(const FacetOptics& optics);
 
 /// Moments of a mirror, the limit of every surface for sigma -> 0. Domain: cosine of incidence in (0, 1].

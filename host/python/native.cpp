@@ -229,6 +229,15 @@ py::array_t<Value> array_of(std::vector<Value> values) {
   return py::array_t<Value>(kept->size(), kept->data(), owner);
 }
 
+py::dict dict_of(const std::vector<dolp::Attribute>& attributes) {
+  py::dict named;
+  for (const auto& [name, value] : attributes) {
+    if (const auto* number = std::get_if<double>(&value)) named[text_of(name)] = *number;
+    if (const auto* text = std::get_if<std::string>(&value)) named[text_of(name)] = text_of(*text);
+  }
+  return named;
+}
+
 /// Makes the tuple that _native.pyi calls Parts.
 py::tuple parts_of(dolp::ResultColumns results, const dolp::Quantities& given, const std::string& stokes_units,
                    const std::vector<dolp::Attribute>& attributes) {
@@ -238,12 +247,7 @@ py::tuple parts_of(dolp::ResultColumns results, const dolp::Quantities& given, c
     quantities.append(py::make_tuple(known.name, known.long_name, text_of(dolp::units_of(quantity, stokes_units)),
                                      known.ancillary, array_of(std::move(results[quantity]))));
   }
-  py::dict named;
-  for (const auto& [name, value] : attributes) {
-    if (const auto* number = std::get_if<double>(&value)) named[text_of(name)] = *number;
-    if (const auto* text = std::get_if<std::string>(&value)) named[text_of(name)] = text_of(*text);
-  }
-  return py::make_tuple(quantities, array_of(std::move(results.status)), named);
+  return py::make_tuple(quantities, array_of(std::move(results.status)), dict_of(attributes));
 }
 
 py::tuple parts_of(dolp::Results results) {
@@ -296,39 +300,16 @@ py::dict labels_of(const dolp::AxisLabels& labels) {
   return all;
 }
 
-/// Makes a table of the axes, curves and quantities in `columns`, with these labels, status and attributes.
-dolp::Table table_of(const Columns& columns, const std::map<std::string, std::vector<std::string>>& labels,
-                     const py::array_t<std::uint32_t, py::array::forcecast>& status, const std::string& stokes_units,
-                     const py::dict& attributes, const std::string& name) {
-  dolp::TableValues table;
-  if (!stokes_units.empty()) table.stokes_units = stokes_units;
-  const auto take = [&](const std::string& variable, std::vector<double>& values) {
-    if (const auto found = columns.find(variable); found != columns.end()) values = vector_of(found->second);
-  };
-  for (const dolp::Axis axis : dolp::kAllAxes) {
-    const char* const axis_name = dolp::description_of(axis).name;
-    take(axis_name, table.axes[axis]);
-    const auto of_axis = labels.find(axis_name);
-    for (std::size_t i = 0; of_axis != labels.end() && i < of_axis->second.size(); ++i) {
-      table.axes[axis].push_back(static_cast<double>(i));
-      table.labels[axis].push_back(of_axis->second[i]);
-    }
-  }
-  for (const dolp::Quantity quantity : dolp::kAllQuantities) take(dolp::description_of(quantity).name, table[quantity]);
-  for (const dolp::TableCurve& known : dolp::kTableCurves) {
-    dolp::Curve& curve = table.*known.curve;
-    take(known.name + std::string("_wavelength"), curve.wavelength_um);  // only files of dolp 0.2 have this variable
-    take(known.name, curve.wavelength_um.empty() ? curve.used : curve.values);
-  }
-  table.status.assign(status.data(), status.data() + status.size());
-  for (const auto& [attribute, value] : attributes) {
+std::vector<dolp::Attribute> attributes_of(const py::dict& attributes) {
+  std::vector<dolp::Attribute> all;
+  for (const auto& [name, value] : attributes) {
     if (py::isinstance<py::str>(value)) {
-      table.attributes.push_back({bytes_of(attribute), bytes_of(value)});
+      all.push_back({bytes_of(name), bytes_of(value)});
     } else {
-      table.attributes.push_back({bytes_of(attribute), value.cast<double>()});
+      all.push_back({bytes_of(name), value.cast<double>()});
     }
   }
-  return dolp::Table::of(std::move(table), name);
+  return all;
 }
 
 py::dict description(const dolp::Device& device) {
@@ -362,6 +343,11 @@ PYBIND11_MODULE(_native, module) {
                   })
       .def("with_", [](const dolp::Scene& scene,
                        const Values& values) { return with_warnings(scene.with(settings_of(values))); })
+      .def_static("from_attributes",
+                  [](const py::dict& attributes, const py::str& name) {
+                    return with_warnings(dolp::Scene::from_attributes(attributes_of(attributes), bytes_of(name)));
+                  })
+      .def("for_points", &dolp::Scene::for_points)
       .def("toml", [](const dolp::Scene& scene) { return text_of(scene.toml()); })
       .def("values", &values_of)
       .def("value", [](const dolp::Scene& scene, const py::str& key) { return value_of_key(scene, bytes_of(key)); })
@@ -371,20 +357,25 @@ PYBIND11_MODULE(_native, module) {
       .def("__deepcopy__", [](const dolp::Scene& scene, const py::dict&) { return scene; })
       .def(py::pickle(
           [](const dolp::Scene& scene) {
-            return py::make_tuple(text_of(scene.text()), values_of(scene), text_of(scene.name()));
+            const auto line = [](const dolp::Setting& setting) { return text_of(setting.text()); };
+            const bool is_of_table = !scene.table_attributes().empty();
+            return py::make_tuple(
+                text_of(scene.text()),
+                is_of_table ? py::object(list_of(scene.settings(), line)) : py::cast(values_of(scene)),
+                text_of(scene.name()), dict_of(scene.table_attributes()));
           },
-          [from_text](const py::tuple& state) { return from_text(state[0], state[1].cast<Values>(), state[2]); }))
+          [from_text](const py::tuple& state) {
+            const auto attributes = state[3].cast<py::dict>();
+            if (attributes.empty()) return from_text(state[0], state[1].cast<Values>(), state[2]);
+            std::vector<std::string> settings;
+            for (const py::handle& line : state[1]) settings.push_back(bytes_of(line));
+            return dolp::Scene::from_attributes(attributes_of(attributes), bytes_of(state[2]))
+                .with_all(dolp::settings_from_text(settings));
+          }))
+      .def_property_readonly("evaluator", &dolp::Scene::evaluator)
+      .def_property_readonly("is_of_table", [](const dolp::Scene& scene) { return !scene.table_attributes().empty(); })
       .def_property_readonly("name", [](const dolp::Scene& scene) { return text_of(scene.name()); })
       .def_property_readonly("title", [](const dolp::Scene& scene) { return text_of(scene.title()); });
-
-  py::class_<dolp::Table>(module, "Table")
-      .def_static("read", &dolp::Table::read)
-      .def_static("of", &table_of)
-      .def("labels", [](const dolp::Table& table) { return labels_of(table.values().labels); })
-      .def("lookup", [](const dolp::Table& table, const Columns& columns) {
-        const std::vector<dolp::Column> points = views(columns);
-        return parts_of(interruptible([&](const dolp::Progress& progress) { return table.lookup(points, progress); }));
-      });
 
   py::class_<dolp::Evaluator>(module, "Evaluator")
       .def(py::init([](const std::string& evaluator, const std::string& device) {

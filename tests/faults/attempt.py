@@ -63,10 +63,9 @@ class Driver:
     def values(self, output):
         """Content of an output file that is equal in equal runs. For example, it lacks the times in a table file."""
         if output.suffix == ".nc":
-            read = [self.program, "lookup", output.name, "--points", "points.csv", "-o", "-", "--quiet"]
-            looked_up = subprocess.run(read, cwd=output.parent, capture_output=True, check=False).stdout
-            # The hash stands for all values of the table. `lookup` fails if the values do not have this hash.
-            return looked_up, re.findall(rb"placed64:[0-9a-f]{16}", output.read_bytes())
+            read = ["ncdump", output.name]
+            text = subprocess.run(read, cwd=output.parent, capture_output=True, check=False).stdout
+            return text.partition(b"data:")[2], re.findall(rb"placed64:[0-9a-f]{16}", output.read_bytes())
         return output.read_bytes()
 
     def expect(self, command, options=()):

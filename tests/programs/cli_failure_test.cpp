@@ -272,8 +272,8 @@ TEST_F(CommandLine, Interrupt_WhileWriting_Exit130) {
   put("many.csv", points);
   ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
   for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{"eval", "scene.toml", "--evaluator", "cpu"}, {"lookup", "out.nc"}}) {
-    TerminalProcess process(command(joined(arguments, {"--points", "many.csv", "-o", "pipe"})));
+       {std::vector<std::string>{"eval", "scene.toml"}, {"lookup", "out.nc"}}) {
+    TerminalProcess process(command(joined(arguments, {"--points", "many.csv", "-o", "pipe", "--evaluator", "cpu"})));
     // open() returns when the program opens the pipe
     const Descriptor reader(::open(at("pipe").c_str(), O_RDONLY | O_CLOEXEC));
     process.send_signal(SIGINT);

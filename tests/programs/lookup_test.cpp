@@ -1,9 +1,8 @@
-// `dolp lookup` as a user runs it: its results and error estimates, compared with `dolp eval`, and its messages.
+// A table where a command takes a scene, as a user runs it; `dolp lookup`; and what interpolation in a table costs.
 #include <gtest/gtest.h>
 
-#include <random>
+#include <cmath>
 
-#include <dolp/status.hpp>
 #include "cli_support.hpp"
 
 namespace {
@@ -11,146 +10,165 @@ namespace {
 using namespace dolp;
 using nlohmann::json;
 
-std::string random_points(std::size_t count) {
-  std::mt19937_64 engine(3);
-  const auto uniform = [&](double low, double high) {
-    return low + (high - low) * std::generate_canonical<double, 53>(engine);
-  };
-  std::ostringstream text;
-  text.precision(17);
-  text << "theta_deg,sigma,q\n";
-  for (std::size_t i = 0; i < count; ++i) {
-    text << uniform(0.0, 85.0) << ',' << uniform(0.1, 0.8) << ',' << uniform(2.0, 5.0) << '\n';
-  }
-  return text.str();
-}
-
-class Lookup : public CommandLine {
+class TableAsScene : public CommandLine {
  protected:
   void make_table(const std::vector<std::string>& options) const {
     const Outcome outcome = dolp(joined({"table", "scene.toml", "-o", "t.nc", "--quiet"}, options));
     ASSERT_EQ(outcome.status, 0) << outcome.err;
   }
-  /// 18 x 12 x 7 entries.
-  void make_fine_table(const std::string& masking = "integral") const {
-    make_table({"--set", "grid.theta_deg={from=0,to=85,count=18}", "--set",
-                "grid.sigma={from=0.1,to=0.8,count=12,spacing=\"log\"}", "--set", "grid.q={from=2,to=5,count=7}",
-                "--set", "surface.masking=" + masking});
-  }
   Outcome lookup(std::vector<std::string> options = {}) const {
     options.insert(options.begin(), {"lookup", "t.nc", "--points", "points.csv", "-o", "-"});
     return dolp(options);
   }
-  Columns looked_up(const std::vector<std::string>& options = {}) const {
-    const Outcome outcome = lookup(options);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return parse_csv(outcome.out);
-  }
 };
 
-TEST_F(Lookup, RandomPoints_AgreeWithEvalWithinTheStatedErrors) {
-  put("points.csv", random_points(200));
-  for (const char* masking : {"v-cavity", "integral"}) {
-    SCOPED_TRACE(masking);
-    make_fine_table(masking);
-    const Columns found = looked_up();
-    const Columns exact = eval({"--tolerance", "1e-6", "--set", "surface.masking=" + std::string(masking)});
-    ASSERT_EQ(found.at("dolp").size(), 200U);
-    std::vector<double> errors;
-    for (std::size_t i = 0; i < 200; ++i) {
-      if (!promises_dolp(static_cast<std::uint32_t>(exact.at("status")[i]))) continue;
-      const double dolp_error = found.at("error_estimate")[i] + exact.at("error_estimate")[i];
-      EXPECT_NEAR(found.at("dolp")[i], exact.at("dolp")[i], dolp_error) << i;
-      const double rho = exact.at("rho_i")[i];
-      const double rho_error = (found.at("rho_error_estimate")[i] + exact.at("rho_error_estimate")[i]) * rho;
-      EXPECT_NEAR(found.at("rho_i")[i], rho, rho_error) << i;
-      EXPECT_NEAR(found.at("rho_q")[i], exact.at("rho_q")[i], rho_error) << i;
-      errors.push_back(found.at("error_estimate")[i]);
-    }
-    std::ranges::sort(errors);
-    EXPECT_LT(errors.at(errors.size() / 2), 2e-4);
-  }
+TEST_F(TableAsScene, Lookup_IsEvalWithTheTablesSettings) {
+  const std::vector<std::string> settings = {"--set", "surface.masking=v-cavity", "--tolerance", "1e-6"};
+  make_table(joined(settings, {"--evaluator", "cpu"}));
+  put("points.csv", "theta_deg,sigma,q\n33.3,0.17,2.5\n71,0.3,4\n");
+  const Outcome found = lookup();
+  ASSERT_EQ(found.status, 0) << found.err;
+  EXPECT_EQ(found.out, dolp({"eval", "t.nc", "--points", "points.csv", "-o", "-"}).out);
+  EXPECT_EQ(
+      found.out,
+      dolp(joined({"eval", "scene.toml", "--points", "points.csv", "-o", "-", "--evaluator", "cpu"}, settings)).out);
+  for (const double error : parse_csv(found.out).at("error_estimate")) EXPECT_LE(error, 1e-6);
 }
 
-TEST_F(Lookup, AbsentColumns_ComeFromTheScene) {
-  make_fine_table();
+TEST_F(TableAsScene, Evaluator_IsTheTables_UnlessAnOptionNamesAnother) {
+  make_table({"--evaluator", "cpu"});
+  EXPECT_EQ(report({"lookup", "t.nc", "--points", "points.csv", "-o", "l.csv"})["evaluator"], "cpu");
+  EXPECT_EQ(
+      report({"lookup", "t.nc", "--points", "points.csv", "-o", "l.csv", "--evaluator", "reference"})["evaluator"],
+      "reference");
+  EXPECT_EQ(report({"eval", "t.nc", "--points", "points.csv", "-o", "l.csv", "--device", "0"})["evaluator"], "vulkan");
+}
+
+TEST_F(TableAsScene, AxisWithOneValue_IsThatOfPointsWithoutTheColumn) {
+  make_table({"--set", "grid.sigma=[0.27]", "--set", "grid.q=[2.25]"});
   put("points.csv", "theta_deg\n60\n");
-  const Columns few = looked_up();
-  put("points.csv", "theta_deg,sigma,q\n60,0.3,3\n");
-  EXPECT_EQ(few.at("dolp"), looked_up().at("dolp"));
+  const Columns few = parse_csv(lookup().out);
+  put("points.csv", "theta_deg,sigma,q\n60,0.27,2.25\n");
+  EXPECT_EQ(few.at("dolp"), parse_csv(lookup().out).at("dolp"));
 }
 
-// The table stores the scene together with the rows of the sky. This text is too long for an attribute of NetCDF.
-TEST_F(Lookup, TableWithALongProfile_HasItsScene) {
-  std::ostringstream text;
-  text << "wavelength_um,zenith_deg,temperature_K\n";
+TEST_F(TableAsScene, EveryCommand_TakesATable) {
+  make_table({"--set", "grid.theta_deg=[0,40,60]", "--set", "grid.sigma=[0.2,0.3]", "--set", "grid.q=[3]"});
+  ASSERT_EQ(dolp({"table", "t.nc", "-o", "again.nc", "--quiet"}).status, 0);
+  put("points.csv", "theta_deg,sigma,q\n40,0.2,3\n");
+  const std::string values = lookup().out;
+  EXPECT_EQ(dolp({"lookup", "again.nc", "--points", "points.csv", "-o", "-"}).out, values);
+  EXPECT_EQ(report({"plan", "t.nc"})["entries"], 6);
+  EXPECT_EQ(dolp({"response", "t.nc", "-o", "r.nc", "--quiet"}).status, 0);
+  put("geometries.csv", "theta_i_deg,theta_r_deg,delta_phi_deg\n30,30,180\n");
+  EXPECT_EQ(dolp({"mueller", "t.nc", "--points", "geometries.csv", "-o", "-"}).out,
+            dolp({"mueller", "scene.toml", "--points", "geometries.csv", "-o", "-"}).out);
+  expect_refused(dolp({"table", "t.nc", "-o", "t.nc"}), "t.nc: the output would overwrite an input");
+  EXPECT_EQ(lookup().out, values);
+}
+
+// The table stores n and k of the file, so the file may go. At another wavelength only the file would know them.
+TEST_F(TableAsScene, DataOfFiles_ComeFromTheTable) {
+  put("glass.csv", "wavelength_um,n,k\n8,1.5,0.1\n12,1.9,0.3\n");
+  const std::vector<std::string> glass = {"--set", "surface.material_file=glass.csv", "--set", "grid.sigma=[0.2]"};
+  make_table(glass);
+  put("points.csv", "theta_deg,sigma,q\n60,0.2,3\n");
+  const Columns expected =
+      parse_csv(dolp(joined({"eval", "scene.toml", "--points", "points.csv", "-o", "-"}, glass)).out);
+  std::filesystem::remove(at("glass.csv"));
+  EXPECT_EQ(parse_csv(lookup().out).at("dolp"), expected.at("dolp"));
+  const Outcome other =
+      dolp({"eval", "t.nc", "--points", "points.csv", "-o", "-", "--set", "spectrum.wavelength_um=9"});
+  expect_refused(other, "\"glass.csv\" are known at ");
+  put("points.csv", "theta_deg,wavelength_um\n60,9\n");
+  expect_refused(lookup(), "points.csv:2: wavelength_um = 9: ");
+}
+
+TEST_F(TableAsScene, OtherMaterialByName_IsBuiltIn) {
+  make_table({"--set", "surface.material=iron", "--set", "grid.sigma=[0.2]"});
+  put("points.csv", "theta_deg,sigma,q,wavelength_um\n60,0.2,3,9\n");
+  const auto eval_of = [&](const char* source, const char* material) {
+    return parse_csv(dolp({"eval", source, "--points", "points.csv", "-o", "-", "--set",
+                           std::string("surface.material=") + material, "--set", "grid.sigma=[0.2]"})
+                         .out);
+  };
+  for (const char* material : {"iron", "gold (Ordal)"})
+    EXPECT_EQ(eval_of("t.nc", material).at("dolp"), eval_of("scene.toml", material).at("dolp")) << material;
+}
+
+// The table stores the scene together with the rows of the sky. This text is long for an attribute.
+TEST_F(TableAsScene, LongProfile_ComesFromTheTable) {
+  std::string rows = "wavelength_um,zenith_deg,temperature_K\n";
   for (int wavelength = 8; wavelength <= 12; ++wavelength) {
-    for (int i = 0; i < 1000; ++i) text << wavelength << ',' << i / 999.0 * 90.0 << ',' << 220 + wavelength << '\n';
+    for (int i = 0; i < 1000; ++i) rows += fmt::format("{},{},{}\n", wavelength, i / 999.0 * 90.0, 220 + wavelength);
   }
-  const std::string rows = text.str();
   put("sky.csv", rows);
-  make_table({"--set", "surroundings={profile=\"sky.csv\"}", "--evaluator", "cpu", "--set",
-              "grid={theta_deg=[0,30,60],sigma=[0.2]}"});
+  const std::vector<std::string> settings = {"--set", "surroundings={profile=\"sky.csv\"}",    "--evaluator", "cpu",
+                                             "--set", "grid={theta_deg=[0,30,60],sigma=[0.2]}"};
+  make_table(settings);
   EXPECT_LT(std::filesystem::file_size(at("t.nc")), rows.size() + 100'000);
-  put("points.csv", "theta_deg\n30\n");
-  const Columns found = looked_up();
-  EXPECT_EQ(found.at("dolp"),
-            eval({"--set", "surroundings={profile=\"sky.csv\"}", "--set", "surface.sigma=0.2"}).at("dolp"));
+  put("points.csv", "theta_deg,sigma\n30,0.2\n");
+  const Columns expected =
+      parse_csv(dolp(joined({"eval", "scene.toml", "--points", "points.csv", "-o", "-"}, settings)).out);
+  std::filesystem::remove(at("sky.csv"));
+  EXPECT_EQ(parse_csv(lookup().out).at("dolp"), expected.at("dolp"));
 }
 
-TEST_F(Lookup, CoarseTable_SaysThatItMissesTheTolerance) {
-  make_table({});
-  put("points.csv", "theta_deg,sigma,q\n70,0.2,2.5\n");
-  const Columns found = looked_up();
-  // Status bits. 2: DOLP misses the tolerance. 16: rho misses it. 32: single scattering is not enough.
-  EXPECT_EQ(found.at("status")[0], 2.0 + 16.0 + 32.0);
-  EXPECT_GT(found.at("error_estimate")[0], 1e-3);
-  EXPECT_EQ(lookup({"--strict"}).status, 1);
-  const Columns exact = eval({});
-  EXPECT_NEAR(found.at("dolp")[0], exact.at("dolp")[0], found.at("error_estimate")[0]);
-}
-
-TEST_F(Lookup, Json_NamesTableAndErrors) {
-  make_table({});
-  const json report = this->report({"lookup", "t.nc", "--points", "points.csv", "-o", "out.csv"});
-  EXPECT_EQ(report["table"], "t.nc");
-  EXPECT_EQ(report["points"], 3);
-  EXPECT_EQ(report["tolerance"], 1e-4);
-  EXPECT_LE(report["worst_error_estimate"], 1e-4);
-  EXPECT_EQ(parse_csv(content("out.csv")).at("dolp").size(), 3U);
-}
-
-TEST_F(Lookup, WindsOutsideTheTable_AreNamedAsWinds) {
-  make_table({"--set", "surface.distribution=gaussian", "--set", "grid.wind_m_s=[5,10]"});
-  put("points.csv", "theta_deg,wind_m_s\n30,12\n");
-  expect_refused(lookup(), "points.csv:2: wind_m_s = 12: outside the table, which has [5, 10]");
-}
-
-TEST_F(Lookup, BadPoints_NameLineColumnAndRange) {
-  make_table({});
-  put("points.csv", "theta_deg,sigma,q\n30,0.2,2\n81,0.2,2\n");
-  expect_refused(lookup(), "points.csv:3: theta_deg = 81: outside the table, which has [0, 80.5]");
-  put("points.csv", "theta_deg,sigma\n30,0.5\n");
-  expect_refused(lookup(), "points.csv:2: sigma = 0.5: outside the table, which has [0.1, 0.4]");
-  put("points.csv", "sigma,q\n0.2,2\n");
-  expect_refused(lookup(), "points.csv:1: column \"theta_deg\" is missing, a number in [0, 80.5]");
-  put("points.csv", "theta_deg,n\n30,1.6\n");
-  expect_refused(lookup(), "points.csv:2: n = 1.6: the table is of n = 1.5; dolp eval computes other values");
-  put("points.csv", "theta_deg,n,k\n30,1.5,0.1\n");
-  EXPECT_EQ(lookup().status, 0);
-}
-
-TEST_F(Lookup, BadTable_IsRefused) {
+TEST_F(TableAsScene, NoTable_IsRefusedInOneLine) {
   expect_refused(lookup(), "t.nc: there is no such file");
+  put("t.nc", "title = 1\n");
+  expect_refused(lookup(), "t.nc: is not a NetCDF table of dolp");
   ASSERT_EQ(dolp({"table", "scene.toml", "-o", "t.csv", "--quiet"}).status, 0);
-  expect_refused(dolp({"lookup", "t.csv", "--points", "points.csv", "-o", "-"}), "t.csv: only a table written as .nc");
+  expect_refused(dolp({"plan", "t.csv"}), "t.csv: only a table written as .nc holds its scene");
+  expect_refused(dolp({"lookup", "scene.toml", "--points", "points.csv", "-o", "-"}),
+                 "scene.toml: is a scene and no table");
 }
 
-TEST_F(Lookup, OutputOverAnInput_IsRefused) {
-  make_table({});
-  const std::string before = content("t.nc");
-  expect_refused(dolp({"lookup", "t.nc", "--points", "points.csv", "-o", "t.nc"}), "would overwrite an input");
-  EXPECT_EQ(content("t.nc"), before);
+// Along theta a parabola through the entries would be exact for a quantity a + b theta^2; here the right values come
+// from `eval` at the point that the report names.
+TEST_F(TableAsScene, VerifyBetween_ReportsWhatInterpolationCosts) {
+  make_table({"--set", "grid.theta_deg={from=0,to=80,count=17}", "--set", "grid.sigma=[0.2]", "--set", "grid.q=[3]",
+              "--evaluator", "cpu", "--tolerance", "1e-7"});
+  const json found = report({"verify", "t.nc", "--between", "200", "--quantities", "dolp,rho_i"})["between"];
+  ASSERT_EQ(found.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(found[i]["quantity"], i < 2 ? "dolp" : "rho_i");
+    EXPECT_EQ(found[i]["method"], i % 2 == 0 ? "linear" : "cubic");
+    EXPECT_EQ(found[i]["compared"], 200);
+    EXPECT_LE(found[i]["median"], found[i]["p95"]);
+    EXPECT_LE(found[i]["p95"], found[i]["largest"]);
+  }
+  EXPECT_LT(found[1]["median"], found[0]["median"].get<double>() / 10.0);
+  const double theta_deg = found[0]["at"]["theta_deg"], below = std::floor(theta_deg / 5.0) * 5.0;
+  put("points.csv", fmt::format("theta_deg\n{:.17g}\n{}\n{}\n", theta_deg, below, below + 5.0));
+  const std::vector<double> right = parse_csv(lookup().out).at("dolp");
+  const double linear = std::lerp(right[1], right[2], (theta_deg - below) / 5.0);
+  constexpr double kTwoTolerances = 2e-7;
+  EXPECT_NEAR(found[0]["largest"], std::abs(linear - right[0]), kTwoTolerances);
+  expect_refused(dolp({"verify", "t.nc", "--between", "9", "--quantities", "dolps"}),
+                 "t.nc: has no quantity \"dolps\"; it has dolp, ");
+}
+
+// On an axis with logarithmic spacing the interpolation is linear in the logarithm, so two more values in each decade
+// than a linear axis would need suffice. The advice of plan makes both kinds of table good enough.
+TEST_F(TableAsScene, PlansNumbersOfValues_AreAboutEnough_AndHalfOfThemAreTooFew) {
+  const std::vector<std::string> common = {"--set", "grid.q=[3]", "--tolerance", "1e-4"};
+  const std::string theta = "grid.theta_deg={{from=0,to=80,count={}}}";
+  const std::string sigma = "grid.sigma={{from=0.05,to=0.5,count={},spacing=\"log\"}}";
+  const auto grid = [&](int thetas, int sigmas) {
+    return joined(
+        common, {"--set", fmt::format(fmt::runtime(theta), thetas), "--set", fmt::format(fmt::runtime(sigma), sigmas)});
+  };
+  const std::vector<std::string> planned = grid(20, 10);
+  const json advice = report(joined({"plan", "scene.toml"}, planned))["between"];
+  ASSERT_EQ(advice.size(), 2U);
+  const int thetas = advice[0]["needed_values"], sigmas = advice[1]["needed_values"];
+  const auto typical_error = [&](int of_theta, int of_sigma) {
+    make_table(joined(grid(of_theta, of_sigma), {"--evaluator", "cpu"}));
+    return report({"verify", "t.nc", "--between", "300"})["between"][0]["p95"].get<double>();
+  };
+  EXPECT_LT(typical_error(thetas, sigmas), 1e-4);
+  EXPECT_GT(typical_error(thetas / 3, sigmas / 3), 1e-4);
 }
 
 }  // namespace

@@ -20,6 +20,6 @@ import csv, sys
 row = next(csv.DictReader(line for line in open("r.csv") if not line.startswith("#")))
 expected, found = float(row["dolp"]), float(sys.argv[1])
 if not abs(found - expected) < 1e-3 * expected:
-    sys.exit(f"octave_test: Octave interpolates {found}, dolp lookup {expected}")
-print(f"Octave interpolates {found}, dolp lookup {expected}")
+    sys.exit(f"octave_test: Octave interpolates {found}, dolp lookup computes {expected}")
+print(f"Octave interpolates {found}, dolp lookup computes {expected}")
 END

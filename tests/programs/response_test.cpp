@@ -104,18 +104,18 @@ TEST_F(Response, WhatIsWrong_IsRefusedInOneLine) {
 
 TEST_F(Response, AsATable_IsRefused) {
   ASSERT_EQ(response({"--quiet"}).status, 0);
-  expect_refused(dolp({"lookup", "r.nc", "--points", "points.csv", "-o", "-"}), "r.nc: ");
+  expect_refused(dolp({"verify", "r.nc", "--between", "9"}), "r.nc: has no quantity \"dolp\"");
   expect_refused(dolp({"merge", "r.nc", "-o", "m.nc"}), "r.nc: ");
 }
 
 TEST_F(Response, Verify_ComparesWithTheReference) {
   for (const std::string masking : {"none", "smith"}) {
     ASSERT_EQ(response({"--set", "surface.masking=" + masking, "--set", "grid.q=2", "--quiet"}).status, 0);
-    const nlohmann::json json = report({"verify", "r.nc", "--samples", "4"});
-    EXPECT_EQ(json["checked"], 4);
+    const nlohmann::json json = report({"verify", "r.nc", "--samples", "2"});
+    EXPECT_EQ(json["checked"], 2);
     EXPECT_EQ(json["quantities"].size(), masking == "smith" ? 4U : 2U);
     for (const auto& quantity : json["quantities"]) {
-      EXPECT_EQ(quantity["compared"], 4);
+      EXPECT_EQ(quantity["compared"], 2);
       EXPECT_LE(quantity["worst"]["error"], quantity["worst"]["stated"]);
     }
   }

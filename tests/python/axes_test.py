@@ -35,7 +35,8 @@ class Axes(PackageCase):
         again = xr.load_dataset(path)
         for source in (table, again, table.isel(material=[2, 1]), table.sel(material="PET")):
             found = dolp.lookup(source, material="pet", band_um="10-12", temperature_K=300, theta_deg=40)
-            self.assertEqual(float(found.dolp), float(table.dolp.sel(material="PET", band="10-12", temperature=300, theta=40)))
+            entry = table.sel(material="PET", band="10-12", temperature=300, theta=40).squeeze()
+            self.assertLessEqual(float(abs(found.dolp - entry.dolp)), float(found.error_estimate + entry.error_estimate))
         found = dolp.lookup(table, material=["PET", "quartz"], band_um="8-9", temperature_K=310, theta_deg=40)
         self.assertEqual(found.material.values.tolist(), ["PET", "SiO2 amorphous quartz"])
         with self.assertRaisesRegex(dolp.InputError, "material = 'lead': must be one of gold"):
@@ -49,22 +50,15 @@ class Axes(PackageCase):
             right = dolp.evaluate(alone, theta_deg=50, evaluator="cpu")
             self.assertLessEqual(abs(float(found.dolp[i] - right.dolp)), float(found.error_estimate[i] + right.error_estimate))
 
-    def test_a_key_is_looked_up_between_its_values_with_an_error(self):
-        key, kelvins = "surroundings.temperature_K", [200, 220, 240, 260, 270, 280]
-        table = dolp.table(self.scene, **{key: kelvins}, **AXES)
-        for kelvin in (207, 230, 266.5, 279):
-            found = dolp.lookup(table, theta_deg=[20, 60], **{key: kelvin})
-            right = dolp.evaluate(self.scene.with_({key: kelvin}), theta_deg=[20, 60], sigma=0.2, q=3, evaluator="cpu")
-            for quantity, error in (("dolp", "error_estimate"), ("rho_i", "rho_error_estimate")):
-                distance = abs(found[quantity] - right[quantity])
-                self.assertTrue(bool((distance <= found[error] + right[error]).all()), (kelvin, quantity))
-            self.assertLess(float(found.error_estimate.max()), 0.01)
-        self.assertEqual(float(dolp.lookup(table, theta_deg=20, **{key: 240}).dolp),
-                         float(table.dolp.sel({key: 240, "theta": 20})))
-        two = dolp.lookup(table.sel({key: [220, 240]}), theta_deg=20, **{key: 230})
-        self.assertTrue(np.isinf(two.error_estimate) and two.status & 2)
-        with self.assertRaisesRegex(dolp.InputError, "= 300.0: outside the table, which has"):
-            dolp.lookup(table, theta_deg=20, **{key: 300})
+    def test_a_key_is_looked_up_between_its_values(self):
+        key = "surroundings.temperature_K"
+        table = dolp.table(self.scene, **{key: [200, 240, 280]}, **AXES)
+        right = dolp.evaluate(self.scene.with_({key: 207}), theta_deg=[20, 60], sigma=0.2, q=3, evaluator="cpu")
+        np.testing.assert_array_equal(dolp.lookup(table, theta_deg=[20, 60], **{key: 207}).dolp, right.dolp)
+        np.testing.assert_array_equal(dolp.lookup(table.sel({key: 240}), theta_deg=20).dolp,
+                                      dolp.lookup(table, theta_deg=20, **{key: 240}).dolp)
+        with self.assertRaisesRegex(dolp.InputError, "surroundings.temperature_K is missing; the table has 3 values of it"):
+            dolp.lookup(table, theta_deg=20)
 
 
 if __name__ == "__main__":

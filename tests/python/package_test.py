@@ -123,7 +123,7 @@ class Package(PackageCase):
         own = base.with_({"emission.temperature_K": 280, "surroundings.temperature_K": 250})
         own = dolp.table(own, theta_deg=np.linspace(0, 80, 21), sigma=0.2, q=3, evaluator="cpu")
         part = table.sel({"emission.temperature_K": 280})
-        with self.assertRaisesRegex(dolp.InputError, "has 3 values of surroundings.temperature_K; take one"):
+        with self.assertRaisesRegex(dolp.InputError, "surroundings.temperature_K is missing; the table has 3 values"):
             dolp.lookup(part, theta_deg=33.3)
         found = dolp.lookup(part.sel({"surroundings.temperature_K": 250}), theta_deg=33.3)
         self.assertEqual(float(found.dolp), float(dolp.lookup(own, theta_deg=33.3).dolp))
@@ -191,10 +191,8 @@ class Package(PackageCase):
         self.assertEqual((scene["surroundings.profile"], scene["surroundings.temperature_K"]), ("sky.csv", None))
         theta = np.linspace(0, 80, 41)
         table = dolp.table(scene, theta_deg=theta, sigma=0.2, q=3)
-        between, exact = (look(theta_deg=33.3) for look in (lambda **at: dolp.lookup(table, **at),
-                                                            lambda **at: dolp.evaluate(scene, sigma=0.2, q=3, **at)))
-        bound = float(between.error_estimate) + float(exact.error_estimate)
-        self.assertLessEqual(abs(float(between.dolp) - float(exact.dolp)), bound)
+        self.assertEqual(float(dolp.lookup(table, theta_deg=33.3).dolp),
+                         float(dolp.evaluate(scene, theta_deg=33.3, sigma=0.2, q=3).dolp))
         reference = dolp.evaluate(scene, theta_deg=60, sigma=0.2, q=3, evaluator="reference")
         own = dolp.evaluate(scene, theta_deg=60, sigma=0.2, q=3)
         self.assertLessEqual(abs(float(reference.dolp) - float(own.dolp)), float(own.error_estimate))

@@ -84,13 +84,13 @@ TEST(ReferenceGrooves, Albedo_IsOne_AndNothingIsLost) {
                                   {kCauchy, 89.9, {0.3, 2.0}, kPaint},   {kCauchy, 60.0, {0.3, 1.001}, kPaint},
                                   {kCauchy, 60.0, {10.0, 2.0}, {3, 1}},  {kCauchy, 90.0 - 1e-9, {0.3, 1.6}, kPaint}};
   for (const Point& point : points) {
-    const Moments m = all_bounces(point, {.relative_tolerance = 1e-7});
+    const Moments m = all_bounces(point, {.relative_tolerance = 1e-5});
     const double cos_theta = zenith_from_deg(point.theta_deg).cos;
     EXPECT_NEAR(m.albedo / cos_theta, 1.0, kRounding) << point.theta_deg << " " << point.shape.q;
     EXPECT_NEAR((m.r_i + m.deficit) / cos_theta, 1.0, kRounding) << point.theta_deg << " " << point.shape.q;
     EXPECT_GT(m.r_i, 0.0);
     EXPECT_GT(m.deficit, 0.0);
-    EXPECT_LE(m.r_i_error, 1e-6 * m.r_i) << point.theta_deg << " " << point.shape.q;
+    EXPECT_LE(m.r_i_error, 1e-4 * m.r_i) << point.theta_deg << " " << point.shape.q;
   }
 }
 
@@ -218,8 +218,8 @@ TEST(ReferenceGrooves, CoarseQuadrature_StaysWithinItsErrors) {
                                   {kCauchy, 20.0, {0.01, 1.001}, {4.0, 1.0}}};
   double worst = 0.0;
   for (const Point& point : points) {
-    const Moments coarse = all_bounces(point, {.relative_tolerance = 1e-4});
-    const Moments fine = all_bounces(point, {.relative_tolerance = 1e-6});
+    const Moments coarse = all_bounces(point, {.relative_tolerance = 1e-3});
+    const Moments fine = all_bounces(point, {.relative_tolerance = 1e-5});
     for (const auto& [value, error] : kMomentMembers) {
       const double distance = std::abs(coarse.*value - fine.*value), bound = coarse.*error + fine.*error;
       EXPECT_LE(distance, bound) << point.theta_deg << " " << point.shape.q << " " << point.index.n;

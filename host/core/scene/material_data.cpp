@@ -69,20 +69,6 @@ std::vector<const Material*> materials_with(std::string_view words) {
   return found;
 }
 
-/// The material with this name. If there is none: the one whose name begins with the words `name`. If there is none:
-/// the one whose name contains them. Null if no material or several materials fit.
-const Material* match_name(std::string_view name) {
-  const std::string wanted = lower_case(trim(name));
-  std::vector<const Material*> beginning;
-  for (const Material& material : built_in_materials()) {
-    const std::string known = lower_case(material.name);
-    if (known == wanted) return &material;
-    if (known.starts_with(wanted + ' ')) beginning.push_back(&material);
-  }
-  if (beginning.empty()) beginning = materials_with(wanted);
-  return beginning.size() == 1 ? beginning.front() : nullptr;
-}
-
 /// The materials whose names share a word with `name`, begin like it, or are misspelt in it.
 std::vector<std::string> similar_names(std::string_view name) {
   std::vector<std::string> similar;
@@ -115,12 +101,24 @@ const std::vector<Material>& built_in_materials() {
   return materials;
 }
 
+const Material* match_material(std::string_view name) {
+  const std::string wanted = lower_case(trim(name));
+  std::vector<const Material*> beginning;
+  for (const Material& material : built_in_materials()) {
+    const std::string known = lower_case(material.name);
+    if (known == wanted) return &material;
+    if (known.starts_with(wanted + ' ')) beginning.push_back(&material);
+  }
+  if (beginning.empty()) beginning = materials_with(wanted);
+  return beginning.size() == 1 ? beginning.front() : nullptr;
+}
+
 Material find_material(std::string_view name, const Spectrum& spectrum, const std::string& prefix) {
   return fit_to_spectrum(named_material(name, prefix), spectrum, prefix);
 }
 
 const Material& named_material(std::string_view name, const std::string& prefix) {
-  if (const Material* material = match_name(name)) return *material;
+  if (const Material* material = match_material(name)) return *material;
   const std::vector<std::string> similar = similar_names(trim(name));
   if (const std::size_t count = materials_with(trim(name)).size(); count > 1) {
     throw InputError(fmt::format("{}names {} materials: {}", prefix, count, join(similar)));

@@ -12,6 +12,10 @@ namespace dolp {
 /// The materials of host/data/materials.csv with their sources, in the order of host/data/materials_sources.csv.
 const std::vector<Material>& built_in_materials();
 
+/// The built-in material with this name. If there is none: the one whose name begins with the words `name`. If there is
+/// none: the one whose name contains them. Null if no material or several materials fit.
+const Material* match_material(std::string_view name);
+
 /// Finds a built-in material by its name, or by whole words of the name: "water" finds "water 25C". Case is ignored.
 /// Errors: InputError that begins with `prefix` and suggests names, if not exactly one material fits.
 const Material& named_material(std::string_view name, const std::string& prefix);

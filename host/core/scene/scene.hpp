@@ -136,6 +136,7 @@ struct SceneNames {
 };
 
 class SceneDocument;
+struct KnownData;
 
 /// The part of a scene that determines the physics. SceneValues adds the values on the grid's axes, names and texts.
 struct SceneModel {
@@ -162,6 +163,7 @@ struct SceneValues : SceneModel {
   std::vector<std::string> files;  ///< paths by which the program opens the files that the scene names
   std::vector<Setting> settings;   ///< settings that were applied to the text
   std::shared_ptr<const SceneDocument> document;  ///< text and settings as TOML; null without a text
+  std::shared_ptr<KnownData> known;  ///< data of the table from which the scene comes; null for other scenes
 };
 
 /// The scene at one wavelength instead of its spectrum. Errors: InputError if n, k or E0 are not known there.

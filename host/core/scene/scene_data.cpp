@@ -21,7 +21,14 @@ std::string resolve_path(const std::string& file, const std::string& scene_path)
   return is_as_given ? file : scene_path.substr(0, slash + 1) + file;
 }
 
-/// Reads a file that a scene names. With `known`, messages begin with `prefix` and quote no text of the file.
+/// The data of the scene's table, if the table's scene has the same name for them; else null. In a table, `name` of
+/// SceneNames names the data.
+const KnownData* stored_data(const SceneValues& scene, const auto& name) {
+  return scene.known && name(*scene.known->names) == name(scene.names) ? scene.known.get() : nullptr;
+}
+
+/// Reads a file that a scene names. If the scene comes from a table and the table's scene names the file too (`known`),
+/// messages begin with `prefix` and quote no text of the file: a table of somebody else may name any file.
 template <class Read>
 auto read_file_of(SceneValues& scene, const std::string& file, const std::string& prefix, const KnownData* known,
                   const Read& read) {
@@ -50,9 +57,32 @@ Spectrum all_wavelengths(const SceneValues& scene) {
   return all;
 }
 
-/// Loads the material of the surface or of a film. `stored`: the material from a table file, or null.
-void load_material(SceneValues& scene, const SceneDocument& document, const std::string& table, Material& material,
-                   std::string& name, const std::string& file, const KnownData* known, const Material* stored) {
+/// True if the built-in material `name` has the n and k of `stored` at each wavelength of `stored`.
+bool is_built_in(const std::string& name, const Material& stored) {
+  const Material* const built_in = match_material(name);
+  if (!built_in || stored.is_constant()) return false;
+  const Spectrum range = known_range(*built_in);
+  for (std::size_t i = 0; i < stored.n.wavelength_um.size(); ++i) {
+    const double um = stored.n.wavelength_um[i];
+    if (um < range.min_um || um > range.max_um) return false;
+    const OpticalConstants here = built_in->at(um), there = stored.at(um);
+    if (here.n != there.n || here.k != there.k) return false;
+  }
+  return true;
+}
+
+/// The place of a material in a scene: its table in the text, its names, and the material stored in the scene's table.
+struct MaterialPlace {
+  std::string table;
+  std::string& name;
+  const std::string& file;
+  const KnownData* known = nullptr;
+  const Material* stored = nullptr;
+};
+
+/// Loads the material of the surface or of a film. Built-in data replace equal stored data, which may have one row.
+void load_material(SceneValues& scene, const SceneDocument& document, const MaterialPlace& place, Material& material) {
+  const auto& [table, name, file, known, found] = place;
   const bool is_file = document.find(table + ".material_file") != nullptr;
   if (!is_file && !document.find(table + ".material")) return;
   const std::string prefix = document.prefix(table + (is_file ? ".material_file" : ".material"));
@@ -64,6 +94,7 @@ void load_material(SceneValues& scene, const SceneDocument& document, const std:
       check_formula(known_everywhere, {um, um}, prefix);
     }
   };
+  const Material* const stored = found && (is_file || !is_built_in(name, *found)) ? found : nullptr;
   if (stored) {
     material = *stored;
     material.name = is_file ? file : name;
@@ -101,12 +132,18 @@ std::vector<std::string> axis_names(const SceneValues& scene, const std::string&
   return names;
 }
 
+bool are_built_in(const std::vector<Material>& materials) {
+  return std::ranges::all_of(materials, [](const Material& material) { return is_built_in(material.name, material); });
+}
+
 /// Loads the materials of the grid's axis. The first becomes the material of the scene.
-void load_axis_materials(SceneValues& scene, const SceneDocument& document, const KnownData* known) {
+void load_axis_materials(SceneValues& scene, const SceneDocument& document) {
   if (!document.find("grid.material")) return;
   const std::string prefix = document.prefix("grid.material");
   std::vector<Material> materials;
-  if (known && !known->materials.empty()) {
+  const KnownData* const known = scene.known.get();
+  const bool is_stored = known && known->axis_names == scene.labels[Axis::kMaterial];
+  if (is_stored && !known->materials.empty() && !are_built_in(known->materials)) {
     for (const Material& material : known->materials)
       materials.push_back(material.is_constant() ? material : fit_to_spectrum(material, scene.spectrum, prefix));
   } else {
@@ -126,20 +163,33 @@ void load_axis_materials(SceneValues& scene, const SceneDocument& document, cons
   scene.materials = std::make_shared<const std::vector<Material>>(std::move(materials));
 }
 
-void load_materials(SceneValues& scene, const SceneDocument& document, const KnownData* known) {
+void load_materials(SceneValues& scene, const SceneDocument& document) {
   Surface& surface = scene.surface;
-  load_axis_materials(scene, document, known);
-  load_material(scene, document, "surface", surface.material, scene.names.material, scene.names.material_file, known,
-                known && known->material ? &*known->material : nullptr);
+  SceneNames& names = scene.names;
+  const auto is_same = [](const SceneNames::OfLayer& a, const SceneNames::OfLayer& b) {
+    return a.material == b.material && a.material_file == b.material_file;
+  };
+  const KnownData* known =
+      stored_data(scene, [](const SceneNames& all) { return std::pair(all.material, all.material_file); });
+  load_axis_materials(scene, document);
+  load_material(
+      scene, document,
+      {"surface", names.material, names.material_file, known, known && known->material ? &*known->material : nullptr},
+      surface.material);
   for (std::size_t i = 0; i < surface.coating.size(); ++i) {
-    SceneNames::OfLayer& names = scene.names.coating[i];
-    const bool is_known = known && i < known->layers.size() && known->layers[i];
-    load_material(scene, document, fmt::format("surface.coating.{}", i + 1), surface.coating[i].material,
-                  names.material, names.material_file, known, is_known ? &*known->layers[i] : nullptr);
+    SceneNames::OfLayer& layer = names.coating[i];
+    const bool has_table = scene.known && i < scene.known->names->coating.size();
+    known = has_table && is_same(scene.known->names->coating[i], layer) ? scene.known.get() : nullptr;
+    const bool is_stored = known && i < known->layers.size() && known->layers[i];
+    load_material(scene, document,
+                  {fmt::format("surface.coating.{}", i + 1), layer.material, layer.material_file, known,
+                   is_stored ? &*known->layers[i] : nullptr},
+                  surface.coating[i].material);
   }
   if (!document.find("surface.reflectance_file")) return;
   const std::string prefix = document.prefix("surface.reflectance_file");
   if (!surface.coating.empty()) throw InputError(prefix + "cannot be combined with surface.coating");
+  known = stored_data(scene, [](const SceneNames& all) { return all.reflectance_file; });
   ReflectanceTable table =
       known && known->reflectance
           ? *known->reflectance
@@ -149,12 +199,14 @@ void load_materials(SceneValues& scene, const SceneDocument& document, const Kno
   surface.reflectance = std::make_shared<const ReflectanceTable>(std::move(table));
 }
 
-void load_source(SceneValues& scene, const SceneDocument& document, const KnownData* known) {
+void load_source(SceneValues& scene, const SceneDocument& document) {
   const bool is_preset = document.find("source.preset") != nullptr;
   if (!is_preset && !document.find("source.file")) return;
   const std::string prefix = document.prefix(is_preset ? "source.preset" : "source.file");
   Source& source = *scene.source;
   source.kind = Source::Kind::kTabulated;
+  const KnownData* const known =
+      stored_data(scene, [](const SceneNames& all) { return std::pair(all.source_preset, all.source_file); });
   if (known && known->irradiance) {
     source.table = *known->irradiance;
     if (is_preset) source.table.interpolation = SpectralTable::Interpolation::kLogLog;
@@ -167,13 +219,14 @@ void load_source(SceneValues& scene, const SceneDocument& document, const KnownD
   check_covers(source.table, all_wavelengths(scene), prefix);
 }
 
-void load_profile(SceneValues& scene, const SceneDocument& document, const KnownData* known) {
+void load_profile(SceneValues& scene, const SceneDocument& document) {
   if (!document.find("surroundings.profile")) return;
   const std::string prefix = document.prefix("surroundings.profile");
   const char* const air_key =
       document.find("surroundings.vapour_cm") ? "surroundings.vapour_cm" : "surroundings.air_temperature_K";
   std::optional<SkyProfile> profile = built_in_sky(scene.names.profile, scene.surroundings->air,
                                                    document.find(air_key) ? document.prefix(air_key) : prefix);
+  const KnownData* const known = stored_data(scene, [](const SceneNames& all) { return all.profile; });
   if (!profile && known && known->profile) profile = known->profile;
   std::error_code unknown;
   const std::filesystem::file_status file =
@@ -195,10 +248,14 @@ void load_profile(SceneValues& scene, const SceneDocument& document, const Known
 
 }  // namespace
 
-void load_named_data(SceneValues& scene, const SceneDocument& document, const KnownData* known) {
-  load_materials(scene, document, known);
-  load_source(scene, document, known);
-  load_profile(scene, document, known);
+void load_named_data(SceneValues& scene, const SceneDocument& document) {
+  if (scene.known && !scene.known->names) {
+    scene.known->names = scene.names;
+    scene.known->axis_names = scene.labels[Axis::kMaterial];
+  }
+  load_materials(scene, document);
+  load_source(scene, document);
+  load_profile(scene, document);
 }
 
 }  // namespace dolp

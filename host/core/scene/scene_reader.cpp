@@ -260,11 +260,12 @@ void apply(SceneDocument& document, const Setting& setting) {
   document.apply(setting);
 }
 
-SceneValues scene_of(const SceneDocument& document, const std::string& path_name, const KnownData* known) {
+SceneValues scene_of(const SceneDocument& document, const std::string& path_name, std::shared_ptr<KnownData> known) {
   SceneValues scene = read_keys(document);
   fill_from_grid(scene, document);
   scene.path_name = path_name;
-  load_named_data(scene, document, known);
+  scene.known = std::move(known);
+  load_named_data(scene, document);
   fill_grid(scene, document);
   check_smith(scene, document);
   check_radiation(scene, document);
@@ -276,10 +277,10 @@ SceneValues scene_of(const SceneDocument& document, const std::string& path_name
 }  // namespace
 
 SceneValues parse_scene(const std::string& text, const std::string& path_name, const std::vector<Setting>& settings,
-                        const KnownData* known) {
+                        std::shared_ptr<KnownData> known) {
   SceneDocument document(text, path_name);
   for (const Setting& setting : settings) apply(document, setting);
-  SceneValues scene = scene_of(document, path_name, known);
+  SceneValues scene = scene_of(document, path_name, std::move(known));
   scene.text = text;
   scene.settings = settings;
   return scene;
@@ -300,11 +301,11 @@ SceneValues with_settings(const SceneValues& scene, const std::vector<Setting>& 
     std::vector<Setting> all;
     std::ranges::remove_copy_if(scene.settings, std::back_inserter(all), is_replaced);
     all.insert(all.end(), settings.begin(), settings.end());
-    return parse_scene(scene.text, scene.path_name, all);
+    return parse_scene(scene.text, scene.path_name, all, scene.known);
   }
   SceneDocument document = *scene.document;
   for (const Setting& setting : settings) apply(document, setting);
-  SceneValues changed = scene_of(document, scene.path_name, nullptr);
+  SceneValues changed = scene_of(document, scene.path_name, scene.known);
   changed.text = scene.text;
   changed.settings = scene.settings;
   changed.settings.insert(changed.settings.end(), settings.begin(), settings.end());

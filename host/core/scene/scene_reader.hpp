@@ -19,9 +19,9 @@ SceneValues read_scene(const std::string& path, const std::vector<Setting>& sett
 SceneValues with_settings(const SceneValues& scene, const std::vector<Setting>& settings);
 
 /// Makes a scene from a text. `path_name` appears in messages, and paths in the scene are relative to its folder. Data
-/// in `known` replace files. If `known` lacks the data of a file: InputError, unless `known->may_open_files`.
+/// in `known` replace files and built-in data of the same names; see load_named_data().
 SceneValues parse_scene(const std::string& text, const std::string& path_name,
-                        const std::vector<Setting>& settings = {}, const KnownData* known = nullptr);
+                        const std::vector<Setting>& settings = {}, std::shared_ptr<KnownData> known = nullptr);
 
 /// Writes a scene as TOML without comments, with the keys in the order of dolp::keys(). Reading the text gives the same
 /// scene. Paths are relative to `folder`, where the text will be saved. Domain: a scene that was read.

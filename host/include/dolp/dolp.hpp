@@ -71,7 +71,8 @@ struct Report {
 /// A validated scene: surface, radiation, geometry, grid and accuracy. Copies of a Scene share its data.
 class DOLP_EXPORT Scene {
  public:
-  /// Reads a scene file (TOML); "-" is stdin. Applies the settings in their order.
+  /// Reads a scene file (TOML; "-" is stdin), or the scene that a table (.nc) stores, with the n, k and other data that
+  /// the table was computed with. Applies the settings in their order.
   /// Errors: InputError with file, line, key, value and allowed range.
   static Scene from_file(const std::filesystem::path& path, const std::vector<Setting>& settings = {});
   /// Reads a scene from text, as if from a file with the path `name`: paths in the text are relative to its folder.
@@ -82,6 +83,13 @@ class DOLP_EXPORT Scene {
   Scene with(const std::vector<Setting>& settings) const;
   /// A copy with other axes in [grid]: with_grid({{"theta_deg", AxisRange{0, 60, 7}}, {"sigma", {0.1, 0.2}}}).
   Scene with_grid(const std::vector<Setting>& axes) const;
+  /// The scene of a table from the attributes of the table, such as Table::file_attributes(). `name`: see from_text().
+  static Scene from_attributes(const std::vector<Attribute>& attributes, const std::string& name = "table");
+  /// A copy in which keys such as surface.sigma have the value of an axis in [grid], where the axis has only one value.
+  /// So points without a column for this axis get the value.
+  Scene for_points() const;
+  /// A copy with these settings instead of all present settings.
+  Scene with_all(const std::vector<Setting>& settings) const;
   /// A copy of the scene without a key, or without a whole TOML table such as "surroundings".
   Scene without(const std::string& key) const { return with(key, Value()); }
 
@@ -89,6 +97,9 @@ class DOLP_EXPORT Scene {
   const std::string& name() const;  ///< the path of the scene file, or the argument `name` of from_text()
   const std::string& text() const;  ///< the text of the scene as it was read, without the settings
   const std::vector<Setting>& settings() const;
+  /// The attributes of the table from which the scene comes. Empty for other scenes.
+  const std::vector<Attribute>& table_attributes() const;
+  std::string evaluator() const;  ///< name of the evaluator that computed this table; "vulkan" for other scenes
   /// The scene with its settings applied, as TOML. The names of files in it are relative to `folder`.
   std::string toml(const std::filesystem::path& folder = ".") const;
 
@@ -137,7 +148,7 @@ DOLP_EXPORT std::vector<BuiltInMaterial> materials();
 /// with them, only one name contains them. Ignores case. Errors: InputError if no material or several materials fit.
 DOLP_EXPORT BuiltInMaterial material(const std::string& name);
 
-/// Results at points, in the order of the points: computed, or interpolated in a table.
+/// Results at points, in the order of the points.
 struct Results : ResultColumns {
   Quantities given;          ///< quantities that have a column in these results; a value that is unknown is NaN
   std::string stokes_units;  ///< unit of the Stokes parameters for UDUNITS, such as "W m-2 um-1"
@@ -165,11 +176,6 @@ class DOLP_EXPORT Table {
   Table(const Table&) = default;
   Table& operator=(const Table&) = default;
   ~Table() = default;
-
-  /// Interpolates in the table at points. If `points` has no column for an axis, all points get the only value on this
-  /// axis or, if there are several, the value in the table's scene. Error estimates include the interpolation error.
-  /// Errors: InputError for a point outside the axes, or if the table lacks a necessary axis, quantity or attribute.
-  Results lookup(const std::vector<Column>& points, const Progress& progress = {}) const;
 
   /// Writes the table as .nc, .csv or .npy, by the suffix. The file is complete or absent. Errors: InputError, IoError.
   void write(const std::filesystem::path& path) const;
@@ -236,10 +242,6 @@ class DOLP_EXPORT Evaluator {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Interpolates in a table file at points from a CSV. Writes a CSV like write_points. Errors: InputError, IoError.
-DOLP_EXPORT Report write_lookup(const std::filesystem::path& table, const std::filesystem::path& points,
-                                const std::filesystem::path& path, const Progress& progress = {});
-
 /// Joins all shards of a table into one file. For `history` see RunOptions::history. Errors: InputError if a shard is
 /// missing, occurs twice or belongs to another table; IoError.
 DOLP_EXPORT Report merge(const std::vector<std::filesystem::path>& shards, const std::filesystem::path& path,
@@ -254,6 +256,10 @@ DOLP_EXPORT Report plan(const Scene& scene, const std::string& device = {}, bool
 /// Checks a table file: computes some of its entries again by adaptive quadrature, which shares no formula with the
 /// kernels, and compares the differences with the error bounds in the table. Errors: InputError.
 DOLP_EXPORT Report verify(const std::filesystem::path& table, const TableCheckOptions& options = {});
+
+/// Tells what interpolation between the entries of a table costs: computes values at random points inside the cells of
+/// the table file, on the CPU, and compares them with linear and cubic interpolation. Errors: InputError.
+DOLP_EXPORT Report verify_between(const std::filesystem::path& table, const BetweenOptions& options = {});
 
 /// Computes cases that are numerically hard and compares them with stored references. Errors: InputError, DeviceError.
 DOLP_EXPORT Report verify_device(const DeviceCheckOptions& options = {});

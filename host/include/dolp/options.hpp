@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <dolp/errors.hpp>
 
@@ -47,6 +48,14 @@ struct TableCheckOptions {
   std::uint64_t seed = 1;    ///< seed for the choice of entries
   bool named_files = false;  ///< read n, k and irradiance from the files that the scene names, not from the table
   Progress progress = {};    ///< may be empty
+};
+
+/// Options of verify_between().
+struct BetweenOptions {
+  std::size_t points = 1000;                 ///< number of random points
+  std::uint64_t seed = 1;                    ///< seed of the points
+  std::vector<std::string> quantities = {};  ///< names of quantities of the table; empty: dolp
+  Progress progress = {};                    ///< may be empty
 };
 
 struct DeviceCheckOptions {

@@ -107,7 +107,7 @@ Table Evaluator::table(const Scene& scene, const RunOptions& of_call) {
     layout.head.attributes = all_attributes(values, layout, outcome, options.history);
     TableValues table = table_part(layout, run.entries(), results.take());
     static_cast<TableHead&>(table) = std::move(layout.head);
-    return Table(std::make_shared<const Table::Impl>(std::move(table), "table"));
+    return Table(std::make_shared<const Table::Impl>(Table::Impl{std::move(table)}));
   });
 }
 
@@ -120,7 +120,7 @@ void Evaluator::table_parts(const Scene& scene, const std::function<void(const T
     CallbackSink parts([&](const SceneEntries& part, const std::vector<PointResult>& results) {
       TableValues table = table_part(layout, part, results);
       table.stokes_units = layout.head.stokes_units;
-      guarded(Table(std::make_shared<const Table::Impl>(std::move(table), "part")));
+      guarded(Table(std::make_shared<const Table::Impl>(Table::Impl{std::move(table)})));
     });
     run.compute(parts);
   });
@@ -174,7 +174,7 @@ Table Evaluator::response(const Scene& scene, const RunOptions& of_call) {
     };
     const ResponseOutcome run = run_responses(values, layout, options, *impl_->begin(values), take);
     table.attributes.insert(table.attributes.end(), run.attributes.begin(), run.attributes.end());
-    return Table(std::make_shared<const Table::Impl>(std::move(table), "response table"));
+    return Table(std::make_shared<const Table::Impl>(Table::Impl{std::move(table)}));
   });
 }
 

@@ -11,6 +11,7 @@
 #include "base/text.hpp"
 #include "base/version.hpp"
 #include "device/devices.hpp"
+#include "evaluate/cpu/cpu_evaluator.hpp"
 #include "model/choices.hpp"
 #include "plan/effects.hpp"
 #include "report/run_report.hpp"
@@ -42,6 +43,20 @@ std::vector<Precision> precisions_of(const DeviceCheckOptions& options, std::str
 BuiltInMaterial facts_of(const Material& material) {
   const Spectrum range = known_range(material);
   return {material.name, range.min_um, range.max_um, material.source};
+}
+
+/// The quantities with these names; DOLP without names. Errors: InputError for a quantity that the table lacks.
+Quantities chosen_quantities(const Quantities& given, const std::vector<std::string>& names, const std::string& table) {
+  std::vector<std::string> known;
+  for (const Quantity quantity : given) known.emplace_back(description_of(quantity).name);
+  Quantities chosen;
+  for (const std::string& name : names.empty() ? std::vector<std::string>{"dolp"} : names) {
+    const auto found = std::ranges::find(known, name);
+    if (found == known.end())
+      throw InputError(fmt::format("{}: has no quantity \"{}\"; it has {}", table, one_line(name), join(known)));
+    chosen.push_back(given[static_cast<std::size_t>(found - known.begin())]);
+  }
+  return chosen;
 }
 
 }  // namespace
@@ -86,6 +101,22 @@ Report verify(const std::filesystem::path& path, const TableCheckOptions& option
   const auto check_sample = sample.table.beta_deg.empty() ? check_table : check_responses;
   const TableCheck check = check_sample(sample, scene, name, options.progress);
   return public_report(table_report(check, name, scene.title, options.seed, seconds_since(start)), check.passed());
+}
+
+Report verify_between(const std::filesystem::path& path, const BetweenOptions& options) {
+  const std::string name = path.string();
+  check_may_hold_scene(name);
+  const TableReader reader(path);
+  const TableHead& table = reader.head();
+  const SceneValues scene = table_scene(table, name);
+  const Quantities quantities = chosen_quantities(reader.layout().quantities, options.quantities, name);
+  const PointsBetween between(table, options.points, options.seed);
+  const TableValues entries = reader.read_entries(between.positions(), {});
+  CpuEvaluator evaluator;
+  const std::vector<PointResult> computed =
+      evaluate_scene(scene, point_entries(scene, between.points()), evaluator, options.progress);
+  return public_report(
+      between_report(between.errors(entries, computed, quantities), options.points, name, scene.title));
 }
 
 Report verify_device(const DeviceCheckOptions& options) {

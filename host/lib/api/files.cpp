@@ -13,14 +13,12 @@
 #include "base/text.hpp"
 #include "report/run_report.hpp"
 #include "run/estimates.hpp"
-#include "run/lookup_run.hpp"
 #include "run/mueller_run.hpp"
 #include "run/scene_run.hpp"
 #include "run/scene_table.hpp"
 #include "run/table_run.hpp"
-#include "run/table_scene.hpp"
+#include "scene/scene_data.hpp"
 #include "table/table_file.hpp"
-#include "table/table_lookup.hpp"
 
 namespace dolp {
 namespace {
@@ -87,6 +85,7 @@ Report public_report(const ReportBuilder& report, bool is_good, const std::files
 std::vector<std::string> files_of(const SceneValues& scene) {
   std::vector<std::string> files = scene.files;
   files.push_back(scene.path_name);
+  if (scene.known) files.push_back(scene.known->table);
   return files;
 }
 
@@ -182,53 +181,6 @@ Report Evaluator::write_mueller(const Scene& scene, const std::filesystem::path&
     report.row("written", "{}", key("output", path.string()));
     return public_report(report, accuracy <= values.accuracy.tolerance, path);
   });
-}
-
-Report write_lookup(const std::filesystem::path& table_path, const std::filesystem::path& points_path,
-                    const std::filesystem::path& path, const Progress& progress) {
-  const Clock::time_point start = Clock::now();
-  const Points points = load_points(points_path, PointsKind::kDirections, {table_path.string()}, path);
-  const TableValues table = load_table(table_path.string());
-  const SceneValues scene = table_scene(table, table_path.string());
-  const TableLookup lookup(table, scene, table_path.string());
-  check_writable(path);
-  report_start(progress, points.size());
-  const std::vector<PointResult> results = lookup_points(lookup, scene, points, progress);
-  ResultCsv csv = csv_of(path, points, lookup.quantities());
-  csv.append(results);
-  csv.commit();
-
-  const auto count = [&](std::uint32_t bit) {
-    return std::ranges::count_if(results, [bit](const PointResult& result) { return (result.status & bit) != 0; });
-  };
-  const auto worst_of = [&](Quantity error) {
-    std::optional<double> worst;
-    for (const PointResult& found : results) {
-      if (promises_dolp(found.status)) worst = std::max(worst.value_or(0.0), found[error]);
-    }
-    return worst;
-  };
-  const auto missed = count(kToleranceNotMet), rho_missed = count(kRhoToleranceNotMet);
-  const auto inaccurate = count(kModelInaccurate);
-  const std::optional<double> worst = worst_of(Quantity::kErrorEstimate);
-  ReportBuilder report;
-  report.line("{}", key("table", table_path.string()));
-  report.row("points", "{}", key("points", results.size()));
-  report.row("error", "{}, interpolation included; tolerance of the table {:g}",
-             worst ? fmt::format("DOLP <= {:.2g} (absolute)", *worst) : "stated for no point",
-             key("tolerance", scene.accuracy.tolerance));
-  report.row("status 2", "{} of {} points: DOLP misses the tolerance{}", key("tolerance_missed", missed),
-             results.size(), missed == 0 ? "" : ": the grid is too coarse there (dolp plan)");
-  report.row("status 16", "{} of {} points: rho misses the tolerance", key("rho_tolerance_missed", rho_missed),
-             results.size());
-  report.row_if(inaccurate > 0, "status 32", "{} of {} points: {}", key("model_inaccurate", inaccurate), results.size(),
-                kModelInaccurateText);
-  add_left_out(report, points);
-  report.row("written", "{}", key("output", path.string()));
-  report.value("worst_error_estimate", worst);
-  report.value("worst_rho_error_estimate", worst_of(Quantity::kRhoErrorEstimate));
-  report.value("wall_s", seconds_since(start));
-  return public_report(report, missed + rho_missed == 0, path);
 }
 
 Report merge(const std::vector<std::filesystem::path>& shards, const std::filesystem::path& path,

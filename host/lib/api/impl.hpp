@@ -20,25 +20,16 @@
 #include "scene/points.hpp"
 #include "scene/scene.hpp"
 #include "table/table.hpp"
-#include "table/table_lookup.hpp"
 
 namespace dolp {
 
 struct Scene::Impl {
   SceneValues scene;
+  std::vector<Attribute> table_attributes = {};  ///< see Scene::table_attributes()
 };
 
 struct Table::Impl {
-  Impl(TableValues values, std::string of_messages) : table(std::move(values)), name(std::move(of_messages)) {}
-  /// The object that looks up points. The first call makes it. Errors: InputError if the table allows no lookup.
-  const TableLookup& lookup() const;
-
-  const TableValues table;
-  const std::string name;  ///< beginning of error messages
-
-  mutable std::once_flag is_made;
-  mutable std::optional<SceneValues> scene;  ///< scene of the table; the first lookup sets `scene` and `between`
-  mutable std::optional<TableLookup> between;
+  TableValues table;
 };
 
 Report public_report(const ReportBuilder& report, bool is_good = true, const std::filesystem::path& output = {});

@@ -5,6 +5,7 @@
 #include "api/impl.hpp"
 #include "base/text.hpp"
 #include "run/scene_remarks.hpp"
+#include "run/table_scene.hpp"
 #include "scene/embedded_data.hpp"
 #include "scene/key_hints.hpp"
 #include "scene/material_data.hpp"
@@ -29,7 +30,19 @@ std::optional<KeyValue> value_of(const SceneValues& scene, std::string_view key,
 }  // namespace
 
 Scene Scene::from_file(const std::filesystem::path& path, const std::vector<Setting>& settings) {
+  if (path.extension() == ".nc" || is_table_file(path.string())) {
+    const Scene scene = from_attributes(dolp::table_attributes(path.string()), path.string());
+    return settings.empty() ? scene : scene.with(settings);
+  }
+  if (path.extension() == ".csv" || path.extension() == ".npy") check_may_hold_scene(path.string());
   return Scene(std::make_shared<const Impl>(Impl{read_scene(path.string(), settings)}));
+}
+
+Scene Scene::from_attributes(const std::vector<Attribute>& attributes, const std::string& name) {
+  TableHead head;
+  head.attributes = attributes;
+  take_spectral_data(head, name);
+  return Scene(std::make_shared<const Impl>(Impl{table_scene(head, name), attributes}));
 }
 
 Scene Scene::from_text(const std::string& text, const std::vector<Setting>& settings, const std::string& name) {
@@ -37,7 +50,31 @@ Scene Scene::from_text(const std::string& text, const std::vector<Setting>& sett
 }
 
 Scene Scene::with(const std::vector<Setting>& settings) const {
-  return Scene(std::make_shared<const Impl>(Impl{with_settings(impl_->scene, settings)}));
+  return Scene(std::make_shared<const Impl>(Impl{with_settings(impl_->scene, settings), impl_->table_attributes}));
+}
+
+Scene Scene::with_all(const std::vector<Setting>& settings) const {
+  const SceneValues& scene = impl_->scene;
+  return Scene(std::make_shared<const Impl>(
+      Impl{parse_scene(scene.text, scene.path_name, settings, scene.known), impl_->table_attributes}));
+}
+
+Scene Scene::for_points() const {
+  const SceneValues& scene = impl_->scene;
+  constexpr std::pair<Axis, const char*> kKeys[] = {{Axis::kWavelength, "spectrum.wavelength_um"},
+                                                    {Axis::kTemperature, "emission.temperature_K"},
+                                                    {Axis::kN, "surface.n"},
+                                                    {Axis::kK, "surface.k"},
+                                                    {Axis::kSigma, "surface.sigma"},
+                                                    {Axis::kQ, "surface.q"}};
+  std::vector<Setting> settings;
+  for (const auto& [axis, key] : kKeys) {
+    if (scene.grid[axis].size() != 1) continue;
+    const bool is_wind = axis == Axis::kSigma && !scene.wind_m_s.empty();
+    settings.push_back(is_wind ? Setting{"surface.wind_m_s", scene.wind_m_s.front()}
+                               : Setting{key, scene.grid[axis].front()});
+  }
+  return with(settings);
 }
 
 Scene Scene::with_grid(const std::vector<Setting>& axes) const {
@@ -50,6 +87,14 @@ const std::string& Scene::title() const { return impl_->scene.title; }
 const std::string& Scene::name() const { return impl_->scene.path_name; }
 const std::string& Scene::text() const { return impl_->scene.text; }
 const std::vector<Setting>& Scene::settings() const { return impl_->scene.settings; }
+const std::vector<Attribute>& Scene::table_attributes() const { return impl_->table_attributes; }
+
+std::string Scene::evaluator() const {
+  TableHead head;
+  head.attributes = impl_->table_attributes;
+  const std::string* name = find_attribute<std::string>(head, "evaluator");
+  return name ? *name : "vulkan";
+}
 
 std::string Scene::toml(const std::filesystem::path& folder) const {
   return scene_toml(impl_->scene, std::filesystem::absolute(folder));

@@ -8,7 +8,6 @@
 
 #include "api/impl.hpp"
 #include "base/text.hpp"
-#include "run/lookup_run.hpp"
 #include "run/scene_run.hpp"
 #include "run/table_scene.hpp"
 #include "table/table.hpp"
@@ -72,49 +71,10 @@ void check_values(const TableValues& table, const std::string& name) {
   }
 }
 
-/// Refuses a table without an axis of the scene's grid: its value on this axis is unknown. Refuses axis values that the
-/// grid does not list: dolp did not compute these entries, so their errors are unknown.
-void check_computed(const TableHead& table, const SceneValues& scene, const std::string& name) {
-  constexpr double kFloatRounding = 0x1p-23;  // relative rounding of axis values in single precision
-  for (const Axis axis : kAllAxes) {
-    const char* const axis_name = description_of(axis).name;
-    std::vector<double> computed = scene.grid[axis];
-    if (computed.empty()) continue;
-    if (table.axes[axis].empty()) {
-      throw InputError(
-          fmt::format("{}: the axis {} is missing, which its scene has; one value of it is enough", name, axis_name));
-    }
-    if (description_of(axis).has_labels) {
-      for (const double value : table.axes[axis]) scene_position(table, axis, value, scene, name);
-      continue;
-    }
-    std::ranges::sort(computed);
-    for (const double value : table.axes[axis]) {
-      const auto above = std::ranges::lower_bound(computed, value);
-      const auto is_value = [&](double known) { return std::abs(value - known) <= kFloatRounding * std::abs(known); };
-      if ((above != computed.end() && is_value(*above)) || (above != computed.begin() && is_value(*(above - 1))))
-        continue;
-      throw InputError(fmt::format(
-          "{}: {} = {}: is not among the values that were computed, {} to {}; look up in the "
-          "table as computed, which interpolates with an error",
-          name, axis_name, format_number(value), format_number(computed.front()), format_number(computed.back())));
-    }
-  }
-}
-
 }  // namespace
 
-const TableLookup& Table::Impl::lookup() const {
-  std::call_once(is_made, [&] {
-    scene = table_scene(table, name);
-    check_computed(table, *scene, name);
-    between.emplace(table, *scene, name);
-  });
-  return *between;
-}
-
 Table Table::read(const std::filesystem::path& path) {
-  return Table(std::make_shared<const Impl>(load_table(path.string()), path.string()));
+  return Table(std::make_shared<const Impl>(Impl{load_table(path.string())}));
 }
 
 Table Table::of(TableValues values, const std::string& name) {
@@ -123,7 +83,7 @@ Table Table::of(TableValues values, const std::string& name) {
   });
   take_spectral_data(values, name);
   check_values(values, name);
-  return Table(std::make_shared<const Impl>(std::move(values), name));
+  return Table(std::make_shared<const Impl>(Impl{std::move(values)}));
 }
 
 const TableValues& Table::values() const { return impl_->table; }
@@ -136,13 +96,6 @@ std::vector<Attribute> Table::file_attributes() const {
   const TableLayout layout = layout_of(table);
   attributes.push_back({kValuesHash, values_hash(layout, sums_of(table, layout, {}))});
   return attributes;
-}
-
-Results Table::lookup(const std::vector<Column>& points, const Progress& progress) const {
-  const TableLookup& between = impl_->lookup();
-  const Points at = points_of_columns(points, PointsKind::kDirections);
-  report_start(progress, at.size());
-  return results_of(lookup_points(between, *impl_->scene, at, progress), between.quantities(), impl_->table);
 }
 
 void Table::write(const std::filesystem::path& path) const { write_table(impl_->table, path); }

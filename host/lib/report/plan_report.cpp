@@ -11,10 +11,10 @@
 #include "model/choices.hpp"
 #include "plan/kernel_data.hpp"
 #include "run/estimates.hpp"
-#include "run/lookup_run.hpp"
 #include "run/prediction.hpp"
 #include "run/scene_remarks.hpp"
 #include "run/scene_run.hpp"
+#include "verify/interpolation.hpp"
 
 namespace dolp {
 namespace {
@@ -29,7 +29,7 @@ struct PlannedRun {
   int most_nodes = 0;                  ///< largest number of nodes per slope interval or azimuth arc; 0 without moments
   std::vector<std::string> pipelines;  ///< Vulkan pipelines of the first refinement level; may be empty
   vulkan::DispatchCount dispatches;    ///< dispatches of the first refinement level
-  LookupForecast lookup;
+  InterpolationForecast between;
   std::string device;  ///< name of the device; empty if there is none
   std::string why_no_device;
 };
@@ -106,9 +106,9 @@ PlannedRun planned_run(const SceneValues& scene, const std::string& device, Effe
   }
   const RunPrediction& run = planned.run;
   const double of_moment = run.first_evaluations / static_cast<double>(std::max<std::size_t>(run.moments, 1));
-  planned.lookup =
-      lookup_forecast(scene, planned.plan, allowed_evaluations(run.first_evaluations + run.again_evaluations),
-                      of_moment * static_cast<double>(run.spectral_samples));
+  planned.between =
+      forecast_interpolation(scene, planned.plan, allowed_evaluations(run.first_evaluations + run.again_evaluations),
+                             of_moment * static_cast<double>(run.spectral_samples));
   planned.run.host_bytes += static_cast<double>(without_a_run);
   return planned;
 }
@@ -196,7 +196,7 @@ void add_attempts(ReportBuilder& report, const PlannedRun& plan, bool is_idle) {
   report.value("first_attempt/is_exact", run.is_exact);
   report.value("further_attempts/beams", run.again_beams);
   report.value("evaluations", run.first_evaluations + run.again_evaluations);
-  report.value("plan_evaluations", run.counted_evaluations + plan.influences.evaluations + plan.lookup.evaluations);
+  report.value("plan_evaluations", run.counted_evaluations + plan.influences.evaluations + plan.between.evaluations);
 }
 
 void add_kernels(ReportBuilder& report, const PlannedRun& plan) {
@@ -232,28 +232,25 @@ void add_cost(ReportBuilder& report, const PlannedRun& plan) {
              key("estimated_cpu_s", run.cpu_s));
 }
 
-std::string error_text(double error) {
-  if (std::isnan(error)) return "error not examined";
-  return std::isfinite(error) ? fmt::format("error about {:.1g}", error) : "no error can be stated";
+std::string error_text(const ErrorSummary& error) {
+  if (error.compared == 0) return "not examined: it would take a large part of the run";
+  return fmt::format("linear interpolation of DOLP errs by {:.1g} (median), {:.1g} (largest)", error.median,
+                     error.largest);
 }
 
-std::string needed_text(const AxisForecast& axis) {
-  if (axis.needed_values == 0 && axis.examined == 0) return "not examined: it would take a large part of the run";
-  if (axis.needed_values == 0) return fmt::format("no number of values up to {} is enough", axis.examined);
-  return fmt::format("{} values are about enough for {:.1g}", axis.needed_values, axis.wanted);
-}
-
-void add_lookup(ReportBuilder& report, const PlannedRun& plan) {
+void add_between(ReportBuilder& report, const PlannedRun& plan) {
   std::vector<ReportBuilder> axes;
-  for (const AxisForecast& axis : plan.lookup.axes) {
+  for (const AxisForecast& axis : plan.between.axes) {
     ReportBuilder& row = axes.emplace_back(kLabelWidth);
-    row.row("lookup", "along {}: {} between {} values; {}", key("axis", description_of(axis.axis).name),
-            error_text(axis.error), key("values", axis.values), needed_text(axis));
-    row.value("error", axis.error);
-    row.value("wanted_error", axis.wanted);
-    row.value("needed_values", axis.needed_values > 0 ? std::optional(axis.needed_values) : std::nullopt);
+    const bool is_known = axis.needed_values > 0;
+    row.row("between", "along {}: {} between {} values{}", key("axis", description_of(axis.axis).name),
+            error_text(axis.error), key("values", axis.values),
+            is_known ? fmt::format("; about {} values keep it within the tolerance", axis.needed_values) : "");
+    row.value("median", axis.error.compared > 0 ? std::optional(axis.error.median) : std::nullopt);
+    row.value("largest", axis.error.compared > 0 ? std::optional(axis.error.largest) : std::nullopt);
+    row.value("needed_values", is_known ? std::optional(axis.needed_values) : std::nullopt);
   }
-  report.add("lookup", axes);
+  report.add("between", axes);
 }
 
 }  // namespace
@@ -303,7 +300,7 @@ ReportBuilder plan_report(const SceneValues& scene, const std::string& device, E
                  {"gives_emissivity", gives_emissivity(scene, plan.plan)}});
   add_kernels(report, plan);
   add_cost(report, plan);
-  add_lookup(report, plan);
+  add_between(report, plan);
   return report;
 }
 

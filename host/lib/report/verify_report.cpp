@@ -17,20 +17,24 @@ namespace {
 
 constexpr std::size_t kMostFailureLines = 20;
 
-std::string position_text(const CheckedValue& value) {
+std::string position_text(const std::vector<AxisValue>& position) {
   std::vector<std::string> texts;
-  for (const auto& [axis, number, label] : value.position)
+  for (const auto& [axis, number, label] : position)
     texts.push_back(
         fmt::format("{} {}", description_of(axis).name, label.empty() ? fmt::format("{:g}", number) : label));
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-ReportBuilder::Json value_json(const CheckedValue& value) {
-  ReportBuilder::Json json = {{"quantity", value.quantity}};
-  for (const auto& [axis, number, label] : value.position) {
+void add_position(ReportBuilder::Json& json, const std::vector<AxisValue>& position) {
+  for (const auto& [axis, number, label] : position) {
     ReportBuilder::Json& coordinate = json[description_of(axis).column];
     label.empty() ? coordinate = number : coordinate = label;
   }
+}
+
+ReportBuilder::Json value_json(const CheckedValue& value) {
+  ReportBuilder::Json json = {{"quantity", value.quantity}};
+  add_position(json, value.position);
   json.update({{"stored", value.stored},
                {"reference", value.reference},
                {"error", value.error()},
@@ -44,7 +48,7 @@ ReportBuilder quantity_report(const QuantityCheck& check) {
   const CheckedValue& worst = check.worst;
   ReportBuilder report;
   report.row(check.name, "{} compared, worst: error {:.2e} of {:.2e} stated, at {}{}", key("compared", check.compared),
-             worst.error(), worst.stated, position_text(worst),
+             worst.error(), worst.stated, position_text(worst.position),
              check.unstated > 0 ? fmt::format("; nothing stated for {} of them", check.unstated) : "");
   report.values({{"name", check.name}, {"unstated", check.unstated}, {"worst", value_json(worst)}});
   return report;
@@ -55,7 +59,8 @@ void add_failures(ReportBuilder& report, const std::vector<CheckedValue>& failur
   for (const CheckedValue& value : failures) {
     report.row_if(list.size() < kMostFailureLines, "wrong",
                   "{} at {} {}: {:.10g} is stored, {:.10g} is right, error {:.2e}, stated {:.2e}", value.quantity,
-                  position_text(value), value.complaint, value.stored, value.reference, value.error(), value.stated);
+                  position_text(value.position), value.complaint, value.stored, value.reference, value.error(),
+                  value.stated);
     list.push_back(value_json(value));
   }
   report.row_if(list.size() > kMostFailureLines, "wrong", "and {} more", list.size() - kMostFailureLines);
@@ -218,6 +223,26 @@ ReportBuilder device_report(const Device& device, std::size_t position) {
 }
 
 }  // namespace
+
+ReportBuilder between_report(const std::vector<InterpolationError>& errors, std::size_t points, const std::string& path,
+                             const std::string& title) {
+  ReportBuilder report;
+  report.line("{}{}", key("table", path), title.empty() ? "" : ": " + title);
+  report.line("errors of interpolation at {} random points between the entries", key("points", points));
+  std::vector<ReportBuilder> rows;
+  for (const InterpolationError& found : errors) {
+    ReportBuilder& row = rows.emplace_back();
+    const ErrorSummary& error = found.error;
+    row.row(description_of(found.quantity).name, "{:<6} median {:.1e}, 95 % {:.1e}, largest {:.1e}{}",
+            key("method", found.method), key("median", error.median), key("p95", error.p95),
+            key("largest", error.largest), found.at.empty() ? "" : " at " + position_text(found.at));
+    ReportBuilder::Json at = ReportBuilder::Json::object();
+    add_position(at, found.at);
+    row.values({{"quantity", description_of(found.quantity).name}, {"compared", error.compared}, {"at", at}});
+  }
+  report.add("between", rows);
+  return report;
+}
 
 ReportBuilder table_report(const TableCheck& check, const std::string& path, const std::string& title,
                            std::uint64_t seed, double wall_s) {

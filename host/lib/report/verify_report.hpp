@@ -5,6 +5,7 @@
 
 #include "device/devices.hpp"
 #include "report/report.hpp"
+#include "verify/interpolation.hpp"
 #include "verify/qualification.hpp"
 #include "verify/table_check.hpp"
 
@@ -12,6 +13,9 @@ namespace dolp {
 
 ReportBuilder table_report(const TableCheck& check, const std::string& path, const std::string& title,
                            std::uint64_t seed, double wall_s);
+
+ReportBuilder between_report(const std::vector<InterpolationError>& errors, std::size_t points, const std::string& path,
+                             const std::string& title);
 
 struct PrecisionReport {
   EvaluationReport evaluation;

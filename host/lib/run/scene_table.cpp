@@ -72,8 +72,8 @@ std::uint64_t data_hash(const SceneValues& scene) {
     add(material->n);
     add(material->k);
   }
-  hash = hashed(hashed(hash, coating_text(scene.surface, true)), reflectance_text(scene.surface));
-  hash = hashed(hash, axis_materials_text(scene, true));
+  hash = hashed(hashed(hash, coating_text(scene, StoredRows::kAll)), reflectance_text(scene.surface));
+  hash = hashed(hash, axis_materials_text(scene, StoredRows::kAll));
   if (scene.source) add(scene.source->table);
   if (scene.surroundings && scene.surroundings->profile) hash = hashed(hash, scene.surroundings->profile->hash());
   return hash;
@@ -186,9 +186,9 @@ TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const
                      {"tolerance", scene.accuracy.tolerance}};
   const Dispersion& formula = recorded_material(axes, scene).n.formula;
   if (formula.number != 0 && !scene.materials) head.attributes.push_back({"index_n_formula", formula_text(formula)});
-  const bool has_wavelengths = !axes[Axis::kWavelength].empty();
-  const std::initializer_list<Attribute> of_data = {{"coating", coating_text(scene.surface, has_wavelengths)},
-                                                    {"materials", axis_materials_text(scene, has_wavelengths)},
+  const StoredRows rows = axes[Axis::kWavelength].empty() ? StoredRows::kOfSpectrum : StoredRows::kAll;
+  const std::initializer_list<Attribute> of_data = {{"coating", coating_text(scene, rows)},
+                                                    {"materials", axis_materials_text(scene, rows)},
                                                     {"reflectance", reflectance_text(scene.surface)},
                                                     {"surroundings_profile", profile_text(scene)}};
   std::ranges::copy_if(of_data, std::back_inserter(head.attributes),

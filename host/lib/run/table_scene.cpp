@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <dolp/errors.hpp>
 #include <filesystem>
+#include <fstream>
+#include <memory>
 #include <string_view>
 
 #include <dolp/number_range.hpp>
@@ -15,6 +18,7 @@
 #include "scene/scene_reader.hpp"
 #include "scene/spectral_data.hpp"
 #include "table/table_file.hpp"
+#include "table/table_reader.hpp"
 
 namespace dolp {
 namespace {
@@ -40,9 +44,10 @@ SpectralTable checked_table(const Curve& curve, const NamedValue& value, const s
   return table;
 }
 
-KnownData known_data(const TableHead& table, const std::string& name) {
+std::shared_ptr<KnownData> stored_data(const TableHead& table, const std::string& name) {
   const std::string where = name + ": ";
-  KnownData known;
+  const auto stored = std::make_shared<KnownData>(KnownData{.table = name});
+  KnownData& known = *stored;
   if (!table.index_n.values.empty() && !table.index_k.values.empty()) {
     Material& material = known.material.emplace();
     material.n = checked_table(table.index_n, {"index_n", 0.0, kNRange}, where);
@@ -50,8 +55,10 @@ KnownData known_data(const TableHead& table, const std::string& name) {
     material.constant = {material.n.value.front(), material.k.value.front()};
     const std::string* formula = find_attribute<std::string>(table, "index_n_formula");
     if (formula) material.n.formula = parse_formula(*formula, where + "attribute \"index_n_formula\": ");
-    for (SpectralTable* values : {&material.n, &material.k}) {
-      if (values->value.size() == 1) *values = {};
+    if (material.n.value.size() != material.k.value.size()) {
+      for (SpectralTable* values : {&material.n, &material.k}) {
+        if (values->value.size() == 1) *values = {};  // a constant beside a table
+      }
     }
   }
   if (!table.irradiance.values.empty()) {
@@ -69,7 +76,31 @@ KnownData known_data(const TableHead& table, const std::string& name) {
   if (profile && !profile->empty()) {
     known.profile = parse_sky_profile(*profile, name + ": attribute \"surroundings_profile\"");
   }
-  return known;
+  return stored;
+}
+
+std::string materials_text(const std::vector<const Material*>& materials, const Spectrum& spectrum, StoredRows rows) {
+  if (materials.empty()) return {};
+  std::string text = "number,quantity,wavelength_um,value\n";
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const Material& used = *materials[i];
+    if (!used.name.empty()) text += fmt::format("{},name,,\"{}\"\n", i + 1, one_line(used.name));
+    const Material& material = rows == StoredRows::kAll && used.tabulated ? *used.tabulated : used;
+    const std::string constant_um = material.tabulated ? format_number(spectrum.min_um) : "";
+    const auto add = [&](const char* quantity, const SpectralTable& table, double constant) {
+      if (table.wavelength_um.empty())
+        text += fmt::format("{},{},{},{}\n", i + 1, quantity, constant_um, format_number(constant));
+      for (std::size_t row = 0; row < table.wavelength_um.size(); ++row) {
+        text += fmt::format("{},{},{},{}\n", i + 1, quantity, format_number(table.wavelength_um[row]),
+                            format_number(table.value[row]));
+      }
+    };
+    add("n", material.n, material.constant.n);
+    add("k", material.k, material.constant.k);
+    if (material.n.formula.number != 0)
+      text += fmt::format("{},formula,,{}\n", i + 1, formula_text(material.n.formula));
+  }
+  return text;
 }
 
 }  // namespace
@@ -94,39 +125,17 @@ Dispersion parse_formula(const std::string& text, const std::string& where) {
   return formula;
 }
 
-std::string materials_text(const std::vector<const Material*>& materials, bool has_wavelength_axis) {
-  if (materials.empty()) return {};
-  std::string text = "number,quantity,wavelength_um,value\n";
-  for (std::size_t i = 0; i < materials.size(); ++i) {
-    const Material& used = *materials[i];
-    if (!used.name.empty()) text += fmt::format("{},name,,\"{}\"\n", i + 1, one_line(used.name));
-    const Material& material = has_wavelength_axis && used.tabulated ? *used.tabulated : used;
-    const auto add = [&](const char* quantity, const SpectralTable& table, double constant) {
-      if (table.wavelength_um.empty()) text += fmt::format("{},{},,{}\n", i + 1, quantity, format_number(constant));
-      for (std::size_t row = 0; row < table.wavelength_um.size(); ++row) {
-        text += fmt::format("{},{},{},{}\n", i + 1, quantity, format_number(table.wavelength_um[row]),
-                            format_number(table.value[row]));
-      }
-    };
-    add("n", material.n, material.constant.n);
-    add("k", material.k, material.constant.k);
-    if (material.n.formula.number != 0)
-      text += fmt::format("{},formula,,{}\n", i + 1, formula_text(material.n.formula));
-  }
-  return text;
-}
-
-std::string coating_text(const Surface& surface, bool has_wavelength_axis) {
+std::string coating_text(const SceneModel& scene, StoredRows rows) {
   std::vector<const Material*> films;
-  for (const Layer& layer : surface.coating) films.push_back(&layer.material);
-  return materials_text(films, has_wavelength_axis);
+  for (const Layer& layer : scene.surface.coating) films.push_back(&layer.material);
+  return materials_text(films, scene.spectrum, rows);
 }
 
-std::string axis_materials_text(const SceneModel& scene, bool has_wavelength_axis) {
+std::string axis_materials_text(const SceneModel& scene, StoredRows rows) {
   std::vector<const Material*> materials;
   for (std::size_t i = 0; scene.materials && i < scene.materials->size(); ++i)
     materials.push_back(&(*scene.materials)[i]);
-  return materials_text(materials, has_wavelength_axis);
+  return materials_text(materials, scene.spectrum, rows);
 }
 
 std::vector<std::optional<Material>> parse_materials(const std::string& text, const std::string& name) {
@@ -213,6 +222,23 @@ void check_may_hold_scene(const std::string& path) {
   }
 }
 
+bool is_table_file(const std::string& path) {
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(path, unknown)) return false;
+  std::array<char, 4> start{};
+  std::ifstream(path, std::ios::binary).read(start.data(), start.size());
+  const std::string_view bytes(start.data(), start.size());
+  return bytes.starts_with("CDF") || bytes == "\x89HDF";
+}
+
+std::vector<Attribute> table_attributes(const std::string& path) {
+  check_may_hold_scene(path);
+  TableHead head = TableReader(path).head();
+  if (std::string data = spectral_data_of(head); !data.empty())
+    head.attributes.push_back({kSpectralData, std::move(data)});
+  return head.attributes;
+}
+
 TableValues load_table(const std::string& path) {
   check_may_hold_scene(path);
   return read_table(path);
@@ -245,12 +271,13 @@ SceneValues table_scene(const TableHead& table, const std::string& name, NamedDa
   }
   const std::string* overrides = find_attribute<std::string>(table, "scene_overrides");
   const std::string* path = find_attribute<std::string>(table, "scene_path");
-  const KnownData known =
-      named_data == NamedData::kOfTable ? known_data(table, name) : KnownData{.may_open_files = true};
+  const std::shared_ptr<KnownData> known =
+      named_data == NamedData::kOfTable ? stored_data(table, name)
+                                        : std::make_shared<KnownData>(KnownData{.table = name, .may_open_files = true});
   SceneValues scene;
   try {
     scene =
-        parse_scene(*text, path ? *path : name, overrides ? settings_of(*overrides) : std::vector<Setting>{}, &known);
+        parse_scene(*text, path ? *path : name, overrides ? settings_of(*overrides) : std::vector<Setting>{}, known);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: attribute \"scene\": {}", name, error.what()));
   }

@@ -20,6 +20,9 @@ std::uint64_t scene_seed(const SceneValues& scene);  ///< the same hash as a num
 
 void check_may_hold_scene(const std::string& path);
 
+/// The attributes of a table from which table_scene() restores the scene. Errors: errors of load_table.
+std::vector<Attribute> table_attributes(const std::string& path);
+
 /// Reads a table. Errors: errors of read_table; InputError if there is no file or its format does not store a scene.
 TableValues load_table(const std::string& path);
 
@@ -29,8 +32,12 @@ enum class NamedData {
   kOfFiles,  ///< from the files that the scene names, relative to the folder of the attribute "scene_path"
 };
 
-/// The scene from which a table was made, with its settings applied. Errors: InputError that begins with `name` if the
-/// table has no scene, if its scene was changed later, or if the reader of scenes refuses the scene.
+/// True if the file at `path` begins like a NetCDF file.
+bool is_table_file(const std::string& path);
+
+/// The scene from which a table was made, with its settings applied. Its member `known` has the data of the table, so
+/// further settings keep these data. Errors: InputError that begins with `name` if the table has no scene, if its scene
+/// was changed later, or if the reader of scenes refuses the scene.
 SceneValues table_scene(const TableHead& table, const std::string& name, NamedData named_data = NamedData::kOfTable);
 
 /// Converts a value on an axis with labels (materials, bands) to the position of the same label in the scene. Errors:
@@ -41,13 +48,13 @@ double scene_position(const TableHead& table, Axis axis, double value, const Sce
 /// Converts the values on all axes with labels to positions in the scene's lists. Errors: errors of scene_position().
 void use_scene_labels(TableHead& table, const SceneValues& scene, const std::string& name);
 
-/// The n and k of materials as CSV, with the columns number (from 1), quantity (name, n, k or formula), wavelength_um
-/// and value. Empty if there are no materials.
-std::string materials_text(const std::vector<const Material*>& materials, bool has_wavelength_axis);
+/// Rows of n and k that a table stores: those at the wavelengths of its scene, or all rows of the material.
+enum class StoredRows { kOfSpectrum, kAll };
 
-/// materials_text() for the films of a coating, or for the materials on the grid's axis.
-std::string coating_text(const Surface& surface, bool has_wavelength_axis);
-std::string axis_materials_text(const SceneModel& scene, bool has_wavelength_axis);
+/// The n and k of the films of a coating as CSV, with the columns number (from 1), quantity (name, n, k or formula),
+/// wavelength_um and value. Empty if there are no films.
+std::string coating_text(const SceneModel& scene, StoredRows rows);
+std::string axis_materials_text(const SceneModel& scene, StoredRows rows);  ///< the same for the grid's materials
 
 std::vector<std::optional<Material>> parse_materials(const std::string& text, const std::string& name);
 

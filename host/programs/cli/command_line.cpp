@@ -41,7 +41,7 @@ constexpr CommandRow kCommands[] = {
      "dolp plan scene.toml\n  dolp plan scene.toml --tolerance 1e-6 --json"},
     {"verify", run_verify, "recompute entries of a table, or examine a device",
      "dolp verify table.nc\n  dolp verify --hard-cases --device nvidia"},
-    {"lookup", run_lookup, "interpolate in a table at scattered points, with the interpolation error",
+    {"lookup", run_lookup, "values between the entries of a table, computed from its scene",
      "dolp lookup table.nc --points points.csv -o results.csv\n  dolp lookup table.nc --points - -o - < points.csv"},
     {"fit", run_fit, "numbers of a scene from measured data, with intervals",
      "dolp fit scene.toml --data measured.csv --vary surface.n=1:3 --vary surface.sigma=0.01:1\n"
@@ -81,10 +81,12 @@ std::vector<OptionRow> option_rows() {
   constexpr const char* kPointColumns =
       "CSV with any of theta_deg, sigma or wind_m_s, q, n, k, wavelength_um; - is stdin";
   return {
-      {"table! response! eval! mueller! plan! fit!", "SCENE", &Options::scene_path, "scene file (TOML); - is stdin"},
+      {"table! response! eval! mueller! plan! fit!", "SCENE", &Options::scene_path,
+       "scene file (TOML), or table (.nc), whose scene counts; - is stdin"},
       {"explore", "SCENE", &Options::scene_path,
-       "scene, or session of the window (TOML); - is stdin; without it, paint at night"},
-      {"verify lookup!", "TABLE", &Options::table_path, "table file (.nc) that dolp table wrote"},
+       "scene or session of the window (TOML), or table (.nc); - is stdin; without it, paint at night"},
+      {"verify", "TABLE", &Options::table_path, "table file (.nc) that dolp table wrote"},
+      {"lookup!", "TABLE", &Options::scene_path, "table file (.nc) that dolp table wrote"},
       {"merge!", "SHARD", &Options::shards, "all shards of one table (.nc)"},
       {"materials", "NAME", &Options::material, "only this one"},
       {"keys", "KEY", &Options::key, "only this one, or the keys of a table, e.g. surface"},
@@ -109,24 +111,30 @@ std::vector<OptionRow> option_rows() {
       {"table", "--resume", &Options::resume, "continue where an interrupted run of the same scene stopped"},
       {"table response eval mueller plan fit explore", "--set", &Options::overrides,
        "KEY=VALUE: any scene key, e.g. surface.masking=none"},
-      {"table response eval mueller plan fit explore", "--tolerance", &Options::tolerance,
+      {"table response eval mueller plan lookup fit explore", "--tolerance", &Options::tolerance,
        "the scene's accuracy.tolerance: " + allowed("accuracy.tolerance")},
       {"verify", "--tolerance", &Options::tolerance,
        "requested tolerance: " + allowed("accuracy.tolerance") + "; 1e-4 when not given"},
-      {"table response eval mueller plan fit explore", "--precision", &Options::precision,
+      {"table response eval mueller plan lookup fit explore", "--precision", &Options::precision,
        "the scene's accuracy.precision: " + allowed("accuracy.precision")},
       {"verify", "--precision", &Options::precision, "auto is both", CLI::IsMember({"auto", "float", "double"})},
-      {"table response eval mueller plan fit explore verify devices", "--device", &Options::device,
+      {"table response eval mueller plan lookup fit explore verify devices", "--device", &Options::device,
        "Vulkan device: its position or a part of its name"},
-      {"table response eval mueller fit", "--evaluator", &Options::evaluator,
-       "vulkan; cpu: the same text on the CPU; reference: independent adaptive quadrature",
+      {"table response eval mueller lookup fit", "--evaluator", &Options::evaluator,
+       "vulkan; cpu: the same text on the CPU; reference: independent adaptive quadrature; without it, that of the "
+       "table "
+       "or vulkan",
        CLI::IsMember({"vulkan", "cpu", "reference"})},
       {"verify", "--evaluator", &Options::evaluator, "vulkan; cpu: the same text on the CPU",
        CLI::IsMember({"vulkan", "cpu"})},
-      {"table eval plan", "--keep-all", &Options::keep_all,
+      {"table eval plan lookup", "--keep-all", &Options::keep_all,
        "compute every effect that the scene has, however little it counts"},
       {"verify", "--samples", &Options::samples, "entries to recompute; all when the table has no more",
        range_to(std::size_t{1} << 24U)},
+      {"verify", "--between", &Options::between,
+       "compute so many random points between the entries, and report what linear and cubic interpolation cost there",
+       range_to(100'000)},
+      {"verify", "--quantities", &Options::quantities, "NAME,...: for --between; dolp when not given"},
       {"verify fit", "--seed", &Options::seed, "seed of the entries to recompute, or of the first points of a fit",
        not_negative()},
       {"verify", "--named-files", &Options::named_files,
@@ -183,6 +191,8 @@ CLI::Option* add_option(CLI::App& command, const OptionRow& row, Options& option
 void add_conditions(CLI::App& verify) {
   for (const char* of_table : {"--samples", "--seed", "--named-files"})
     verify.get_option(of_table)->needs(verify.get_option("TABLE"));
+  verify.get_option("--between")->needs(verify.get_option("TABLE"))->excludes(verify.get_option("--samples"));
+  verify.get_option("--quantities")->needs(verify.get_option("--between"));
   for (const char* of_device : {"--device", "--precision", "--evaluator", "--tolerance", "--all"})
     verify.get_option(of_device)->needs(verify.get_option("--hard-cases"));
   verify.get_option("--hard-cases")->excludes(verify.get_option("TABLE"));

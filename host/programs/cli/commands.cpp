@@ -52,7 +52,7 @@ Shard shard_of(const std::string& text) {
 }
 
 Report verify_device(const Options& options, const Progress& progress) {
-  DeviceCheckOptions check{options.evaluator, options.device};
+  DeviceCheckOptions check{options.evaluator.empty() ? "vulkan" : options.evaluator, options.device};
   if (!options.precision.empty()) check.precision = options.precision;
   if (!options.tolerance.empty()) {
     const std::optional<double> tolerance = parse_number(options.tolerance);
@@ -67,23 +67,44 @@ Report verify_device(const Options& options, const Progress& progress) {
   return verify_device(check);
 }
 
+int evaluate_points(const Scene& scene, const Options& options) {
+  const Report report = make_evaluator(options, scene)
+                            .write_points(scene, options.points_path, options.output_path,
+                                          {options.keep_all, ProgressBar(options.quiet).callback()});
+  return finish(report, options);
+}
+
+Report verification(const Options& options, const Progress& progress) {
+  if (options.hard_cases) return verify_device(options, progress);
+  if (options.between == 0)
+    return dolp::verify(options.table_path, {options.samples, options.seed, options.named_files, progress});
+  BetweenOptions between{options.between, options.seed, {}, progress};
+  for (const std::string_view name : split(options.quantities, ',')) {
+    if (!name.empty()) between.quantities.emplace_back(trim(name));
+  }
+  return verify_between(options.table_path, between);
+}
+
 }  // namespace
 
 int run_table(const Options& options) {
   const Scene scene = load_scene(options);
   const Shard shard = shard_of(options.shard);
-  const Report report = evaluator_of(options).write_table(
-      scene, options.output_path,
-      {options.keep_all, ProgressBar(options.quiet).callback(), options.command_line, options.resume}, shard);
+  const Report report =
+      make_evaluator(options, scene)
+          .write_table(scene, options.output_path,
+                       {options.keep_all, ProgressBar(options.quiet).callback(), options.command_line, options.resume},
+                       shard);
   return finish(report, options);
 }
 
 int run_response(const Options& options) {
   const Scene scene = load_scene(options, surface_settings());
-  return finish(evaluator_of(options).write_response(
-                    scene, options.output_path,
-                    {.progress = ProgressBar(options.quiet).callback(), .history = options.command_line}),
-                options);
+  return finish(
+      make_evaluator(options, scene)
+          .write_response(scene, options.output_path,
+                          {.progress = ProgressBar(options.quiet).callback(), .history = options.command_line}),
+      options);
 }
 
 int run_merge(const Options& options) {
@@ -91,34 +112,28 @@ int run_merge(const Options& options) {
                 options);
 }
 
-int run_eval(const Options& options) {
-  const Scene scene = load_scene(options);
-  const Report report = evaluator_of(options).write_points(scene, options.points_path, options.output_path,
-                                                           {options.keep_all, ProgressBar(options.quiet).callback()});
-  return finish(report, options);
-}
+int run_eval(const Options& options) { return evaluate_points(load_scene(options), options); }
 
 int run_mueller(const Options& options) {
   const Scene scene = load_scene(options);
-  const Report report = evaluator_of(options).write_mueller(scene, options.points_path, options.output_path,
-                                                            {.progress = ProgressBar(options.quiet).callback()});
+  const Report report = make_evaluator(options, scene)
+                            .write_mueller(scene, options.points_path, options.output_path,
+                                           {.progress = ProgressBar(options.quiet).callback()});
   return finish(report, options);
 }
 
 int run_lookup(const Options& options) {
-  const Report report =
-      write_lookup(options.table_path, options.points_path, options.output_path, ProgressBar(options.quiet).callback());
-  return finish(report, options);
+  const Scene scene = load_scene(options);
+  if (scene.table_attributes().empty())
+    throw InputError(options.scene_path + ": is a scene and no table; dolp eval computes points of a scene");
+  return evaluate_points(scene.for_points(), options);
 }
 
 int run_verify(const Options& options) {
   if (!options.hard_cases && options.table_path.empty()) {
     throw InputError("verify: name a TABLE, or --hard-cases to examine a device (see dolp verify --help)");
   }
-  const Report report = options.hard_cases
-                            ? verify_device(options, ProgressBar(options.quiet).callback())
-                            : verify(options.table_path, {options.samples, options.seed, options.named_files,
-                                                          ProgressBar(options.quiet).callback()});
+  const Report report = verification(options, ProgressBar(options.quiet).callback());
   print(report, options);
   return report.is_good ? kExitDone : kExitAccuracy;
 }
@@ -146,7 +161,7 @@ int run_fit(const Options& options) {
     ProgressBar bar(options.quiet);
     fit.progress = bar.callback();
     fit.phase = [&bar](const std::string& what) { bar.count(what); };
-    const Fit found = evaluator_of(options).fit(scene, data, fit);
+    const Fit found = make_evaluator(options, scene).fit(scene, data, fit);
     report = found.report;
     has_minimum = found.has_minimum;
   }

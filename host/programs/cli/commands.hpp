@@ -15,13 +15,12 @@ struct Options {
   std::string command_line;              ///< all words of the command line; a table stores them as its history
   std::string scene_path, points_path, table_path, output_path, measured_path, plot_path, screenshot_path;
   std::vector<std::string> overrides;  ///< the texts KEY=VALUE of --set
-  std::string tolerance, precision, device;
-  std::string evaluator = "vulkan";
+  std::string tolerance, precision, device, evaluator, quantities;
   bool json = false, quiet = false, strict = false, keep_all = false;
   std::string shard;
   std::vector<std::string> shards;
   bool resume = false;
-  std::size_t samples = 64, seed = 1;
+  std::size_t samples = 64, seed = 1, between = 0;
   bool named_files = false, hard_cases = false, all = false;
   std::vector<std::string> data, vary, compare;
   std::size_t starts = 24;
@@ -43,8 +42,9 @@ std::string allowed(const std::string& key);  ///< values that a scene key allow
 /// Reads the scene, and applies all_settings() and then `more`. Prints Scene::remarks() as warnings on stderr.
 Scene load_scene(const Options& options, const std::vector<Setting>& more = {});
 
-/// Makes the evaluator that --evaluator names. Errors: InputError if it uses no device but the user gives --device.
-Evaluator evaluator_of(const Options& options);
+/// Makes the evaluator that --evaluator names; without the option, the evaluator of the scene's table, or "vulkan".
+/// Errors: InputError if it uses no device but the user gives --device.
+Evaluator make_evaluator(const Options& options, const Scene& scene);
 
 /// Prints a report: with --json as JSON, otherwise as text unless --quiet. With `-o -` it goes to stderr.
 void print(const Report& report, const Options& options);
@@ -65,7 +65,7 @@ int run_plan(const Options& options);
 /// Returns kExitAccuracy if a value is wrong: for example, if its error exceeds its error bound, or if it misses its
 /// tolerance and the status of its entry does not say so.
 int run_verify(const Options& options);
-int run_lookup(const Options& options);
+int run_lookup(const Options& options);  ///< run_eval() for the scene of a table
 int run_fit(const Options& options);  ///< returns kExitAccuracy if the fit finds no minimum
 int run_explore(const Options& options);
 int run_materials(const Options& options);

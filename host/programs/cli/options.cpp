@@ -44,12 +44,14 @@ Scene load_scene(const Options& options, const std::vector<Setting>& more) {
   return scene;
 }
 
-Evaluator evaluator_of(const Options& options) {
-  if (!options.device.empty() && options.evaluator != "vulkan") {
-    throw InputError(
-        fmt::format("--device {}: needs --evaluator vulkan, and it is {}", options.device, options.evaluator));
+Evaluator make_evaluator(const Options& options, const Scene& scene) {
+  const bool needs_vulkan = !options.device.empty();
+  const std::string fallback = needs_vulkan ? "vulkan" : scene.evaluator();
+  const std::string evaluator = options.evaluator.empty() ? fallback : options.evaluator;
+  if (needs_vulkan && evaluator != "vulkan") {
+    throw InputError(fmt::format("--device {}: needs --evaluator vulkan, and it is {}", options.device, evaluator));
   }
-  return Evaluator({options.evaluator, options.device});
+  return Evaluator({evaluator, options.device});
 }
 
 void print(const Report& report, const Options& options) {

@@ -21,7 +21,7 @@ array([0.    , 0.0295, 0.1346])
 Scene                   a scene, from a file or a text, with changed values of keys
 table, write_table      DOLP and the other quantities over the scene's grid: as a Dataset, or in a file
 evaluate, mueller       DOLP and the other quantities at points; Mueller matrices for pairs of directions
-lookup                  values between the entries of a table
+lookup                  values between the entries of a table, computed
 response, moments       a response table, which serves any material; reflectances of materials from such a table
 fit                     values of a scene's keys from measured data
 plan                    what a table would compute and cost

@@ -1,4 +1,4 @@
-"""Converts results of the library to xarray Datasets, and Datasets to tables of the library."""
+"""Converts results of the library to xarray Datasets, and the attributes of Datasets to scenes."""
 from __future__ import annotations
 
 import functools
@@ -14,9 +14,6 @@ from . import _native
 from ._arguments import floats, short
 from ._native import InputError
 from ._points import COORDINATES, KEY_ATTRIBUTES, Frame
-
-# Name of an attribute of tables that have scene keys as axes. It has a line KEY=[VALUE, ...] for each such axis.
-_COMPUTED = "computed_values"
 
 
 def dataset_at(parts: _native.Parts, frame: Frame) -> xr.Dataset:
@@ -59,8 +56,6 @@ def concatenated(tables: list[xr.Dataset], key: str, values: np.ndarray) -> xr.D
     joined = xr.concat(tables, xr.Variable(key, values, KEY_ATTRIBUTES.get(key)), data_vars=along, coords=differing,
                        compat="override", combine_attrs="drop_conflicts")
     joined.attrs.pop("scene_hash", None)
-    computed = _attributes_of(first).get(_COMPUTED)
-    _set_attribute(joined, _COMPUTED, "\n".join(filter(None, [computed, f"{key}={values.tolist()}"])))
     if "scene_overrides" in first.attrs:  # removes the line with `key`, which has only the first table's value
         before, _, after = f"\n{first.attrs['scene_overrides']}\n".rpartition(f"\n{key}=")
         rest = after.partition("\n")[2]
@@ -68,54 +63,27 @@ def concatenated(tables: list[xr.Dataset], key: str, values: np.ndarray) -> xr.D
     return joined
 
 
-def native_table(table: xr.Dataset) -> _native.Table:
-    """Converts a Dataset to a table of the library.
-
-    A scalar coordinate becomes an axis with one value or, if its name is a scene key, sets this key of the scene.
-    Dimensions may have any names and order: the coordinate with the name of an axis tells the dimension of the axis.
-    """
+def scene_of_dataset(table: xr.Dataset) -> _native.Scene:
+    """The scene of a table, with the one value of each axis and scene key that has only one value in the table."""
     attributes = _attributes_of(table)
-    overrides = [str(attributes.get("scene_overrides", "")), *_values_of_keys(table, str(attributes.pop(_COMPUTED, "")))]
-    if any(overrides):
-        attributes["scene_overrides"] = "\n".join(filter(None, overrides))
-    axes = [name for name in _native.table_axes() if name in table.coords]
-    dims = [dim for axis in axes for dim in table[axis].dims]
-    if any(table[axis].ndim > 1 for axis in axes) or len(set(dims)) < len(dims):
-        raise InputError(f"Dataset: {', '.join(axes)} must each be along a dimension of its own, as in dolp.table")
-    columns = {str(name): floats(f"Dataset: {name}", variable.values).ravel() for name, variable in table.variables.items()
-               if variable.ndim < 2 and variable.dtype.kind in "iuf" and str(name).isascii()}
-    for name in [*_native.quantities(), "status"]:
-        if name not in table.variables:
-            continue
-        variable = table.variables[name]
-        if set(variable.dims) != set(dims):
-            raise InputError(f"Dataset: {name} is over {_text(variable.dims)}; must be over {_text(dims)}, as the axes are")
-        columns[name] = floats(f"Dataset: {name}", variable.transpose(*dims).values).ravel()
-    labels = {axis: [str(label) for label in np.atleast_1d(table[axis].values)] for axis in axes
-              if table[axis].dtype.kind in "OU"}
-    status = columns.pop("status", np.empty(0))
-    wrong = status[~((status >= 0) & (status < 2**32) & (status == np.floor(status)))]
-    if wrong.size:
-        raise InputError(f"Dataset: status has entries without a value from 0 to 2^32 - 1, as {wrong[0]}; take the Dataset "
-                         "before it was masked or interpolated")
-    stokes = next((table[name] for name in ("stokes_i", "stokes_q", "stokes_u", "stokes_v") if name in table), None)
-    units = "" if stokes is None else str(stokes.attrs.get("units", ""))
-    return _native.Table.of(columns, labels, status.astype(np.uint32), units, attributes, "Dataset")
+    if "spectral_data" not in attributes:  # tables of dolp 0.2 have n, k and the irradiance of the scene as variables
+        rows = [f"{name},{um!r},{value!r}\n" for name in ("index_n", "index_k", "irradiance") if f"{name}_wavelength" in table
+                for um, value in zip(table[f"{name}_wavelength"].values.tolist(), table[name].values.tolist())]
+        attributes["spectral_data"] = "".join(rows)
+    scene = _native.Scene.from_attributes(attributes, "Dataset")
+    columns = {name: column for column, name, *_ in _native.axes()}
+    single = {str(name): values.item() for name, values in table.coords.items() if values.size == 1}
+    values = [(name, value) for name, value in single.items() if name in KEY_ATTRIBUTES]
+    values += [(f"grid.{columns[name]}", _grid_value(name, value)) for name, value in single.items()
+               if name in _native.table_axes()]
+    return scene.with_(values) if values else scene
 
 
-def _values_of_keys(table: xr.Dataset, computed: str) -> list[str]:
-    """Returns an override KEY=VALUE of the scene for each coordinate of `table` whose name is a scene key."""
-    known = {key: json.loads(values) for key, _, values in (line.partition("=") for line in computed.split("\n")) if key}
-    overrides = []
-    for key in [str(name) for name in table.coords if name in KEY_ATTRIBUTES]:
-        if table[key].ndim > 0:
-            raise InputError(f"Dataset: has {table[key].size} values of {key}; take one, as with sel({{{key!r}: VALUE}})")
-        value = float(table[key])
-        if value not in known.get(key, [value]):
-            raise InputError(f"Dataset: {key} = {value}: is not among the values that were computed, {short(known[key])}; "
-                             "compute it, as a value of its own in dolp.table")
-        overrides.append(f"{key}={value!r}")
-    return overrides
+def _grid_value(axis: str, value: Any) -> Any:
+    """A value of an axis as a list for [grid]. A band, such as "8-12", becomes a pair of numbers."""
+    if axis == "band":
+        return [[float(end) for end in value.split("-")]]
+    return [value]
 
 
 def _set_attribute(table: xr.Dataset, name: str, value: str | float) -> None:

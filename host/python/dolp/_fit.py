@@ -108,7 +108,7 @@ class Fit:
 
 def fit(scene: Scene, data: Any, vary: Mapping[str, tuple[float, ...]], *, compare: Mapping[str, Iterable[str]] | None = None,
         loss: str = "squares", model_error: str = "none", starts: int = 24, seed: int = 1, plot: Path | None = None,
-        evaluator: str = "vulkan", device: str = "") -> Fit:
+        evaluator: str | None = None, device: str = "") -> Fit:
     """Fits values of a scene's keys to measured data. Also computes confidence intervals.
 
     `data`: a CSV file, or columns by name (a dictionary, a Dataset, a pandas DataFrame). A data set needs a zenith
@@ -136,7 +136,7 @@ def fit(scene: Scene, data: Any, vary: Mapping[str, tuple[float, ...]], *, compa
     texts = [(csv_of(columns), native_values(overrides)) for columns, overrides in sets]
     ranges = [(check_key(key), floats(key, ends).ravel().tolist()) for key, ends in check_mapping("vary", vary).items()]
     compared = [(check_key(key), word_list(key, words)) for key, words in check_mapping("compare", compare).items()]
-    text, values, found = native_evaluator(evaluator, device).fit(
+    text, values, found = native_evaluator(scene, evaluator, device).fit(
         native, texts, ranges, compared, word("loss", loss), word("model_error", model_error), whole_number("starts", starts), whole_number("seed", seed),
         "" if plot is None else native_path("plot", plot))
     fitted = Scene.__new__(Scene)

@@ -19,7 +19,7 @@ _ENTRY = ("albedo", "response_error")  # with the axes and the weights, in the o
 _WEIGHTS = ("response_i", "response_q")
 
 
-def response(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **axes: Array) -> xr.Dataset:
+def response(scene: Scene, *, evaluator: str | None = None, device: str = "", **axes: Array) -> xr.Dataset:
     """The response table over the scene's grid, with the contents of its file. `moments` converts it to reflectances.
 
     `axes` (theta_deg, sigma or wind_m_s, q) replace axes of the scene. Material, wavelength and radiation of the scene
@@ -33,7 +33,7 @@ def response(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **axe
     (('theta', 'sigma', 'q', 'beta'), True)
     """
     check_names("axes", axes, ["theta_deg", "sigma", "wind_m_s", "q"])
-    contents, (beta, long_name, units, variables) = native_evaluator(evaluator, device).response(with_axes(native_surface(scene), axes))
+    contents, (beta, long_name, units, variables) = native_evaluator(scene, evaluator, device).response(with_axes(native_surface(scene), axes))
     table = table_dataset(*contents)
     dims, shape = table.albedo.dims, table.albedo.shape
     table.coords["beta"] = xr.Variable("beta", beta, {"long_name": long_name, "units": units}, {"dtype": beta.dtype})

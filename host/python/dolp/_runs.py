@@ -12,16 +12,15 @@ import numpy as np
 import xarray as xr
 
 from . import _native
-from ._arguments import Array, Path, axis_values, check_names, label_values, device_name, flag, input_path, native_path, word
-from ._between import between_tables
-from ._datasets import concatenated, dataset_at, native_table, table_dataset
+from ._arguments import Array, Path, axis_values, check_names, label_values, device_name, flag, native_path, short, word
+from ._datasets import concatenated, dataset_at, table_dataset
 from ._model_warning import warn_of_model
 from ._native import InputError
 from ._points import KEY_ATTRIBUTES, columns_of, with_real_index
 from ._scene import Scene
 
 
-def table(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all: bool = False,
+def table(scene: Scene, *, evaluator: str | None = None, device: str = "", keep_all: bool = False,
           **axes: Array) -> xr.Dataset:
     """The table over the scene's grid: a Dataset with the contents of the table's file.
 
@@ -31,7 +30,7 @@ def table(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all
     a second coordinate along sigma; `t.swap_dims(sigma="wind_m_s").sel(wind_m_s=5)` selects a wind.
 
     Any other number of the scene can be an axis, with its key as the name. The program then computes one table for each
-    value and joins the tables. Only attributes equal in all tables remain. `lookup` interpolates between values, as in
+    value and joins the tables. Only attributes equal in all tables remain. `lookup` takes other values of the key, as in
     `dolp.lookup(t, **{"path.transmittance": 0.85}, theta_deg=40)`.
 
     >>> t = dolp.table(scene, theta_deg=[0, 60], sigma=[0.1, 0.2, 0.3])
@@ -43,7 +42,7 @@ def table(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all
     key = next((name for name in axes if "." in name), None)
     if key is None:
         on_axes = with_axes(native_scene(scene), axes)
-        whole = table_dataset(*native_evaluator(evaluator, device).table(on_axes, flag("keep_all", keep_all)))
+        whole = table_dataset(*native_evaluator(scene, evaluator, device).table(on_axes, flag("keep_all", keep_all)))
         warn_of_model(scene, whole.get("status", 0), whole.attrs)
         return whole
     columns = [column for column, *_ in _native.axes() if column != "temperature_K" or column in axes]
@@ -54,7 +53,7 @@ def table(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all
                          for value in values.tolist()], key, values)
 
 
-def write_table(scene: Scene, path: Path, *, evaluator: str = "vulkan", device: str = "", keep_all: bool = False,
+def write_table(scene: Scene, path: Path, *, evaluator: str | None = None, device: str = "", keep_all: bool = False,
                 resume: bool = False, **axes: Array) -> str:
     """Writes the table that `table` would return to a file (.nc, .csv or .npy). It does so part by part, so that memory
     does not grow with the size of the table.
@@ -70,11 +69,11 @@ def write_table(scene: Scene, path: Path, *, evaluator: str = "vulkan", device: 
     if key := next((name for name in axes if "." in name), None):
         raise InputError(f"axes: {key} is no axis of a file; write a file for each value, of scene.with_({{{key!r}: VALUE}})")
     on_axes = with_axes(native_scene(scene), axes)
-    return native_evaluator(evaluator, device).write_table(on_axes, native_path("path", path), flag("keep_all", keep_all),
+    return native_evaluator(scene, evaluator, device).write_table(on_axes, native_path("path", path), flag("keep_all", keep_all),
                                                            flag("resume", resume))
 
 
-def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_all: bool = False,
+def evaluate(scene: Scene, *, evaluator: str | None = None, device: str = "", keep_all: bool = False,
              **points: Array) -> xr.Dataset:
     """The quantities of a table at points: a Dataset with the shape to which the arrays of `points` broadcast.
 
@@ -92,7 +91,12 @@ def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_
     >>> dolp.evaluate(scene, theta_deg=40, **{"surroundings.temperature_K": [250, 290]}).dolp.round(4).values
     array([0.0179, 0.0043])
     """
-    native, engine = native_scene(scene), native_evaluator(evaluator, device)
+    return _evaluated(scene, evaluator, device, keep_all, points)
+
+
+def _evaluated(scene: Scene, evaluator: str | None, device: str, keep_all: bool, points: Mapping[str, Array]) -> xr.Dataset:
+    """Computes points for `evaluate` and `lookup`, so warnings name the line that called one of them."""
+    native, engine = native_scene(scene), native_evaluator(scene, evaluator, device)
     frame, columns = columns_of(points, native.labels(), has_keys=True)
     _warn_of_radians(columns.get("theta_deg", np.zeros(0)))
     _check_labels(native, columns)
@@ -104,7 +108,7 @@ def evaluate(scene: Scene, *, evaluator: str = "vulkan", device: str = "", keep_
 
     results = dataset_at(
         _over_keys(run, native, columns, varied) if varied and 0 not in frame.shape else run(native, columns), frame)
-    warn_of_model(scene, results.get("status", 0), results.attrs)
+    warn_of_model(scene, results.get("status", 0), results.attrs, stacklevel=4)
     return results
 
 
@@ -113,41 +117,33 @@ def _warn_of_radians(theta_deg: np.ndarray) -> None:
     largest = np.nanmax(theta_deg, initial=0.0)
     if 0.5 < largest < 1.6 and len(np.unique(theta_deg)) > 3:
         warnings.warn(f"points: theta_deg is at most {largest:.4g} degrees; is it in radians?", _native.InputWarning,
-                      stacklevel=3)
+                      stacklevel=4)
 
 
-def lookup(table: Path | xr.Dataset, **points: Array) -> xr.Dataset:
-    """Values between the entries of a table. Their error estimates include the error of interpolation.
+def lookup(table: Path | xr.Dataset, *, evaluator: str | None = None, device: str = "", **points: Array) -> xr.Dataset:
+    """Values between the entries of a table: computed from the table's scene, with error bounds as from `evaluate`.
 
-    `table`: the file of a table, or a Dataset with a table or a part of one. A part may have fewer values of an axis,
-    such as `t.sel(k=0.1)`, and fewer variables. It must have dolp, the Stokes parameters, error_estimate, status and
-    the attribute `scene`. Dimensions may have any names and order, for example after `t.swap_dims(sigma="wind_m_s")`.
-    Axis values that were not computed, such as after `t.interp(theta=33)`, give an InputError. The attribute
-    values_hash is the hash of the whole table. A lookup in a file compares the values with this hash, so it refuses a
-    file with a part of a table. Read such a file by `xarray.load_dataset`: a lookup in a Dataset ignores the hash.
-    `points`: as for `evaluate`. You can leave out an axis of the table that has only one value.
-    The file of the last lookup stays in memory. A Dataset is copied in each call.
+    `table`: the file of a table (.nc), or a Dataset with a table or a part of one. Only its attributes and the values of
+    its axes count, so it may be a slice, or may be interpolated, averaged or edited.
+    `points`: as for `evaluate`. An axis with one value in the table, such as q in `t.sel(q=8)`, gives the value of
+    points that do not name it.
 
-    >>> t = dolp.table(scene, theta_deg=np.linspace(0, 80, 41), sigma=[0.1, 0.2])
-    >>> bool(abs(dolp.lookup(t.sel(sigma=0.2), theta_deg=33).dolp - dolp.evaluate(scene, theta_deg=33).dolp) < 1e-5)
+    >>> t = dolp.table(scene, theta_deg=[0, 40, 80], sigma=[0.1, 0.2])
+    >>> bool(dolp.lookup(t.sel(sigma=0.2), theta_deg=33).dolp == dolp.evaluate(scene, theta_deg=33, sigma=0.2).dolp)
     True
     """
-    if isinstance(table, xr.Dataset):
-        if key := next((name for name in points if name in KEY_ATTRIBUTES and name in table.dims), None):
-            return between_tables(table, key, points[key],
-                                  lambda part: lookup(part, **{name: points[name] for name in points if name != key}))
-        native = native_table(table)
-    elif isinstance(table, (str, bytes, os.PathLike)):
-        path = input_path("table", table)
-        known = os.stat(path)
-        native = _table_of(path, (known.st_ino, known.st_size, known.st_mtime_ns))
-    else:
+    if not isinstance(table, (str, bytes, os.PathLike, xr.Dataset)):
         raise TypeError(f"table: must be a path or an xarray.Dataset, not {type(table).__name__}")
-    frame, columns = columns_of(points, native.labels())
-    return dataset_at(native.lookup(columns), frame)
+    scene = Scene(table)
+    if not scene.is_of_table:
+        raise InputError(f"table: {short(table)} is a scene and no table; use dolp.evaluate")
+    for key in KEY_ATTRIBUTES.keys() & table.dims if isinstance(table, xr.Dataset) else ():
+        if key not in points:
+            raise InputError(f"points: {key} is missing; the table has {table.sizes[key]} values of it")
+    return _evaluated(scene.for_points(), evaluator, device, False, points)
 
 
-def mueller(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **points: Array) -> np.ndarray:
+def mueller(scene: Scene, *, evaluator: str | None = None, device: str = "", **points: Array) -> np.ndarray:
     """Mueller matrices of the pBRDF in 1/sr, with shape (..., 4, 4).
 
     `points`: theta_i_deg, theta_r_deg, delta_phi_deg (180 on the specular side), and optionally sigma, q, n, k. A
@@ -159,7 +155,7 @@ def mueller(scene: Scene, *, evaluator: str = "vulkan", device: str = "", **poin
     """
     frame, columns = columns_of(points)
     _check_labels(native_scene(scene), columns)
-    matrices = native_evaluator(evaluator, device).mueller(native_scene(scene), columns)
+    matrices = native_evaluator(scene, evaluator, device).mueller(native_scene(scene), columns)
     return matrices.reshape(frame.shape + (4, 4))
 
 
@@ -191,19 +187,17 @@ def devices() -> list[dict[str, Any]]:
     return _native.devices()
 
 
-def native_evaluator(evaluator: str, device: str) -> _native.Evaluator:
-    return _evaluator_of(word("evaluator", evaluator), device_name(device))
+def native_evaluator(scene: Scene, evaluator: str | None, device: str) -> _native.Evaluator:
+    """The evaluator with this name. Without a name: the evaluator of the scene's table, or "vulkan"."""
+    device = device_name(device)
+    if evaluator is None:
+        evaluator = "vulkan" if device else native_surface(scene).evaluator
+    return _evaluator_of(word("evaluator", evaluator), device)
 
 
 @functools.lru_cache(maxsize=None)
 def _evaluator_of(evaluator: str, device: str) -> _native.Evaluator:
     return _native.Evaluator(evaluator, device)
-
-
-@functools.lru_cache(maxsize=1)
-def _table_of(path: str, _: tuple[int, int, int]) -> _native.Table:
-    """Reads a table. The second argument changes with the file, so that the cache does not return an old table."""
-    return _native.Table.read(path)
 
 
 def native_scene(scene: Scene) -> _native.Scene:

@@ -6,16 +6,19 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from . import _native
 from ._arguments import Array, Path, check_key, check_mapping, check_names, floats, input_path, native_values, short, word
+from ._datasets import scene_of_dataset
 from ._native import InputError
 
 
 class Scene:
     """A surface, its radiation and surroundings, and the accuracy of results, from a scene file or from its text.
 
-    Parameters: `path` or `text`, and `overrides`, a dict with values for any keys. `path` can also be another Scene.
+    Parameters: `path` or `text`, and `overrides`, a dict with values for any keys. `path` can also be another Scene, the
+    file of a table (.nc) or a Dataset with a table: both contain their scene, with n, k and other data of the table.
     The value None removes a key or a whole table of keys. The text "none" does so too, except for keys that hold a word
     or a text. A complex surface.n gives n and k. `scene[key]` is the value of a key, or None if the scene has no value.
     You can copy and pickle a scene and send it to another process, which reads the scene's files from the same paths.
@@ -31,7 +34,7 @@ class Scene:
     _has_model_warning = False  # true after a dolp.ModelWarning for this scene
     _is_for_response = False  # true for scenes of for_response, whose material is arbitrary
 
-    def __init__(self, path: Path | Scene | None = None, overrides: Mapping[str, Any] | None = None, *,
+    def __init__(self, path: Path | Scene | xr.Dataset | None = None, overrides: Mapping[str, Any] | None = None, *,
                  text: str | None = None) -> None:
         if (path is None) == (text is None):
             raise InputError("Scene: needs either a path or text")
@@ -39,6 +42,9 @@ class Scene:
         if isinstance(path, Scene):
             self._native = path._native.with_(values)
             self._is_for_response = path._is_for_response
+        elif isinstance(path, xr.Dataset):
+            scene = scene_of_dataset(path)
+            self._native = scene.with_(values) if values else scene
         elif path is not None:
             if isinstance(path, str) and "\n" in path:
                 raise InputError(f"path: {short(path)} is the text of a scene; write Scene(text=...)")
@@ -68,6 +74,17 @@ class Scene:
         ''
         """
         return Scene(self, values)
+
+    @property
+    def is_of_table(self) -> bool:
+        """True if the scene comes from a table."""
+        return self._native.is_of_table
+
+    def for_points(self) -> Scene:
+        """A copy in which keys such as surface.sigma have the value of the grid's axis, where the axis has only one."""
+        copy = Scene(self)
+        copy._native = self._native.for_points()
+        return copy
 
     def without(self, key: str) -> Scene:
         """A copy of the scene without a key, or without a table of keys such as `emission`.

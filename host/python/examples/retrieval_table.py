@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Finds the n and sigma that give two measured values of DOLP, by lookups in a table over n, k and sigma.
+"""Finds the n and sigma that give two measured values of DOLP, by interpolation in a table over n, k and sigma.
 
 retrieval_table.py [PICTURE]
 """
@@ -34,8 +34,8 @@ table = dolp.table(scene, n=np.linspace(1.3, 2.0, 15), k=[0.0, 0.1, 0.2], theta_
 truth = {"n": 1.62, "k": 0.1, "sigma": 0.23}
 seen = {angle: float(dolp.evaluate(scene, theta_deg=angle, **truth).dolp) for angle in (50.0, 70.0)}
 n, sigma = np.linspace(1.3, 2.0, 141), np.linspace(0.05, 0.5, 91)
-misfit = sum((dolp.lookup(table, n=n[:, None], k=0.1, theta_deg=angle, sigma=sigma).dolp / value - 1) ** 2
-             for angle, value in seen.items())
+of_plate = table.dolp.sel(k=0.1, q=3.0)
+misfit = sum((of_plate.interp(theta=angle).interp(n=n, sigma=sigma) / value - 1) ** 2 for angle, value in seen.items())
 best = misfit.where(misfit == misfit.min(), drop=True)
 found_n, found_sigma = float(best.n[0]), float(best.sigma[0])
 print(f"true n {truth['n']}, sigma {truth['sigma']}; found n {found_n:.3f}, sigma {found_sigma:.3f}")

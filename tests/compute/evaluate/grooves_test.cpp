@@ -47,7 +47,7 @@ std::vector<double> tolerances_of(Kernel kernel) {
 }
 
 constexpr std::uint64_t kSeed = 20261122;
-constexpr std::size_t kPoints = 60;
+constexpr std::size_t kPoints = 30;
 constexpr double kNextToTheHorizon = 89.999;  // degrees
 
 std::vector<Point> random_points(Distribution distribution) {

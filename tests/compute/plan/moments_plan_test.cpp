@@ -103,7 +103,7 @@ class Grids : public testing::TestWithParam<std::tuple<Kernel, Sharing>> {
 
 TEST_P(Grids, StatedErrors_HoldAgainstEveryEntryByItself) {
   const auto [kernel, sharing] = GetParam();
-  const std::size_t grids = draws_wanted(2);
+  const std::size_t grids = draws_wanted(1);
   const auto evaluator = make_evaluator(kernel);
   Work work;
   std::size_t entries = 0;

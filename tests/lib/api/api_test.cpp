@@ -143,9 +143,13 @@ TEST_F(Library, FilesOfPoints_HaveTheNumbersOfPointsInMemory) {
   for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(found[i], expected[Quantity::kDolp][i]);
 
   evaluator_.write_table(scene_.with_grid({{"sigma", {0.2}}, {"q", {3.0}}}), at("t.nc"));
-  dolp::write_lookup(at("t.nc"), at("points.csv"), at("between.csv"));
-  const dolp::Results between = dolp::Table::read(at("t.nc")).lookup({{"theta_deg", theta}});
-  EXPECT_EQ(dolp_of(at("between.csv")), between[Quantity::kDolp]);
+  evaluator_.write_points(dolp::Scene::from_file(at("t.nc")).for_points(), at("points.csv"), at("between.csv"));
+  const dolp::Table table = dolp::Table::read(at("t.nc"));
+  const dolp::Scene of_table = dolp::Scene::from_attributes(table.file_attributes()).for_points();
+  EXPECT_EQ(dolp_of(at("between.csv")), evaluator_.evaluate(of_table, {{"theta_deg", theta}})[Quantity::kDolp]);
+  EXPECT_EQ(of_table.evaluator(), "cpu");
+  EXPECT_EQ(scene_.evaluator(), "vulkan");
+  EXPECT_TRUE(scene_.table_attributes().empty());
   EXPECT_THROW(evaluator_.write_points(scene_, at("points.csv"), at("points.csv")), dolp::InputError);
 }
 
@@ -334,7 +338,6 @@ TEST_F(Library, MovedFromObjects_KeepTheirValueOrSayWhatTheyAre) {
   EXPECT_EQ(table.values().axes, taken_table.values().axes);  // NOLINT(bugprone-use-after-move): that is the test
   const std::vector<double> theta = {30}, sigma = {0.1}, q = {2};
   const std::vector<dolp::Column> points = {{"theta_deg", theta}, {"sigma", sigma}, {"q", q}};
-  EXPECT_EQ(table.lookup(points)[Quantity::kDolp], taken_table.lookup(points)[Quantity::kDolp]);
   dolp::Evaluator taken = std::move(evaluator_);
   EXPECT_THROW(evaluator_.table(scene_), dolp::InputError);  // NOLINT(bugprone-use-after-move): that is the test
   EXPECT_THROW(evaluator_.table_parts(scene_, [](const dolp::Table&) {}), dolp::InputError);
@@ -461,16 +464,6 @@ TEST_F(Library, TableOfContentsThatDoNotFit_IsAnInputError) {
   refuses([](dolp::TableValues& table) { table.attributes.push_back({"", "of no name"}); });
   refuses([](dolp::TableValues& table) { table.attributes.push_back({"a/b", "of a name with a /"}); });
   refuses([](dolp::TableValues& table) { table.attributes.push_back(table.attributes.front()); });
-}
-
-// The test removes the axis k = 0.2 from a table. Without this axis the table would seem to be for the scene's own k.
-TEST_F(Library, LookupInATableThatLostAnAxis_IsAnInputError) {
-  dolp::TableValues values = evaluator_.table(scene_.with_grid({{"k", {0.2}}})).values();
-  const std::vector<double> theta = {30}, sigma = {0.1}, q = {2};
-  const std::vector<dolp::Column> points = {{"theta_deg", theta}, {"sigma", sigma}, {"q", q}};
-  EXPECT_NO_THROW(dolp::Table::of(values).lookup(points));
-  values.axes[dolp::Axis::kK].clear();
-  EXPECT_THROW(dolp::Table::of(values).lookup(points), dolp::InputError);
 }
 
 TEST_F(Library, AnEvaluator_ServesSeveralThreads) {

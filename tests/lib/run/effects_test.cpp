@@ -25,7 +25,7 @@ TEST(Dropping, RandomScenes_TheAnswerWithEverythingIsWithinTheEstimates) {
   RandomScenes scenes(kSeed);
   std::map<Part, int> dropped;
   int without_moments = 0;
-  for (std::size_t i = 0; i < draws_wanted(400); ++i) {
+  for (std::size_t i = 0; i < draws_wanted(120); ++i) {
     const SceneValues scene = scenes.next();
     const std::vector<SceneEntry> entries = scenes.entries(scene);
     const EffectPlan plan = plan_effects(scene, entries, false);
@@ -113,7 +113,7 @@ TEST(EffectBounds, RandomScenes_HoldWhatEachPartChanges) {
   std::cout << "seed " << kSeed + 1 << '\n';
   RandomScenes scenes(kSeed + 1);
   std::map<Part, int> compared;
-  for (std::size_t i = 0; i < draws_wanted(400); ++i) {
+  for (std::size_t i = 0; i < draws_wanted(120); ++i) {
     SceneValues scene = scenes.next();
     scene.accuracy.tolerance = 1e-3;
     const std::vector<SceneEntry> entries = scenes.entries(scene);

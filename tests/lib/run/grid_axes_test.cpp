@@ -1,4 +1,4 @@
-// Axes of materials, bands and temperatures, in tables, files and lists of points. Lookups find materials by name.
+// Axes of materials, bands and temperatures, in tables, files and lists of points.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -7,7 +7,6 @@
 
 #include "base/temporary_folder.hpp"
 #include "computed_scene.hpp"
-#include "run/lookup_run.hpp"
 #include "run/scene_remarks.hpp"
 #include "run/table_run.hpp"
 #include "run/table_scene.hpp"
@@ -129,19 +128,6 @@ TEST(GridAxes, ShardsOfOneMaterialEach_MergeToTheTable) {
   const std::filesystem::path merged = folder.path() / "t.nc";
   EXPECT_EQ(ShardSet(paths).merge(merged, "test"), 24U);
   EXPECT_EQ(read_table(merged)[kDolp], table_of(scene)[kDolp]);
-}
-
-TEST(GridAxes, Lookup_FindsNamesAndInterpolatesTemperatures) {
-  const SceneValues scene = scene_with();
-  const TableValues table = table_of(scene);
-  const TableLookup lookup(table, scene, "t.nc");
-  const std::string csv = "material,band_um,temperature_K,theta_deg,sigma,q\nquartz,10-12,290,50,0.2,3\n";
-  const Points points = parse_points(csv, "p.csv", PointsKind::kDirections);
-  const PointResult found = lookup_points(lookup, scene, points, {}).front();
-  const PointResult right = results_of(scene, point_entries(scene, points)).front();
-  EXPECT_NEAR(found[kDolp], right[kDolp], found[kErrorEstimate] + right[kErrorEstimate]);
-  EXPECT_LT(found[kErrorEstimate], 0.05);
-  EXPECT_GT(found[kErrorEstimate], right[kErrorEstimate]);
 }
 
 TEST(GridAxes, Mistakes_AreToldWithTheKeyAndWhatIsAllowed) {

@@ -33,33 +33,12 @@ void add_accuracy(CLI::App& app, StudyOptions& options) {
   add_entries(*study, options, "entries of one call of dolp's evaluators; more for a GPU");
 }
 
-CLI::App* add_effects(CLI::App& app, StudyOptions& options) {
-  CLI::App* study = app.add_subcommand("effects", "time per entry with each effect alone on and off");
-  add_common(*study, options);
-  study->add_option("--case", options.cases, "only this effect (repeatable)")->allow_extra_args(false);
-  options.entries = 10000;
-  add_entries(*study, options, "entries of the grid, about; more for a GPU");
-  return study;
-}
-
 CLI::App* add_throughput(CLI::App& app, StudyOptions& options) {
-  CLI::App* study = app.add_subcommand("throughput", "entries a second, share of the device's peak, scaling");
+  CLI::App* study = app.add_subcommand("throughput", "entries a second, with all axes");
   add_common(*study, options);
-  study
-      ->add_option("--case", options.cases,
-                   "only this part (repeatable): grids, materials, arithmetic, cores, vector-width; kernels: what the "
-                   "last two run")
-      ->allow_extra_args(false);
+  study->add_option("--case", options.cases, "only this part (repeatable): grids, materials")->allow_extra_args(false);
   options.entries = std::size_t{256} * 64 * 64;
   add_entries(*study, options, "entries of the largest grid; more for a GPU");
-  return study;
-}
-
-CLI::App* add_peers(CLI::App& app, StudyOptions& options) {
-  CLI::App* study = app.add_subcommand("peers", "time per entry of all methods at the same accuracy");
-  add_common(*study, options);
-  study->add_option("--case", options.cases, "only this masking (repeatable)")->allow_extra_args(false);
-  study->add_option("--method", options.methods, "only this method (repeatable)")->allow_extra_args(false);
   return study;
 }
 
@@ -80,30 +59,16 @@ CLI::App* add_fit(CLI::App& app, StudyOptions& options) {
   return study;
 }
 
-CLI::App* add_window(CLI::App& app, StudyOptions& options) {
-  CLI::App* study =
-      app.add_subcommand("window", "curves and frames a second while a slider is dragged (Xvfb, xdotool)");
-  add_common(*study, options);
-  study->add_option("--case", options.cases, "only this drag (repeatable)")->allow_extra_args(false);
-  return study;
-}
-
 int parse_and_run(int argc, char** argv) {
   CLI::App app("dolp-bench: dolp against other ways to compute the same moments, and against itself", "dolp-bench");
   app.set_version_flag("--version", "dolp-bench " DOLP_VERSION);
   app.require_subcommand(1);
   StudyOptions accuracy;
   accuracy.arguments.assign(argv, argv + argc);
-  StudyOptions effects = accuracy;
   add_accuracy(app, accuracy);
   StudyOptions throughput = accuracy;
-  const CLI::App* effects_study = add_effects(app, effects);
-  StudyOptions peers = accuracy;
-  const CLI::App* peers_study = add_peers(app, peers);
   StudyOptions scale = accuracy;
   const CLI::App* scale_study = add_scale(app, scale);
-  StudyOptions window = accuracy;
-  const CLI::App* window_study = add_window(app, window);
   StudyOptions fit = accuracy;
   const CLI::App* fit_study = add_fit(app, fit);
   const CLI::App* throughput_study = add_throughput(app, throughput);
@@ -113,16 +78,10 @@ int parse_and_run(int argc, char** argv) {
     if (error.get_exit_code() == 0) return app.exit(error);
     throw InputError(std::string(error.what()) + " (see dolp-bench --help)");
   }
-  if (effects_study->parsed()) {
-    run_effects(effects);
-  } else if (throughput_study->parsed()) {
+  if (throughput_study->parsed()) {
     run_throughput(throughput);
-  } else if (window_study->parsed()) {
-    run_window(window);
   } else if (scale_study->parsed()) {
     run_scale(scale);
-  } else if (peers_study->parsed()) {
-    run_peers(peers);
   } else if (fit_study->parsed()) {
     run_fit_study(fit);
   } else {

@@ -19,7 +19,6 @@ DOLP_ENTRY_POINT(masking_table);
 DOLP_ENTRY_POINT(mueller);
 // Entry points of bench/, which exist only in float.
 DOLP_ENTRY_POINT(product_rule);
-DOLP_ENTRY_POINT(arithmetic_peak);
 #undef DOLP_ENTRY_POINT
 
 }  // namespace dolp::spirv

@@ -15,7 +15,7 @@ sources=$(git ls-files 'host/*.cpp' 'bench/*.cpp' 'tests/*.cpp' | grep -vE '/ker
 
 # False findings of cppcheck 2.10: braces that choose a size, copy a range or hold a lambda; references to statics; an
 # assignment after an if; an iterator after an erase up to itself; two calls that may differ; "name"_a = flag.
-suppressed=(containerOutOfBounds:host/reference/hemisphere.cpp danglingTempReference:tests/calibrate/hold_out.cpp
+suppressed=(containerOutOfBounds:host/reference/hemisphere.cpp danglingTempReference:tests/tools/calibrate/hold_out.cpp
   returnTempReference:host/compute/plan/rule.cpp invalidContainer:host/lib/fit/search.cpp cppcheckError
   literalWithCharPtrCompare:host/programs/explore/readout.cpp containerOutOfBounds:host/core/table/table_lookup.cpp
   passedByValue:host/support/base/python_picture.cpp

@@ -1,4 +1,4 @@
-// The list of the methods that the studies `accuracy` and `peers` compare.
+// The list of the methods that the study `accuracy` compares.
 #include "methods/method.hpp"
 #include "model/choices.hpp"
 

@@ -3,9 +3,7 @@
 
 Usage: plot.py accuracy RESULT.json -o FIGURE.png    error against time per entry, one panel per case
        plot.py accuracy RESULT.json --markdown       time per entry at given errors, as a Markdown table on stdout
-       plot.py effects RESULT.json -o FIGURE.png     time per entry of each effect
-       plot.py effects RESULT.json --markdown        time per entry of each effect, as Markdown tables on stdout
-       plot.py throughput|peers|scale|fit RESULT.json -o FIGURE.png | --markdown    figure or tables of these studies
+       plot.py throughput|scale|fit RESULT.json -o FIGURE.png | --markdown    figure or tables of these studies
 `dolp-bench STUDY --json RESULT.json` writes RESULT.json. Figures need python3-matplotlib and its dependency Pillow.
 Exit status: 0 done, 2 wrong usage or a file that is not a result of the study, 4 the figure could not be written.
 """
@@ -20,15 +18,12 @@ sys.dont_write_bytecode = True  # writes no cache folder among the sources
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "host"))
 
 import picture_file  # noqa: E402
-import plot_effects  # noqa: E402
 import plot_fit_sets  # noqa: E402
-import plot_peers  # noqa: E402
 import plot_scale  # noqa: E402
 import plot_throughput  # noqa: E402
 from plot_style import style, time_text  # noqa: E402
 
-STUDIES = {"effects": plot_effects, "throughput": plot_throughput, "peers": plot_peers,
-           "scale": plot_scale, "fit": plot_fit_sets}  # all studies except accuracy
+STUDIES = {"throughput": plot_throughput, "scale": plot_scale, "fit": plot_fit_sets}  # all studies except accuracy
 NEEDED = {"context", "methods", "cases", "results"}  # keys that a result of the study of accuracy must have
 WANTED_ERRORS = (1e-3, 1e-6, 1e-9)
 PANEL_COLUMNS = 3
@@ -248,9 +243,8 @@ def save(drawing, path):
 def arguments():
     parser = argparse.ArgumentParser(prog="plot.py", description=__doc__.splitlines()[0])
     studies = parser.add_subparsers(dest="study", required=True)
-    for name, what in (("accuracy", "error against time per entry"), ("effects", "time per entry of each effect"),
-                       ("throughput", "entries a second, share of the peak, scaling"),
-                       ("peers", "time per entry of all methods at the same accuracy"),
+    for name, what in (("accuracy", "error against time per entry"),
+                       ("throughput", "entries a second, with all axes"),
                        ("scale", "time and peak memory over the size of a table"),
                        ("fit", "intervals of fits beside the truth")):
         study = studies.add_parser(name, help=what)

@@ -41,31 +41,6 @@ def materials_table(rows):
     return lines
 
 
-def arithmetic_table(result, rows):
-    peak = result["peak"]
-    lines = ["Peak speed of the device for multiplications and additions in float, measured in the same run: "
-             f"{1e-9 * peak['flops_per_s']:.0f} GFLOP/s.", ""]
-    lines += head(["masking", "tolerance", "time in kernels per entry", "evaluations per entry", "flops per entry", "÷ and √ per entry",
-                   "GFLOP/s", "share of the peak", "share of busy lanes (upper bound)"])
-    for row in rows:
-        slow = row["operations"]["divide"] + row["operations"]["square_root"]
-        lines.append(row_of_cells([
-            row["case"], f"{row['setting']:g}", time_text(row["time_s"]), f"{row['evaluations']:.3g}",
-            digits(row["flops"]), digits(slow), f"{1e-9 * row['flops_per_s']:.1f}", f"{row['share_of_peak']:.0%}",
-            f"{row['busy_lanes']:.0%}"]))
-    return lines
-
-
-def scaling_table(rows, variable):
-    settings = sorted({row["setting"] for row in rows})
-    names = list(dict.fromkeys(row["case"] for row in rows))
-    lines = head([f"`{variable}`"] + [f"{name}: speed / speed of the first row (time per entry)" for name in names])
-    for setting in settings:
-        cells = [f"{row['speedup']:.2f} ({time_text(row['time_min_s'])})" for row in rows if row["setting"] == setting]
-        lines.append(row_of_cells([f"{setting:g}"] + cells))
-    return lines
-
-
 def markdown(result):
     """All parts of the study that the result contains, as Markdown tables."""
     blocks = []
@@ -73,11 +48,6 @@ def markdown(result):
         blocks.append(grid_table(part(result, "grids")))
     if part(result, "materials"):
         blocks.append(materials_table(part(result, "materials")))
-    if part(result, "arithmetic"):
-        blocks.append(arithmetic_table(result, part(result, "arithmetic")))
-    for name, variable in (("cores", "LP_NUM_THREADS"), ("vector-width", "LP_NATIVE_VECTOR_WIDTH")):
-        if part(result, name):
-            blocks.append(scaling_table(part(result, name), variable))
     return "\n\n".join("\n".join(block) for block in blocks)
 
 
@@ -120,66 +90,16 @@ def draw_tolerances(axes, rows, grid):
     tidy(axes, "y")
 
 
-def draw_arithmetic(axes, result, rows):
-    peak = 1e-9 * result["peak"]["flops_per_s"]
-    labels = []
-    for i, row in enumerate(rows):
-        rate = 1e-9 * row["flops_per_s"]
-        axes.barh(i, rate / row["busy_lanes"], height=0.6, color="white", edgecolor=MASKINGS[row["case"]], linestyle=":")
-        axes.barh(i, rate, height=0.6, color=MASKINGS[row["case"]])
-        axes.annotate(f" {row['share_of_peak']:.0%}", (rate / row["busy_lanes"], i), va="center", fontsize=8)
-        labels.append(f"{row['case']}, {row['setting']:g}")
-    axes.axvline(peak, color="black", linewidth=1.0)
-    axes.annotate("peak ", (peak, len(rows) - 0.6), ha="right", fontsize=8)
-    axes.set_xlim(0, 1.06 * peak)
-    axes.set_yticks(range(len(rows)), labels)
-    axes.set_ylim(len(rows) - 0.4, -0.6)
-    axes.set_xlabel("GFLOP/s in kernels; dotted: with lanes that wait", fontsize=9)
-    axes.set_title("Arithmetic of the moments, float", fontsize=10, loc="left")
-    tidy(axes)
-
-
-def draw_scaling(axes, result):
-    place, labels = 0, []
-    for name, title in (("cores", "cores"), ("vector-width", "bits")):
-        rows = part(result, name)
-        for setting in sorted({row["setting"] for row in rows}):
-            own = {row["case"]: row["speedup"] for row in rows if row["setting"] == setting}
-            for i, (masking, colour) in enumerate(MASKINGS.items()):
-                if masking in own:
-                    axes.bar(place + 0.2 * (i - 1.5), own[masking], width=0.18, color=colour)
-                    axes.annotate(f"{own[masking]:.2f}", (place + 0.2 * (i - 1.5), own[masking]), ha="center",
-                                  va="bottom", fontsize=6.5)
-            labels.append(f"{setting:g} {title}" if setting != 1 else "1 core")
-            place += 1
-        place += 0.5 if rows else 0
-        labels += [""] if rows else []
-    ticks, texts, position = [], [], 0.0
-    for text in labels:
-        if text:
-            ticks.append(position)
-            texts.append(text)
-        position += 1.0 if text else 0.5
-    axes.set_xticks(ticks, texts)
-    axes.set_ylabel("speed over the first of its kind", fontsize=9)
-    axes.set_title("lavapipe: cores and vector width", fontsize=10, loc="left")
-    tidy(axes, "y")
-
-
 def figure(result, path, save):
     """Draws all parts of the study that the result contains; `save(drawing, path)` writes the figure."""
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     plt.rcParams["font.family"] = "DejaVu Sans"
-    grids, arithmetic = part(result, "grids"), part(result, "arithmetic")
+    grids = part(result, "grids")
     panels = []
     if grids:
         panels += [lambda axes: draw_grids(axes, grids), lambda axes: draw_tolerances(axes, grids, result["grid"])]
-    if arithmetic:
-        panels.append(lambda axes: draw_arithmetic(axes, result, arithmetic))
-    if part(result, "cores") or part(result, "vector-width"):
-        panels.append(lambda axes: draw_scaling(axes, result))
     if not panels:
         raise ValueError("holds no measured setting")
     rows = (len(panels) + 1) // 2

@@ -67,46 +67,4 @@ MomentsRequest steel_request(Masking masking, const Axes& grid) {
   return request;
 }
 
-Axes NestedGrid::with_stride(std::size_t stride) {
-  const Axes all = steel_grid({kSide, kSide, kSide});
-  Axes grid;
-  for (std::size_t i = 0; i < kSide; i += stride) {
-    grid[Axis::kTheta].push_back(kRightAngle * (static_cast<double>(i) + 0.5) / static_cast<double>(kSide));
-    grid[Axis::kSigma].push_back(all[Axis::kSigma][i]);
-    grid[Axis::kQ].push_back(all[Axis::kQ][i]);
-  }
-  return grid;
-}
-
-std::size_t NestedGrid::Place::position(std::size_t stride) const {
-  const std::size_t step = kLargestStride / stride;
-  const std::size_t side = kSide / stride;
-  return ((theta * step) * side + sigma * step) * side + q * step;
-}
-
-std::vector<NestedGrid::Place> NestedGrid::sample(std::size_t count) {
-  constexpr std::size_t kPlaces = kSide / kLargestStride;
-  std::vector<Place> places;
-  for (std::size_t i = 0; i < count; ++i) {
-    // The fractional parts of multiples of an irrational number fill [0, 1) evenly and never repeat.
-    const auto position = [&](double irrational) {
-      const double x = (static_cast<double>(i) + 0.5) * irrational;
-      return static_cast<std::size_t>(static_cast<double>(kPlaces) * (x - std::floor(x)));
-    };
-    places.push_back({position(std::numbers::phi), position(std::numbers::sqrt2), position(std::numbers::sqrt3)});
-  }
-  return places;
-}
-
-MomentsRequest sample_request(Masking masking, const std::vector<NestedGrid::Place>& sample) {
-  const Axes grid = NestedGrid::with_stride(NestedGrid::kLargestStride);
-  MomentsRequest request;
-  request.masking = masking;
-  for (const NestedGrid::Place& place : sample) {
-    request.append(
-        {grid[Axis::kTheta][place.theta], {grid[Axis::kSigma][place.sigma], grid[Axis::kQ][place.q]}, {kIndex, 0.0}});
-  }
-  return request;
-}
-
 }  // namespace dolp::bench

@@ -29,27 +29,4 @@ SceneValues steel_scene(Masking masking, const GridSize& size);
 /// The moments of the steel for every entry of a grid, in C order (q fastest).
 MomentsRequest steel_request(Masking masking, const Axes& grid);
 
-/// A grid of 64 x 64 x 64 entries, and coarser grids that hold a part of these entries. Slow methods run on the coarser
-/// grids. theta is never 0 or 90 degrees, because some methods do not support these directions.
-struct NestedGrid {
-  static constexpr std::size_t kSide = 64;
-  static constexpr std::size_t kLargestStride = 8;
-
-  /// The grid with every `stride`-th value of each axis. `stride` is a power of two up to kLargestStride.
-  static Axes with_stride(std::size_t stride);
-
-  /// An entry that all these grids contain. The members are its positions on the axes of the coarsest grid.
-  struct Place {
-    std::size_t theta = 0;
-    std::size_t sigma = 0;
-    std::size_t q = 0;
-    std::size_t position(std::size_t stride) const;  ///< position of the entry in the grid with_stride(stride)
-  };
-  /// Chooses `count` entries, spread evenly over the grid. Every call returns the same entries.
-  static std::vector<Place> sample(std::size_t count);
-};
-
-/// A request for only the entries of the sample, as a list of points.
-MomentsRequest sample_request(Masking masking, const std::vector<NestedGrid::Place>& sample);
-
 }  // namespace dolp::bench

@@ -29,29 +29,12 @@ struct StudyOptions {
 /// for an unknown case or method; DeviceError if `device` is given and not available; IoError; Cancelled.
 void run_accuracy(const StudyOptions& options);
 
-/// `dolp-bench effects`: time per entry with and without each effect of a scene. Also lists the effects that dolp
-/// leaves out because they hardly change DOLP or because the results do not need them.
+/// `dolp-bench throughput`: entries and integrand evaluations per second on grids of the stainless-steel scene, with
+/// all axes; growth of the time with the number of entries.
 ///
-/// `cases` are names of effects; `entries` is the size of the grid. `error` in a row is the largest change of DOLP that
-/// the left-out effects cause. Errors: InputError for an unknown effect; DeviceError without a usable device; IoError;
-/// Cancelled.
-void run_effects(const StudyOptions& options);
-
-/// `dolp-bench throughput`: entries and integrand evaluations per second on grids of the stainless-steel scene; growth
-/// of the time with the number of entries; share of the device's peak arithmetic speed; speed for different numbers of
-/// cores and vector widths.
-///
-/// `cases` are parts of the study; `entries` is the size of the largest grid. lavapipe reads cores and vector width
-/// from its environment only once, so each setting runs in a separate process. Errors: InputError for an unknown part;
+/// `cases` are parts of the study; `entries` is the size of the largest grid. Errors: InputError for an unknown part;
 /// DeviceError without a usable device; IoError; Cancelled.
 void run_throughput(const StudyOptions& options);
-
-/// `dolp-bench peers`: time per entry of each method at equal accuracy, and its ratio to the time of dolp's float
-/// kernels. Each method runs with its cheapest setting that meets the tolerance on a sample of a grid's entries.
-///
-/// `cases` are names of maskings. Errors: InputError for an unknown case or method; DeviceError if `device` is given
-/// and not available; IoError; Cancelled.
-void run_peers(const StudyOptions& options);
 
 /// `dolp-bench scale`: time and peak memory of `dolp table`, for tables of 10^4 to 10^8 entries and for shards that run
 /// at the same time.
@@ -66,13 +49,5 @@ void run_scale(const StudyOptions& options);
 ///
 /// `entries` is the number of random data sets. Errors: DeviceError without a usable device; IoError; Cancelled.
 void run_fit_study(const StudyOptions& options);
-
-/// `dolp-bench window`: curves and frames per second while real events drag a slider of the window, on a private
-/// display of 1920 x 1080 (Xvfb, xdotool).
-///
-/// `cases` are names of drags. A curve is fresh if, when it appears, the slider still has the value for which the curve
-/// was computed. Errors: InputError for an unknown drag; DeviceError without a usable device or Xvfb; IoError;
-/// Cancelled.
-void run_window(const StudyOptions& options);
 
 }  // namespace dolp::bench

@@ -1,5 +1,4 @@
-// The study of throughput measures entries and integrand evaluations per second. It also measures which share of the
-// device's peak arithmetic speed the kernels reach.
+// The study of throughput measures entries and integrand evaluations per second.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,17 +7,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <span>
-#include <thread>
 
 #include "device/devices.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
-#include "methods/arithmetic_peak.hpp"
-#include "methods/method.hpp"
-#include "methods/operations.hpp"
 #include "model/choices.hpp"
 #include "scene/material_data.hpp"
 #include "studies/cases.hpp"
-#include "studies/driver_variables.hpp"
 #include "studies/grids.hpp"
 #include "studies/study.hpp"
 #include "studies/study_run.hpp"
@@ -32,8 +26,6 @@ using nlohmann::ordered_json;
 
 constexpr std::array kMaskings = {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith};
 constexpr std::array kMaskingsByRows = {Masking::kIntegral, Masking::kSmith};
-// Maskings that the part `kernels` runs in a quick study.
-constexpr std::array kQuickMaskings = {Masking::kNone, Masking::kIntegral};
 constexpr double kTolerance = 1e-4;
 constexpr std::array kTolerances = {1e-3, 1e-4, 1e-6};
 constexpr std::array<GridSize, 8> kGrids = {{{32, 32, 32},
@@ -47,24 +39,15 @@ constexpr std::array<GridSize, 8> kGrids = {{{32, 32, 32},
 // Position of the main grid in kGrids. The part `grids` also runs the other grids, and `materials` runs kMaterialGrids.
 // All other parts run only the main grid.
 constexpr std::size_t kMainGrid = 1;
-constexpr GridSize kSmallGrid = {2, 2, 16};  // for a first run without timing, which compiles the kernels
 constexpr std::size_t kQuickEntries = std::size_t{24} * 24 * 24;
 constexpr std::size_t kFullRepeats = 5;
 constexpr std::size_t kQuickRepeats = 2;
 constexpr double kLongTime = 1.0;  // seconds; a grid that takes longer runs only kQuickRepeats times
-constexpr std::size_t kFullWorkgroups = 48;
-constexpr std::size_t kQuickWorkgroups = 6;
-constexpr std::size_t kFullRounds = 3;  // each round runs the kernels once for each setting of the Vulkan driver
-constexpr std::size_t kQuickRounds = 1;
-constexpr std::size_t kPeakRepeats = 9;
-const TimingPolicy kFullTiming{.min_repeats = 5, .max_repeats = 15, .enough_s = 1.0, .most_s = 4.0};
-const TimingPolicy kQuickTiming{.min_repeats = 3, .max_repeats = 5, .enough_s = 0.1, .most_s = 0.5};
-
 /// A part of the study, with its name for the option --case.
 struct Part {
   std::string name;
 };
-const std::vector<Part> kParts = {{"grids"}, {"materials"}, {"arithmetic"}, {"cores"}, {"vector-width"}, {"kernels"}};
+const std::vector<Part> kParts = {{"grids"}, {"materials"}};
 
 /// The grids of kGrids with at most `entries` entries. If there is none, a cubic grid of about `entries` entries.
 std::vector<GridSize> grids_up_to(std::size_t entries) {
@@ -77,13 +60,6 @@ std::vector<GridSize> grids_up_to(std::size_t entries) {
     sizes.push_back({side, side, side});
   }
   return sizes;
-}
-
-/// The Vulkan device of the study. Errors: DeviceError without a usable device.
-dolp::Device device_of(const StudyOptions& options) {
-  const DeviceList list = list_devices();
-  if (list.devices.empty()) throw DeviceError(list.why_empty);
-  return list.devices[choose_device(list.devices, options.device, false)];
 }
 
 /// The largest error estimate of a run, over the entries without a status bit.
@@ -224,47 +200,28 @@ class Study {
   bool runs(const std::string& part) const { return std::ranges::find(parts_, part, &Part::name) != parts_.end(); }
   bool quick() const { return run_.options().quick; }
   GridSize main_grid() const { return grids_[std::min(kMainGrid, grids_.size() - 1)]; }
-  MomentsRequest main_request(Masking masking) const { return steel_request(masking, steel_grid(main_grid())); }
-  std::vector<double> arithmetic_tolerances() const {
-    return quick() ? std::vector<double>{kTolerance} : std::vector<double>(kTolerances.begin(), kTolerances.end());
-  }
-  std::span<const Masking> kernel_maskings() const {
-    return quick() ? std::span<const Masking>(kQuickMaskings) : std::span<const Masking>(kMaskings);
-  }
-  Measurement kernel_times(Masking masking, double tolerance);
-
   void describe();
   void run_grids(Masking masking);
   void run_materials(Masking masking);
-  void run_arithmetic();
-  void run_kernels();
-  void run_with(const char* part, const DriverVariable& variable);
 
   StudyRun& run_;
-  dolp::Device device_;
   std::vector<Part> parts_;
   std::vector<GridSize> grids_;
-  std::unique_ptr<Solver> float_solver_;
 };
 
 Study::Study(StudyRun& run)
     : run_(run),
-      device_(device_of(run.options())),
       parts_(chosen(kParts, run.options().cases, "--case")),
       grids_(grids_up_to(quick() ? std::min(run.options().entries, kQuickEntries) : run.options().entries)) {
-  // Without --case the part `kernels` is left out, because the parts `cores` and `vector-width` run it.
-  if (run.options().cases.empty()) parts_.pop_back();
   if (runs("grids")) run_.expect(kMaskings.size() * (grids_.size() + 2 * kTolerances.size() - 1));
   if (runs("materials")) run_.expect(kMaskingsByRows.size() * material_axes().size());
-  if (runs("arithmetic")) run_.expect(kMaskingsByRows.size() * arithmetic_tolerances().size());
-  if (runs("kernels")) run_.expect(kernel_maskings().size());
 }
 
 void Study::describe() {
   run_.describe(
       "throughput", "stated_error: largest rho_error_estimate of the entries without a status",
-      "seconds an entry, median; grids: plan, evaluation and radiometry as `dolp table` runs them, warm, files "
-      "and device creation not counted; others: in float kernels, masking tables included");
+      "seconds an entry, median: plan, evaluation and radiometry as `dolp table` runs them, warm, files and device "
+      "creation not counted");
   run_.json()["grid"] = main_grid().text();
   run_.json()["scene"] = "stainless steel, precision auto";
 }
@@ -277,14 +234,6 @@ void Study::measure_all() {
   if (runs("materials")) {
     for (const Masking masking : kMaskingsByRows) run_materials(masking);
   }
-  if (runs("arithmetic")) run_arithmetic();
-  if (runs("kernels")) run_kernels();
-  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
-  std::vector<unsigned> counts;
-  for (unsigned count = 1; count < cores; count *= 2) counts.push_back(count);
-  counts.push_back(cores);
-  if (runs("cores")) run_with("cores", {"LP_NUM_THREADS", counts});
-  if (runs("vector-width")) run_with("vector-width", {"LP_NATIVE_VECTOR_WIDTH", {256, 512}, true});
 }
 
 void Study::run_grids(Masking masking) {
@@ -373,88 +322,6 @@ void Study::run_materials(Masking masking) {
   }
 }
 
-Measurement Study::kernel_times(Masking masking, double tolerance) {
-  if (!float_solver_) float_solver_ = make_vulkan({.device = run_.options().device}, Precision::kFloat);
-  // A first run without timing compiles the kernels.
-  float_solver_->solve(steel_request(masking, steel_grid(kSmallGrid)), tolerance);
-  return measure(*float_solver_, main_request(masking), tolerance, false, quick() ? kQuickTiming : kFullTiming);
-}
-
-void Study::run_arithmetic() {
-  const std::vector<double> peaks = arithmetic_peak(run_.options().device, kPeakRepeats);
-  const double peak = peaks.back();
-  const std::uint32_t lanes = std::max(1U, device_.subgroup_size);
-  run_.json()["peak"] = {{"flops_per_s", std::round(peak)},
-                         {"median_flops_per_s", std::round(median(peaks))},
-                         {"what", "multiplications and additions in float, 12 independent chains an invocation"},
-                         {"lanes", lanes}};
-  for (const Masking masking : kMaskingsByRows) {
-    for (const double tolerance : arithmetic_tolerances()) {
-      MomentsRequest request = main_request(masking);
-      request.tolerance = tolerance;
-      const auto entries = static_cast<double>(request.size());
-      const KernelWork work = count_operations(request, quick() ? kQuickWorkgroups : kFullWorkgroups, lanes);
-      const Measurement measurement = kernel_times(masking, tolerance);
-      const double kernel_s = median(measurement.raw_kernel_s);
-      const double flops_per_s = static_cast<double>(work.counts.flops()) / kernel_s;
-      const auto each = [&](std::uint64_t count) { return std::round(static_cast<double>(count) / entries); };
-      ordered_json row = row_start("arithmetic", name_of(masking), tolerance);
-      row["entries"] = request.size();
-      row["time_s"] = rounded_time(kernel_s / entries);
-      row["evaluations"] = *measurement.evaluations / entries;
-      row["flops"] = each(work.counts.flops());
-      row["operations"] = {{"add", each(work.counts.add)},
-                           {"multiply", each(work.counts.multiply)},
-                           {"divide", each(work.counts.divide)},
-                           {"square_root", each(work.counts.square_root)},
-                           {"other", each(work.counts.other)}};
-      row["flops_per_s"] = std::round(flops_per_s);
-      row["share_of_peak"] = flops_per_s / peak;
-      row["busy_lanes"] = work.busy_lanes;
-      row["raw_times_s"] = per_entry(measurement.raw_kernel_s, request.size());
-      run_.finish(row);
-    }
-  }
-}
-
-void Study::run_kernels() {
-  for (const Masking masking : kernel_maskings()) {
-    const std::size_t entries = main_grid().entries();
-    const std::vector<double> times_s = per_entry(kernel_times(masking, kTolerance).raw_kernel_s, entries);
-    ordered_json row = row_start("kernels", name_of(masking), kTolerance);
-    row["entries"] = entries;
-    row["time_s"] = median(times_s);
-    row["time_min_s"] = minimum(times_s);
-    row["raw_times_s"] = times_s;
-    run_.finish(row);
-  }
-}
-
-void Study::run_with(const char* part, const DriverVariable& variable) {
-  const auto not_run = [&](const std::string& reason) {
-    run_.expect(1);
-    ordered_json row = row_start(part, "all", variable.name);
-    row["not_run"] = reason;
-    run_.finish(row);
-  };
-  if (!device_.name.starts_with("llvmpipe")) {
-    not_run("the device is not lavapipe, which alone reads " + variable.name);
-    return;
-  }
-  try {
-    const std::size_t rounds = quick() ? kQuickRounds : kFullRounds;
-    const std::vector<ordered_json> rows = kernels_with(variable, run_.options(), main_grid().entries(), rounds);
-    run_.expect(rows.size());
-    for (const ordered_json& row : rows) {
-      ordered_json whole = {{"part", part}};
-      whole.update(row);
-      run_.finish(whole);
-    }
-  } catch (const Unavailable& error) {
-    not_run(error.what());
-  }
-}
-
 std::string table_line(const ordered_json& row) {
   const std::string start =
       fmt::format("  {:<12} {:<10} {:<24}", row["part"].get<std::string>(), row["case"].get<std::string>(),
@@ -470,21 +337,12 @@ std::string table_line(const ordered_json& row) {
   if (row.contains("kernels_over_one"))
     line += fmt::format(", kernels {:.2f} of one index", row["kernels_over_one"].get<double>());
   if (row.contains("doubled_ratio")) line += fmt::format(", {:.2f} of half", row["doubled_ratio"].get<double>());
-  if (row.contains("share_of_peak")) {
-    line += fmt::format(" {:>7.3g} flops, {:.1f} GFLOP/s, {:.0f} % of the peak, lanes {:.0f} % busy",
-                        row["flops"].get<double>(), 1e-9 * row["flops_per_s"].get<double>(),
-                        100.0 * row["share_of_peak"].get<double>(), 100.0 * row["busy_lanes"].get<double>());
-  }
-  if (row.contains("speedup")) line += fmt::format("  x {:.2f}", row["speedup"].get<double>());
   return line + "\n";
 }
 
 std::string table_text(const ordered_json& result) {
   std::string text = fmt::format("{}; time per entry on {}\n", result["scene"].get<std::string>(),
                                  result["context"]["device"].value("name", std::string("no device")));
-  if (result.contains("peak")) {
-    text += fmt::format("peak: {:.1f} GFLOP/s\n", 1e-9 * result["peak"]["flops_per_s"].get<double>());
-  }
   for (const ordered_json& row : result["results"]) text += table_line(row);
   return text;
 }

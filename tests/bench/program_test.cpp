@@ -15,7 +15,6 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 
 const std::string kAccuracy = "accuracy --quick --entries 16 ";
-const std::string kEffects = "effects --quick --entries 9 ";
 
 TEST_F(BenchProgram, Accuracy_Json_Context_SaysWhereAndHowToRunAgain) {
   const json study = study_of(kAccuracy + "--case easy --method gauss --method vulkan-float");
@@ -75,53 +74,6 @@ TEST_F(BenchProgram, NoVulkanDevice_OtherMethodsRunAndTheReasonIsNamed) {
   EXPECT_TRUE(study["context"]["device"].contains("none"));
 }
 
-TEST_F(BenchProgram, Effects_Json_EveryEffect_HasTimesAndRatio) {
-  const json result = study_of("effects --quick --entries 9");
-  EXPECT_EQ(result["study"], "effects");
-  expect_keys(result, {"context", "error", "time_s", "tolerance", "grid", "results", "warnings"});
-  EXPECT_NE(result["context"]["command"].get<std::string>().find(" effects --quick "), std::string::npos);
-  std::set<std::string> effects;
-  for (const json& row : result["results"]) {
-    expect_keys(row, {"effect", "case", "setting", "error", "time_s", "ratio", "entries", "raw_times_s"});
-    EXPECT_GT(row["time_s"].get<double>(), 0.0) << row.dump();
-    EXPECT_GT(row["ratio"].get<double>(), 0.0) << row.dump();
-    EXPECT_EQ(row["entries"], row["setting"] == "20 n x 20 k" ? 3600 : 9) << row.dump();
-    EXPECT_EQ(row["raw_times_s"].size(), 3U);
-    effects.insert(row["effect"].get<std::string>());
-    expect_keys(row, {"base", "kernel_time_s", "left_out", "bound", "compared"});
-    EXPECT_GT(row["compared"], 0) << row.dump();
-    EXPECT_LE(row["error"], row["tolerance"]) << row.dump();
-    if (row["setting"] == row["base"]) {
-      EXPECT_EQ(row["ratio"], 1.0) << row.dump();
-    }
-  }
-  EXPECT_EQ(effects,
-            (std::set<std::string>{"specular", "diffuse", "distribution", "masking", "complex index", "axes of index",
-                                   "scattering", "direct emission", "bracket", "emission", "source", "surroundings",
-                                   "path", "band", "sun at 10.6 um", "emission at 0.55 um", "profile"}));
-}
-
-TEST_F(BenchProgram, Effects_Json_RadiationBesideAStrongerOne_IsLeftOut) {
-  for (const auto& [name, left_out] :
-       {std::pair("sun at 10.6 um", json({"source"})), {"emission at 0.55 um", json({"emission", "surroundings"})}}) {
-    const json result = study_of(joined(split_at(kEffects + "--case", ' '), {name}));
-    EXPECT_EQ(result["results"][1]["left_out"], left_out);
-  }
-}
-
-TEST_F(BenchProgram, Effects_Json_WhatThePlanDrops_TakesNoKernelAndSaysWhatEverythingTakes) {
-  const json result = study_of(kEffects + "--case surroundings");
-  ASSERT_EQ(result["results"].size(), 3U);
-  const json& cool = result["results"][1];
-  const json& isothermal = result["results"][2];
-  EXPECT_GT(cool["kernel_time_s"].get<double>(), 0.0);
-  EXPECT_FALSE(cool.contains("keep_all_time_s")) << cool.dump();
-  EXPECT_EQ(isothermal["kernel_time_s"], 0.0);
-  EXPECT_GT(isothermal["keep_all_kernel_time_s"].get<double>(), 0.0) << isothermal.dump();
-  EXPECT_GT(isothermal["keep_all_time_s"].get<double>(), 0.0) << isothermal.dump();
-  EXPECT_EQ(isothermal["left_out"], json({"specular", "distribution", "masking"}));
-}
-
 struct BadUsage {
   std::string line;
   int status;
@@ -138,16 +90,9 @@ TEST_F(BenchProgram, BadUsage_OneLineThatSaysWhatIsAllowed) {
       {"accuracy --method simpson", 2, "choose among midpoint, gauss, "},
       {"accuracy --json no/such/folder/r.json", 4, "there is no folder no/such/folder"},
       {"accuracy --device nosuch", 3, "nosuch"},
-      {"effects --case smell", 2, "--case smell: there is none of this name; choose among specular, "},
-      {"effects --method gauss", 2, "--method"},
-      {"effects --json no/such/folder/r.json", 4, "there is no folder no/such/folder"},
-      {"throughput --case smell", 2,
-       "--case smell: there is none of this name; choose among grids, materials, arithmetic, "},
+      {"throughput --case smell", 2, "--case smell: there is none of this name; choose among grids, materials"},
       {"throughput --entries 0", 2, "--entries"},
-      {"throughput --json no/such/folder/r.json", 4, "there is no folder no/such/folder"},
-      {"peers --case easy", 2, "--case easy: there is none of this name; choose among none, v-cavity, "},
-      {"peers --method simpson", 2, "choose among midpoint, gauss, "},
-      {"peers --device nosuch", 3, "nosuch"}};
+      {"throughput --json no/such/folder/r.json", 4, "there is no folder no/such/folder"}};
   for (const BadUsage& bad : list) {
     const Outcome outcome = bench(split_at(bad.line, ' '));
     EXPECT_EQ(outcome.status, bad.status) << outcome.err;
@@ -159,11 +104,9 @@ TEST_F(BenchProgram, BadUsage_OneLineThatSaysWhatIsAllowed) {
 }
 
 TEST_F(BenchProgram, StudiesOfTheDevice_WithoutOne_AreExit3) {
-  for (const char* study : {"effects", "throughput"}) {
-    const Outcome outcome = bench({study, "--quick"}, kNoDriver);
-    EXPECT_EQ(outcome.status, 3) << outcome.err;
-    EXPECT_EQ(outcome.out, "");
-  }
+  const Outcome outcome = bench({"throughput", "--quick"}, kNoDriver);
+  EXPECT_EQ(outcome.status, 3) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
 }
 
 struct Plotted {
@@ -174,10 +117,7 @@ struct Plotted {
 TEST_F(BenchProgram, Plot_OfEveryStudy_GivesFigureAndTable) {
   const std::vector<Plotted> list = {
       {"accuracy --quick --entries 16 --case easy --method gauss --method cpu-double", "| Gauss-Legendre rule |"},
-      {"effects --quick --entries 9 --case surroundings", "| surroundings | hemispherical | 250 K |"},
-      {"throughput --quick --entries 64 --case grids --case arithmetic", "| v-cavity | 4 × 4 × 4 |"},
-      {"peers --quick --case integral --method gauss --method hcubature --method vulkan-float --method vulkan-table",
-       "| libcubature -O2, one core | integral | 100 |"}};
+      {"throughput --quick --entries 64 --case grids", "| v-cavity | 4 × 4 × 4 |"}};
   for (const Plotted& plotted : list) {
     SCOPED_TRACE(plotted.study);
     const Outcome made = bench(split_at(plotted.study + " --json r.json", ' '));
@@ -191,7 +131,7 @@ TEST_F(BenchProgram, Plot_OfEveryStudy_GivesFigureAndTable) {
     EXPECT_NE(table.out.find(plotted.row), std::string::npos) << table.out;
     EXPECT_EQ(plot({study, "r.json", "-o", "none/r.png"}).status, 4);
   }
-  EXPECT_EQ(plot({"accuracy", "r.json", "--markdown"}).status, 2);  // r.json has results of the study `peers`
+  EXPECT_EQ(plot({"accuracy", "r.json", "--markdown"}).status, 2);  // r.json has results of the study `throughput`
   const Outcome missing = plot({"accuracy", "none.json", "-o", "r.png"});
   EXPECT_EQ(missing.status, 2);
   EXPECT_NE(missing.err.find("none.json"), std::string::npos) << missing.err;

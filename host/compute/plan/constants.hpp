@@ -53,7 +53,7 @@ inline constexpr int kCriticalBounces = 3;  // last bounce at which the beginnin
 inline constexpr double kResponseTolerance = 0.25;
 inline constexpr double kResponseRoundings = 4.0;  // rounding of x in chebyshev_at() (columns.glsl), in unit roundoffs
 
-// ---- Skies (sky_table.cpp). The numbers are for two sets of entries: first the 19 rows of `dolp-bench effects` with
+// ---- Skies (sky_table.cpp). The numbers are for two sets of entries: first a sky of 19 rows over 100 x 100 entries with
 // integral masking, then `dolp table` with smith masking and 16 x 6 x 6 entries at 1e-4 (theta to 85 degrees, sigma
 // 0.05 to 0.5, q 1.76 to 3).
 

@@ -12,7 +12,7 @@ namespace {
 constexpr Spectrum kCo2Line{10.6, 10.6};
 constexpr double kRounding = 1e-12;  // a few roundings of numbers near 1
 
-std::string sample(const std::string& name) { return std::string(DOLP_TEST_DATA_DIR) + "/index_files/" + name; }
+std::string sample(const std::string& name) { return fmt::format("{}/index_files/{}", DOLP_TEST_DATA_DIR, name); }
 
 OpticalConstants index_in(const std::string& text, const std::string& name = "e.dat") {
   const TemporaryFile file(name, text);

@@ -51,6 +51,13 @@ Shard shard_of(const std::string& text) {
   return shard;
 }
 
+std::vector<std::string> names_in(const std::string& list) {
+  std::vector<std::string> names;
+  if (list.empty()) return names;
+  for (const std::string_view name : split(list, ',')) names.emplace_back(trim(name));
+  return names;
+}
+
 Report verify_device(const Options& options, const Progress& progress) {
   DeviceCheckOptions check{options.evaluator, options.device};
   if (!options.precision.empty()) check.precision = options.precision;
@@ -72,9 +79,11 @@ Report verify_device(const Options& options, const Progress& progress) {
 int run_table(const Options& options) {
   const Scene scene = load_scene(options);
   const Shard shard = shard_of(options.shard);
-  const Report report = evaluator_of(options).write_table(
-      scene, options.output_path,
-      {options.keep_all, ProgressBar(options.quiet).callback(), options.command_line, options.resume}, shard);
+  const Report report =
+      evaluator_of(options).write_table(scene, options.output_path,
+                                        {options.keep_all, ProgressBar(options.quiet).callback(), options.command_line,
+                                         options.resume, names_in(options.quantities)},
+                                        shard);
   return finish(report, options);
 }
 

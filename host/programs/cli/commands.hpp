@@ -18,7 +18,7 @@ struct Options {
   std::string tolerance, precision, device;
   std::string evaluator = "vulkan";
   bool json = false, quiet = false, strict = false, keep_all = false;
-  std::string shard;
+  std::string shard, quantities;
   std::vector<std::string> shards;
   bool resume = false;
   std::size_t samples = 64, seed = 1;

@@ -64,6 +64,16 @@ def text_of(dataset, name):
     return dataset[name][:].tobytes().decode() if name in dataset.variables else getattr(dataset, name, "")
 
 
+def names_of(dataset, axis):
+    """The names along an axis of NAMED. Tables of dolp 0.2 have them in a variable with the name of the axis."""
+    if axis in dataset.variables:
+        return [str(name) for name in dataset[axis][:]]
+    if axis == "material":
+        return [str(name) for name in dataset["material_name"][:]]
+    limits = (np.asarray(dataset[name][:]) for name in ("band_low", "band_high"))
+    return ["-".join(np.format_float_positional(end, trim="-") for end in band) for band in zip(*limits)]
+
+
 def scene_part(dataset, part):
     """Keys of the TOML table `part` of the scene, with the overrides. Empty if the text of the scene is not TOML."""
     try:
@@ -79,7 +89,7 @@ def scene_part(dataset, part):
 
 def spectrum_of(dataset):
     """The wavelength or band of the scene as text. Empty if the table has an axis of wavelengths or bands."""
-    has_axis = "wavelength" in dataset.variables or "band" in dataset.variables
+    has_axis = "wavelength" in dataset.dimensions or "band" in dataset.dimensions
     spectrum = {} if has_axis else scene_part(dataset, "spectrum")
     return "–".join(f"{end:g}" for end in np.ravel(list(spectrum.values()))) + " µm" if spectrum else ""
 
@@ -111,7 +121,7 @@ class NotATable(Exception):
 
 def position_of(dataset, axis, name):
     """Position of a material or band on its axis. `name`: its name, or a part that no other name contains."""
-    names = [str(own) for own in dataset[axis][:]]
+    names = names_of(dataset, axis)
     alike = [i for i, own in enumerate(names) if name.lower() in own.lower()]
     same = [i for i in alike if names[i].lower() == name.lower()]
     if len(same or alike) != 1:
@@ -150,8 +160,8 @@ class Slice:
         rows, columns = np.argsort(theta), np.argsort(sigma)
         self.theta, self.sigma = theta[rows], sigma[columns]
         self.column_in_scene = int(np.flatnonzero(columns == index_in_scene(dataset, roughness))[0])
-        self.material = str(dataset["material"][at["material"]]) if "material" in at else None
-        self.place = ", ".join(f"{dataset[axis][i]}{UNITS.get(axis, '')}" if axis in NAMED else
+        self.material = names_of(dataset, "material")[at["material"]] if "material" in at else None
+        self.place = ", ".join(f"{names_of(dataset, axis)[i]}{UNITS.get(axis, '')}" if axis in NAMED else
                                f"{SYMBOLS[axis]} = {dataset[axis][i]:g}{UNITS.get(axis, '')}"
                                for axis, i in at.items() if axis != "material")
 
@@ -398,7 +408,7 @@ def main():
             if arguments.rank is not None and "material" not in table.at:
                 raise NotATable("has no axis of materials to rank; give grid.material in the scene")
             has_choice = arguments.rank is None and arguments.material is not None
-            names = [] if has_choice or "material" not in table.at else [str(name) for name in dataset["material"][:]]
+            names = [] if has_choice or "material" not in table.at else names_of(dataset, "material")
             materials = {name: Slice(dataset, {**wanted, "material": name}) for name in names}
     except (OSError, NotATable) as error:
         print(f"{arguments.table}: {error}", file=sys.stderr)

@@ -7,7 +7,7 @@
 set -euo pipefail
 
 # No tests that need new namespaces, which do not work in a chroot.
-parts='Table|Hdf5|HardCases|Devices|Window|Explore|Python|Install.Works|Octave|Hardening|file_limit|failed_close|endless|SecondDriver|manual_test'
+parts='Table|HardCases|Devices|Window|Explore|Python|Install.Works|Octave|Hardening|file_limit|endless|SecondDriver|manual_test'
 
 fail() {
   echo "debian13.sh: $1" >&2

@@ -381,12 +381,13 @@ PYBIND11_MODULE(_native, module) {
       .def(py::init([](const std::string& evaluator, const std::string& device) {
         return dolp::Evaluator({evaluator, device});
       }))
-      .def("table",
-           [](dolp::Evaluator& evaluator, const dolp::Scene& scene, bool keep_all) {
-             return contents_of(interruptible([&](const dolp::Progress& progress) {
-               return evaluator.table(scene, {keep_all, progress, "dolp.table"});
-             }));
-           })
+      .def(
+          "table",
+          [](dolp::Evaluator& evaluator, const dolp::Scene& scene, bool keep_all, std::vector<std::string> quantities) {
+            return contents_of(interruptible([&](const dolp::Progress& progress) {
+              return evaluator.table(scene, {keep_all, progress, "dolp.table", false, std::move(quantities)});
+            }));
+          })
       .def("response",
            [](dolp::Evaluator& evaluator, const dolp::Scene& scene) {
              const dolp::Table table = interruptible([&](const dolp::Progress& progress) {
@@ -396,9 +397,10 @@ PYBIND11_MODULE(_native, module) {
            })
       .def("write_table",
            [](dolp::Evaluator& evaluator, const dolp::Scene& scene, const std::filesystem::path& path, bool keep_all,
-              bool resume) {
+              bool resume, std::vector<std::string> quantities) {
              return text_of(interruptible([&](const dolp::Progress& progress) {
-               return evaluator.write_table(scene, path, {keep_all, progress, "dolp.table", resume}).text;
+               const dolp::RunOptions options{keep_all, progress, "dolp.table", resume, std::move(quantities)};
+               return evaluator.write_table(scene, path, options).text;
              }));
            })
       .def("evaluate",
@@ -479,7 +481,6 @@ PYBIND11_MODULE(_native, module) {
     return list_of(dolp::kStatusBits, [](const dolp::StatusBit& bit) { return py::make_tuple(bit.mask, bit.meaning); });
   });
   module.def("quantities", [name] { return list_of(dolp::kAllQuantities, name); });
-  module.attr("most_attribute_bytes") = dolp::kMostAttributeBytes;
   module.def("surface_settings", [] {
     return list_of(dolp::surface_settings(), [](const dolp::Setting& setting) {
       return py::make_tuple(text_of(setting.key), object_of(setting.value));

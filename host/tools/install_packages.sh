@@ -17,7 +17,7 @@ need build libvulkan-dev mesa-vulkan-drivers        # run the kernels, on GPUs o
 need build libglm-dev                               # GLSL's vector types in C++, for the CPU build of the shaders
 need build libboost-dev                             # special functions, Gauss-Kronrod nodes, short lists
 need build libeigen3-dev                            # small matrices of dolp fit
-need build libhdf5-dev                              # table files, which are NetCDF-4
+need build libnetcdf-dev                            # table files
 need build libtomlplusplus-dev libyaml-cpp-dev      # scenes, material records
 need build libcli11-dev libfmt-dev nlohmann-json3-dev  # command line, messages, JSON reports
 need build libglfw3-dev libimgui-dev libstb-dev pkg-config fonts-dejavu-core  # the window
@@ -27,7 +27,7 @@ need bench libcubature-dev libgsl-dev python3-scipy  # methods to compare with
 need bench python3 python3-matplotlib python3-numpy
 need test libgtest-dev libclang-rt-dev clang-format  # test framework, fuzzing, code format
 need test vulkan-validationlayers                    # finds misuse of Vulkan
-need test libnetcdf-dev netcdf-bin octave octave-netcdf python3 python3-netcdf4 python3-numpy  # other readers of tables
+need test netcdf-bin octave octave-netcdf python3-scipy python3 python3-netcdf4 python3-numpy  # other readers of tables
 need test x11-utils xvfb xauth xdotool               # a display with mouse and keyboard
 need test slurmctld slurmd slurm-client munge        # a cluster of one node
 need test dpkg-dev file fish zsh                     # check the Debian package, and shell completions

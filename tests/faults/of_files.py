@@ -59,12 +59,6 @@ def read_only_disk(driver):
     return in_small_file_system(driver, "size=1m", "mount -o remount,ro none .")
 
 
-def failed_close(driver):
-    """the table that is read fails to be closed"""
-    driver.expect("lookup")
-    yield driver.try_once("lookup", environment=driver.preload("close"))
-
-
 def vanished_folder(driver):
     """the output's folder vanishes while the command computes"""
     seconds = driver.expect("table", SLOW)
@@ -94,4 +88,4 @@ def two_writers(driver):
                     yield writer.returncode
 
 
-KINDS = (file_limit, full_disk, no_inodes, read_only_disk, failed_close, vanished_folder, two_writers)
+KINDS = (file_limit, full_disk, no_inodes, read_only_disk, vanished_folder, two_writers)

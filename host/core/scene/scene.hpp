@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/text.hpp"
 #include "model/choices.hpp"
 #include "model/facet_optics.hpp"
 #include "model/scene_entry.hpp"
@@ -110,6 +111,7 @@ struct Spectrum {
   double min_um = 0.0;
   double max_um = 0.0;  ///< equal to min_um for a single wavelength
   bool is_band() const { return max_um > min_um; }
+  std::string label() const { return format_number(min_um) + '-' + format_number(max_um); }  ///< such as "8-14"
 };
 
 struct Geometry {

@@ -175,7 +175,7 @@ void fill_from_grid(SceneValues& scene, const SceneDocument& document) {
   for (const Spectrum& band : scene.bands) {
     std::vector<std::string>& labels = scene.labels[Axis::kBand];
     grid[Axis::kBand].push_back(static_cast<double>(labels.size()));
-    labels.push_back(format_number(band.min_um) + '-' + format_number(band.max_um));
+    labels.push_back(band.label());
     if (std::ranges::count(labels, labels.back()) > 1) document.fail("grid.band_um", labels.back() + " appears twice");
   }
   if (!grid[Axis::kTemperature].empty() && !document.find("emission.temperature_K"))

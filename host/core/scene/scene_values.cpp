@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 
 #include "base/text.hpp"
 #include "scene/key_hints.hpp"
@@ -103,7 +104,8 @@ std::vector<double> read_axis(const SceneDocument& document, const Key& descript
   std::sort(sorted.begin(), sorted.end());
   const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
   if (twice != sorted.end()) document.fail(description.key, fmt::format("{} appears twice", *twice));
-  return values;
+  // Axes of CF ascend or descend. Scene::remarks() tells the user that values were sorted.
+  return std::ranges::is_sorted(values, std::greater<>()) ? values : sorted;
 }
 
 std::vector<double> read_pair(const SceneDocument& document, const Key& description, const toml::node& node) {

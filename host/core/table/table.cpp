@@ -79,11 +79,14 @@ void take_spectral_data(TableHead& head, const std::string& name) {
 }
 
 std::string coordinates_of(const TableHead& head) {
-  std::string names = head.wind_m_s.empty() ? "" : kWind.name;
+  std::vector<std::string> names;
+  if (!head.axes[Axis::kMaterial].empty()) names.emplace_back(kMaterialName.name);
+  if (!head.axes[Axis::kBand].empty()) names.insert(names.end(), {kBandLow.name, kBandHigh.name});
+  if (!head.wind_m_s.empty()) names.emplace_back(kWind.name);
   for (const TableCurve& described : kTableCurves) {
-    if (!(head.*described.curve).used.empty()) (names += names.empty() ? "" : " ") += described.name;
+    if (!(head.*described.curve).used.empty()) names.emplace_back(described.name);
   }
-  return names;
+  return fmt::format("{}", fmt::join(names, " "));
 }
 
 TableLayout layout_of(const TableValues& table) {

@@ -32,7 +32,8 @@ const Content* find_attribute(const TableHead& head, std::string_view name) {
   return found == head.attributes.end() ? nullptr : std::get_if<Content>(&found->value);
 }
 
-/// Value of the CF attribute `coordinates`: names, separated by blanks, of coordinates that are no axes, such as n.
+/// Value of the CF attribute `coordinates`: names, separated by blanks, of coordinates that are no axes, such as
+/// index_n.
 std::string coordinates_of(const TableHead& head);
 
 /// The layout of a table: everything that is known before its values.

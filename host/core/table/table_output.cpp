@@ -69,8 +69,11 @@ TableOutput::TableOutput(Job job) : job_(std::move(job)), format_(format_of(job_
   }
   const bool was_empty = file_ && file_->size() == 0;
   try {
-    if (file_) store_.emplace(job_.layout, *file_);
-    if (is_resumable()) open_progress();
+    const std::string earlier = is_resumable() ? earlier_parts() : "";
+    const TableStore::Earlier values = earlier.empty() ? TableStore::Earlier::kRemoved : TableStore::Earlier::kKept;
+    if (file_) store_.emplace(job_.layout, *file_, values);
+    const std::size_t kept = reuse_finished_parts(earlier);
+    if (progress_) progress_->resize(kept);
   } catch (...) {
     if (was_empty) file_->discard();
     throw;
@@ -83,34 +86,34 @@ TableOutput::~TableOutput() {
     if (*empty) (*empty)->discard();
 }
 
-void TableOutput::open_progress() {
+/// Opens the progress file if it exists. Returns its lines, or nothing if no part can be reused.
+std::string TableOutput::earlier_parts() {
   if (fs::exists(fs::symlink_status(progress_path(job_.path)))) progress_.emplace(job_.path, progress_path(job_.path));
-  const std::uint64_t kept = job_.is_resumed && progress_ ? reuse_finished_parts() : 0;
-  if (progress_) progress_->resize(kept);
-  if (parts_done_ == 0) file_->resize(0);
-}
-
-/// Reuses finished parts of an earlier run. Returns the length of the progress file up to the last reused part.
-std::uint64_t TableOutput::reuse_finished_parts() {
-  std::string text(progress_->size(), '\0');
-  progress_->read_at(0, text.data(), text.size());
-  const std::optional<std::string_view> identity = first_text(text, kHashStart);
-  if (!identity) return 0;
+  if (!job_.is_resumed || !progress_) return {};
+  std::string lines(progress_->size(), '\0');
+  progress_->read_at(0, lines.data(), lines.size());
+  const std::optional<std::string_view> identity = first_text(lines, kHashStart);
+  if (!identity) return {};
   if (const auto differs = difference(std::string(*identity), job_.identity)) {
     throw InputError(fmt::format("{}: is of another run: it has {}; remove it, or leave out --resume",
                                  partial_path(job_.path).string(), *differs));
   }
-  std::size_t taken = text.find('\n') + 1;
-  while (parts_done_ < job_.parts.size() && taken < text.size()) {
+  return lines;
+}
+
+/// Reuses parts that `lines` of the progress file list. Returns the length of the lines up to the last reused part.
+std::size_t TableOutput::reuse_finished_parts(const std::string& lines) {
+  std::size_t taken = lines.find('\n') + 1;
+  while (parts_done_ < job_.parts.size() && taken < lines.size()) {
     if (job_.progress && !job_.progress(0, job_.layout.head.size()))
       throw Cancelled(partial_path(job_.path).string() + " is as it was: the same command with --resume goes on");
     const std::optional<ValueSums> of_part = store_->measured(job_.parts[parts_done_]);
-    const auto part_note = first_text(std::string_view(text).substr(taken), of_part ? part_hash(*of_part) : 0);
+    const auto part_note = first_text(std::string_view(lines).substr(taken), of_part ? part_hash(*of_part) : 0);
     if (!of_part || !part_note) break;
     add(sums_, *of_part);
     note_ = *part_note;
     ++parts_done_;
-    taken = text.find('\n', taken) + 1;
+    taken = lines.find('\n', taken) + 1;
   }
   return parts_done_ > 0 ? taken : 0;
 }

@@ -48,8 +48,8 @@ class TableOutput {
 
  private:
   bool is_resumable() const { return !job_.identity.empty() && job_.parts.size() > 1 && job_.path != "-"; }
-  void open_progress();
-  std::uint64_t reuse_finished_parts();
+  std::string earlier_parts();
+  std::size_t reuse_finished_parts(const std::string& lines);
   std::uint64_t part_hash(const ValueSums& of_part) const;
   void write_rows();
 

@@ -34,4 +34,8 @@ class TableReader {
   std::unique_ptr<Impl> impl_;
 };
 
+/// The attributes of a table, from which table_scene() restores the scene. Does not look at axes and values, so the file
+/// may hold a part of a table. Errors: InputError.
+std::vector<Attribute> read_attributes(const std::filesystem::path& path);
+
 }  // namespace dolp

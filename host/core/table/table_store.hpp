@@ -9,23 +9,23 @@
 
 namespace dolp {
 
-/// Writes a NetCDF-4 table whose values may come in any order. Everything except the values is made in memory first,
-/// because HDF5 crashes if a disk is full. A text that is too long for an attribute becomes a variable.
+/// Writes a table as a netCDF file in a classic format. Its values may come in any order.
 class TableStore {
  public:
-  /// `file` must outlive the object. The constructor writes nothing to it.
-  /// Errors: IoError, for example if the table is longer than the system allows for a file; std::bad_alloc.
-  TableStore(const TableLayout& layout, AtomicFile& file);
+  enum class Earlier { kRemoved, kKept };
+  /// Writes everything but the values to `file`, which must outlive the object. If `earlier` is kKept, the values of an
+  /// earlier store with the same layout stay. Errors of all calls: IoError; Cancelled if interrupted(); std::bad_alloc.
+  TableStore(const TableLayout& layout, AtomicFile& file, Earlier earlier = Earlier::kRemoved);
   TableStore(const TableStore&) = delete;
   TableStore& operator=(const TableStore&) = delete;
   ~TableStore();
 
-  /// Writes a part. Returns the checksums of the part, for the caller to add up. Errors: IoError, Cancelled.
+  /// Writes a part. Returns the checksums of the part, for the caller to add up.
   ValueSums write(const TableValues& part, const PerAxis& first);
   TableValues read(const TableBox& box) const;
   /// The checksums of a part as the file contains it; nullopt if the part cannot be read.
   std::optional<ValueSums> measured(const TableBox& box) const;
-  /// Adds attributes and writes all except the values. `sums`: checksums of all parts. Errors: IoError, Cancelled.
+  /// Adds attributes and closes the file. `sums`: checksums of all parts.
   void finish(std::vector<Attribute> more, const ValueSums& sums);
 
  private:

@@ -52,12 +52,22 @@ constexpr const AxisDescription& description_of(Axis axis) { return kAxes[static
 inline constexpr AxisDescription kWind = {
     "wind_m_s", "wind_m_s", "m s-1", "wind speed that gives sigma (Cox and Munk 1954)", kWindRange, false};
 
+/// Variables of a file along the axes with labels. The axes themselves have no variable, because coordinates of netCDF
+/// are numbers. The label of a band is "LOW-HIGH".
+inline constexpr AxisDescription kMaterialName = {"material_name", "material", "1", "material of the surface",
+                                                  kLabelRange,     false,      true};
+inline constexpr AxisDescription kBandLow = {"band_low",         "band_um", "um", "lower limit of the band",
+                                             kWavelengthUmRange, false};
+inline constexpr AxisDescription kBandHigh = {"band_high",        "band_um", "um", "upper limit of the band",
+                                              kWavelengthUmRange, false};
+
 /// The order in which error messages list the columns of points.
 inline constexpr std::array<Axis, kAxisCount> kColumnOrder = {Axis::kTheta,    Axis::kSigma,       Axis::kQ,
                                                               Axis::kN,        Axis::kK,           Axis::kWavelength,
                                                               Axis::kMaterial, Axis::kTemperature, Axis::kBand};
 
-/// The values of each axis, in any order and without repetition. A grid has at least one value of each required axis.
+/// The values of each axis, in ascending or descending order, without repetition. A grid has at least one value of each
+/// required axis.
 using Axes = AxisArray<std::vector<double>>;
 /// The names on the axis material, and the bands on the axis band, such as "8-14". Empty for all other axes.
 using AxisLabels = AxisArray<std::vector<std::string>>;

@@ -34,6 +34,8 @@ struct RunOptions {
   Progress progress = {};    ///< may be empty
   std::string history = {};  ///< text that follows the time in the attribute "history" of a table
   bool resume = false;       ///< for write_table: continue a cancelled or killed call for the same scene
+  /// The variables of a table, such as "dolp" and "status". Empty means all. Axes and attributes are always there.
+  std::vector<std::string> quantities = {};
 };
 
 /// A part of a table, for one of several processes. The `count` parts have about the same size. Default: whole table.

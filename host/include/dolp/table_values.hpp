@@ -18,9 +18,6 @@ struct Attribute {
   friend bool operator==(const Attribute&, const Attribute&) = default;
 };
 
-/// Largest size of a text attribute in a file. Longer texts become variables: netCDF limits attributes to 64 KiB.
-inline constexpr std::size_t kMostAttributeBytes = 64'000;
-
 /// n, k or the irradiance E0 of a scene as a function of the wavelength. A constant has one wavelength and one value.
 struct Curve {
   std::vector<double> wavelength_um;
@@ -33,7 +30,7 @@ struct Curve {
 
 /// Everything in a table except its results.
 struct TableHead {
-  Axes axes;                     ///< values in the user's order; empty for an axis that the table lacks
+  Axes axes;                     ///< ascending or descending values; empty for an axis that the table lacks
   AxisLabels labels;             ///< names of all materials and bands of the scene, even in a part of a table
   std::vector<double> wind_m_s;  ///< wind speeds from which sigma follows; empty if the scene gives sigma
   std::vector<double> beta_deg;  ///< local angles of incidence of a response table, ascending

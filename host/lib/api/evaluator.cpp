@@ -100,10 +100,11 @@ Evaluator::Impl& Evaluator::impl() {
 Table Evaluator::table(const Scene& scene, const RunOptions& of_call) {
   return impl().exclusively(scene, of_call, [&](const SceneValues& values, const RunOptions& options) {
     Run run(values, grid_entries(values), options, impl_->maker(values));
+    TableLayout layout = table_layout(values, run.plan(), run.entries().axes());
+    choose_variables(layout, options.quantities);
     CollectedResults results(run.entries());
     const RunOutcome outcome = run.compute(results);
-    TableLayout layout = table_layout(values, outcome.plan, run.entries().axes());
-    layout.head.attributes.push_back({kIdentity, identity_of(values, impl_->options.evaluator, options.keep_all)});
+    layout.head.attributes.push_back({kIdentity, identity_of(values, impl_->options.evaluator, options)});
     layout.head.attributes = all_attributes(values, layout, outcome, options.history);
     TableValues table = table_part(layout, run.entries(), results.take());
     static_cast<TableHead&>(table) = std::move(layout.head);
@@ -115,7 +116,8 @@ void Evaluator::table_parts(const Scene& scene, const std::function<void(const T
                             const RunOptions& of_call) {
   impl().exclusively(scene, of_call, [&](const SceneValues& values, const RunOptions& options) {
     Run run(values, grid_entries(values), options, impl_->maker(values));
-    const TableLayout layout = table_layout(values, run.plan(), run.entries().axes());
+    TableLayout layout = table_layout(values, run.plan(), run.entries().axes());
+    choose_variables(layout, options.quantities);
     const std::function<void(const Table&)> guarded = impl_->guard_reentry(take);
     CallbackSink parts([&](const SceneEntries& part, const std::vector<PointResult>& results) {
       TableValues table = table_part(layout, part, results);

@@ -11,6 +11,7 @@
 #include "scene/material_data.hpp"
 #include "scene/scene_keys.hpp"
 #include "scene/scene_reader.hpp"
+#include "table/table_reader.hpp"
 
 namespace dolp {
 namespace {
@@ -31,7 +32,7 @@ std::optional<KeyValue> value_of(const SceneValues& scene, std::string_view key,
 
 Scene Scene::from_file(const std::filesystem::path& path, const std::vector<Setting>& settings) {
   if (path.extension() == ".nc" || is_table_file(path.string())) {
-    const Scene scene = from_attributes(dolp::table_attributes(path.string()), path.string());
+    const Scene scene = from_attributes(read_attributes(path), path.string());
     return settings.empty() ? scene : scene.with(settings);
   }
   if (path.extension() == ".csv" || path.extension() == ".npy") check_may_hold_scene(path.string());

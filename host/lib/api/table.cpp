@@ -32,14 +32,7 @@ void check_axes(const TableHead& table, const std::string& name) {
   }
 }
 
-bool is_variable(std::string_view name) {
-  const auto is_named = [name](const auto& described) { return name == described.name; };
-  const auto is_described = [&](auto one) { return is_named(description_of(one)); };
-  return name == "status" || name == "wind_m_s" || std::ranges::any_of(kTableCurves, is_named) ||
-         std::ranges::any_of(kAllAxes, is_described) || std::ranges::any_of(kAllQuantities, is_described);
-}
-
-/// Refuses invalid and repeated names. A file stores a long text as a variable, so it cannot have a variable's name.
+/// Refuses invalid and repeated names.
 void check_attributes(const std::vector<Attribute>& attributes, const std::string& name) {
   std::set<std::string_view> names;
   for (const Attribute& attribute : attributes) {
@@ -47,10 +40,6 @@ void check_attributes(const std::vector<Attribute>& attributes, const std::strin
     if (attribute_name.empty() || attribute_name.find('/') != std::string::npos || !names.insert(attribute_name).second)
       throw InputError(
           fmt::format("{}: attribute \"{}\": must have a name of its own without /", name, one_line(attribute_name)));
-    const auto* text = std::get_if<std::string>(&attribute.value);
-    if (text != nullptr && text->size() > kMostAttributeBytes && is_variable(attribute_name))
-      throw InputError(fmt::format("{}: attribute {}: must have at most {} bytes, or another name than a variable's",
-                                   name, attribute_name, kMostAttributeBytes));
   }
 }
 

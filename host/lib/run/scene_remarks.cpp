@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -106,6 +107,23 @@ class Remarks {
   explicit Remarks(const SceneValues& scene) : scene_(scene) {}
 
   void add(const std::string& key, const std::string& what) { lines_.push_back(scene_.document->prefix(key) + what); }
+
+  void add_sorted_axes() {
+    std::vector<const char*> columns = {kWind.column};
+    for (const Axis axis : kAllAxes) {
+      if (!description_of(axis).has_labels) columns.push_back(description_of(axis).column);
+    }
+    for (const char* const column : columns) {
+      const std::string key = std::string("grid.") + column;
+      const toml::node* const node = scene_.document->find(key);
+      std::vector<double> values;
+      if (const toml::array* const list = node ? node->as_array() : nullptr) {
+        for (const toml::node& value : *list) values.push_back(value.value_or(0.0));
+      }
+      if (!std::ranges::is_sorted(values) && !std::ranges::is_sorted(values, std::greater<>()))
+        add(key, "neither ascends nor descends; the table has the values in ascending order");
+    }
+  }
 
   void add_wavelengths() {
     const bool has_grid = !scene_.grid[Axis::kWavelength].empty();
@@ -285,6 +303,7 @@ std::string model_advice(const SceneModel& scene) {
 
 std::vector<std::string> remarks_on(const SceneValues& scene) {
   Remarks remarks(scene);
+  remarks.add_sorted_axes();
   remarks.add_wavelengths();
   remarks.add_temperatures();
   remarks.add_files();

@@ -7,10 +7,13 @@
 #include <array>
 #include <chrono>
 #include <ctime>
+#include <dolp/errors.hpp>
 #include <iterator>
+#include <set>
 #include <span>
 
 #include "base/hash.hpp"
+#include "base/text.hpp"
 #include "base/version.hpp"
 #include "run/table_scene.hpp"
 
@@ -197,10 +200,27 @@ TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const
   return layout;
 }
 
-std::string identity_of(const SceneValues& scene, const std::string& evaluator, bool keep_all) {
-  return fmt::format("program dolp {} ({}); evaluator {}; precision {}; keep_all {}; scene {}; data fnv1a64:{:016x}",
+void choose_variables(TableLayout& layout, const std::vector<std::string>& names) {
+  if (names.empty()) return;
+  std::vector<std::string> allowed;
+  for (const Quantity quantity : layout.quantities) allowed.emplace_back(description_of(quantity).name);
+  allowed.emplace_back(kStatusQualifier);
+  for (const std::string& name : names) {
+    if (std::ranges::find(allowed, name) == allowed.end())
+      throw InputError(fmt::format("quantities: {}: must be one of {}", one_line(name), join(allowed)));
+  }
+  const auto is_chosen = [&](const char* name) { return std::ranges::find(names, name) != names.end(); };
+  std::erase_if(layout.quantities, [&](Quantity quantity) { return !is_chosen(description_of(quantity).name); });
+  layout.has_status = is_chosen(kStatusQualifier);
+}
+
+std::string identity_of(const SceneValues& scene, const std::string& evaluator, const RunOptions& options) {
+  std::string variables;
+  for (const std::string& name : std::set(options.quantities.begin(), options.quantities.end()))
+    variables += (variables.empty() ? "; quantities " : ",") + name;
+  return fmt::format("program dolp {} ({}); evaluator {}; precision {}; keep_all {}; scene {}; data fnv1a64:{:016x}{}",
                      program_version(), program_commit(), evaluator, name_of(scene.accuracy.precision),
-                     keep_all ? "yes" : "no", scene_hash(scene), data_hash(scene));
+                     options.keep_all ? "yes" : "no", scene_hash(scene), data_hash(scene), variables);
 }
 
 TableValues table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results) {
@@ -208,6 +228,7 @@ TableValues table_part(const TableLayout& layout, const SceneEntries& part, cons
   table.axes = part.axes();
   table.labels = layout.head.labels;
   static_cast<ResultColumns&>(table) = columns_of(results, layout.quantities);
+  if (!layout.has_status) table.status.clear();
   return table;
 }
 

@@ -22,12 +22,15 @@ Quantities quantities_of(const SceneValues& scene, const EffectPlan* plan = null
 /// The layout of the table over `axes` (a grid or a part of it), with all attributes that are known before the run.
 TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const Axes& axes);
 
+/// Keeps only the variables with these names; all if there are none. Errors: InputError that lists the allowed names.
+void choose_variables(TableLayout& layout, const std::vector<std::string>& names);
+
 /// For the curves n, k and E0 of `head`, sets Curve::used to the values at the wavelengths of the table.
 void fill_used(TableHead& head, const SceneValues& scene);
 
 /// Attribute with everything on which a table's values depend, except the device. difference() compares two such texts.
 inline constexpr const char* kIdentity = "identity";
-std::string identity_of(const SceneValues& scene, const std::string& evaluator, bool keep_all);
+std::string identity_of(const SceneValues& scene, const std::string& evaluator, const RunOptions& options);
 
 TableValues table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results);
 

@@ -49,7 +49,7 @@ Axes scene_axes(TableHead table, const SceneValues& scene, const std::string& na
 std::string shard_text(const Shard& shard) { return fmt::format("{}/{}", shard.number, shard.count); }
 
 std::string identity_of(const SceneValues& scene, const TableJob& job) {
-  return identity_of(scene, job.evaluator, job.options.keep_all);
+  return identity_of(scene, job.evaluator, job.options);
 }
 
 /// Text that must be equal in all parts of a file: identity, shard and device. Shards may have different devices.
@@ -223,6 +223,7 @@ RunOutcome write_table(const SceneValues& scene, const TableJob& job, const Eval
   Run run(scene, shard_entries(scene, job.shard), job.options, make_evaluator);
   const std::string identity = identity_of(scene, job);
   TableLayout layout = table_layout(scene, run.plan(), run.entries().axes());
+  choose_variables(layout, job.options.quantities);
   layout.head.attributes.push_back({kIdentity, identity});
   if (!job.shard.is_none()) layout.head.attributes.push_back({kShard, shard_text(job.shard)});
   TableOutput output({.path = job.path,

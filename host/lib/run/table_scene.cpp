@@ -231,14 +231,6 @@ bool is_table_file(const std::string& path) {
   return bytes.starts_with("CDF") || bytes == "\x89HDF";
 }
 
-std::vector<Attribute> table_attributes(const std::string& path) {
-  check_may_hold_scene(path);
-  TableHead head = TableReader(path).head();
-  if (std::string data = spectral_data_of(head); !data.empty())
-    head.attributes.push_back({kSpectralData, std::move(data)});
-  return head.attributes;
-}
-
 TableValues load_table(const std::string& path) {
   check_may_hold_scene(path);
   return read_table(path);

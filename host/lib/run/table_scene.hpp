@@ -20,9 +20,6 @@ std::uint64_t scene_seed(const SceneValues& scene);  ///< the same hash as a num
 
 void check_may_hold_scene(const std::string& path);
 
-/// The attributes of a table from which table_scene() restores the scene. Errors: errors of load_table.
-std::vector<Attribute> table_attributes(const std::string& path);
-
 /// Reads a table. Errors: errors of read_table; InputError if there is no file or its format does not store a scene.
 TableValues load_table(const std::string& path);
 

@@ -108,6 +108,8 @@ std::vector<OptionRow> option_rows() {
       {"fit", "--plot", &Options::plot_path, ".png, .pdf or .svg of data, fit and residuals, drawn with Matplotlib"},
       {"table", "--shard", &Options::shard,
        "I/N: this part of the grid, into FILE with .I-of-N before its suffix; auto: in a Slurm array"},
+      {"table", "--quantities", &Options::quantities,
+       "NAME,NAME,...: the variables to write, e.g. dolp,error_estimate,status; all when not given"},
       {"table", "--resume", &Options::resume, "continue where an interrupted run of the same scene stopped"},
       {"table response eval mueller plan fit explore", "--set", &Options::overrides,
        "KEY=VALUE: any scene key, e.g. surface.masking=none"},

@@ -51,6 +51,13 @@ Shard shard_of(const std::string& text) {
   return shard;
 }
 
+std::vector<std::string> names_in(const std::string& list) {
+  std::vector<std::string> names;
+  if (list.empty()) return names;
+  for (const std::string_view name : split(list, ',')) names.emplace_back(trim(name));
+  return names;
+}
+
 Report verify_device(const Options& options, const Progress& progress) {
   DeviceCheckOptions check{options.evaluator.empty() ? "vulkan" : options.evaluator, options.device};
   if (!options.precision.empty()) check.precision = options.precision;
@@ -78,11 +85,7 @@ Report verification(const Options& options, const Progress& progress) {
   if (options.hard_cases) return verify_device(options, progress);
   if (options.between == 0)
     return dolp::verify(options.table_path, {options.samples, options.seed, options.named_files, progress});
-  BetweenOptions between{options.between, options.seed, {}, progress};
-  for (const std::string_view name : split(options.quantities, ',')) {
-    if (!name.empty()) between.quantities.emplace_back(trim(name));
-  }
-  return verify_between(options.table_path, between);
+  return verify_between(options.table_path, {options.between, options.seed, names_in(options.quantities), progress});
 }
 
 }  // namespace
@@ -90,11 +93,11 @@ Report verification(const Options& options, const Progress& progress) {
 int run_table(const Options& options) {
   const Scene scene = load_scene(options);
   const Shard shard = shard_of(options.shard);
-  const Report report =
-      make_evaluator(options, scene)
-          .write_table(scene, options.output_path,
-                       {options.keep_all, ProgressBar(options.quiet).callback(), options.command_line, options.resume},
-                       shard);
+  const Report report = make_evaluator(options, scene)
+                            .write_table(scene, options.output_path,
+                                         {options.keep_all, ProgressBar(options.quiet).callback(), options.command_line,
+                                          options.resume, names_in(options.quantities)},
+                                         shard);
   return finish(report, options);
 }
 

@@ -15,9 +15,9 @@ struct Options {
   std::string command_line;              ///< all words of the command line; a table stores them as its history
   std::string scene_path, points_path, table_path, output_path, measured_path, plot_path, screenshot_path;
   std::vector<std::string> overrides;  ///< the texts KEY=VALUE of --set
-  std::string tolerance, precision, device, evaluator, quantities;
+  std::string tolerance, precision, device, evaluator;
   bool json = false, quiet = false, strict = false, keep_all = false;
-  std::string shard;
+  std::string shard, quantities;
   std::vector<std::string> shards;
   bool resume = false;
   std::size_t samples = 64, seed = 1, between = 0;
@@ -66,7 +66,7 @@ int run_plan(const Options& options);
 /// tolerance and the status of its entry does not say so.
 int run_verify(const Options& options);
 int run_lookup(const Options& options);  ///< run_eval() for the scene of a table
-int run_fit(const Options& options);  ///< returns kExitAccuracy if the fit finds no minimum
+int run_fit(const Options& options);     ///< returns kExitAccuracy if the fit finds no minimum
 int run_explore(const Options& options);
 int run_materials(const Options& options);
 int run_keys(const Options& options);

@@ -2,16 +2,15 @@
 from __future__ import annotations
 
 import functools
-import json
 import os
-from collections.abc import Hashable, Iterable
+from collections.abc import Hashable
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from . import _native
-from ._arguments import floats, short
+from ._arguments import floats
 from ._native import InputError
 from ._points import COORDINATES, KEY_ATTRIBUTES, Frame
 
@@ -22,10 +21,11 @@ def dataset_at(parts: _native.Parts, frame: Frame) -> xr.Dataset:
 
 def table_dataset(axes: list[tuple[str, np.ndarray]], winds: np.ndarray,
                    curves: list[tuple[str, str, str, np.ndarray]], parts: _native.Parts) -> xr.Dataset:
-    """A Dataset equal to the Dataset that xarray would read from the file of the table."""
+    """The Dataset that xarray would read from the file of the table, with_names."""
     known = dict(COORDINATES.values())
-    coordinates = {name: xr.Variable(name, np.asarray(values, object if isinstance(values, list) else None), known[name])
-                   for name, values in axes}
+    coordinates = {}
+    for name, values in axes:
+        coordinates |= _label_coordinates(name, values) if isinstance(values, list) else {name: xr.Variable(name, values, known[name])}
     shape = tuple(len(values) for _, values in axes)
     variables = _variables(parts, tuple(name for name, _ in axes), shape, {"_FillValue": np.nan})
     if winds.size:
@@ -36,12 +36,36 @@ def table_dataset(axes: list[tuple[str, np.ndarray]], winds: np.ndarray,
     if others := [name for name in coordinates if name not in dict(axes)]:
         for variable in variables.values():
             variable.encoding["coordinates"] = " ".join(others)
-    table = xr.Dataset(variables, coordinates)
-    for name, value in parts[2].items():
-        _set_attribute(table, name, value)
+    table = xr.Dataset(variables, coordinates, {name: value if isinstance(value, str) else np.float64(value)
+                                                for name, value in parts[2].items()})
     for variable in table.variables.values():
         variable.encoding.setdefault("dtype", variable.dtype)
-    return table
+    return with_names(table)
+
+
+def _label_coordinates(axis: str, labels: list[str]) -> dict[Hashable, xr.Variable]:
+    """The coordinates that a file has for the labels of an axis."""
+    if axis == "material":
+        return {"material_name": xr.Variable(axis, np.array(labels, object), {"long_name": "material of the surface"},
+                                             {"dtype": np.dtype("S1"), "char_dim_name": "name_length", "_Encoding": "utf-8"})}
+    limits = np.array([label.split("-") for label in labels], float).T
+    return {f"band_{end}": xr.Variable(axis, values, {"long_name": f"{word} limit of the band", "units": "um"})
+            for end, word, values in zip(("low", "high"), ("lower", "upper"), limits)}
+
+
+def with_names(table: xr.Dataset) -> xr.Dataset:
+    """Adds the names of materials and bands as an index, for `t.sel(material="iron", band="8-14")`. Files have only the
+    coordinates material_name, band_low and band_high: in netCDF an index has numbers."""
+    names = {}
+    if "material_name" in table.coords:
+        names["material"] = table.material_name.variable
+    if "band_low" in table.coords and "band_high" in table.coords:
+        ends = [[np.format_float_positional(end, trim="-") for end in table[name].values.ravel()] for name in ("band_low", "band_high")]
+        labels = np.array(["-".join(band) for band in zip(*ends)], object)
+        names["band"] = table.band_low.variable.copy(data=labels.reshape(table.band_low.shape))
+    known = dict(COORDINATES.values())
+    return table.assign_coords({axis: xr.Variable(variable.dims, variable.values, {"long_name": known[axis]["long_name"]})
+                                for axis, variable in names.items() if axis not in table.coords})
 
 
 def concatenated(tables: list[xr.Dataset], key: str, values: np.ndarray) -> xr.Dataset:
@@ -65,6 +89,7 @@ def concatenated(tables: list[xr.Dataset], key: str, values: np.ndarray) -> xr.D
 
 def scene_of_dataset(table: xr.Dataset) -> _native.Scene:
     """The scene of a table, with the one value of each axis and scene key that has only one value in the table."""
+    table = with_names(table)
     attributes = _attributes_of(table)
     if "spectral_data" not in attributes:  # tables of dolp 0.2 have n, k and the irradiance of the scene as variables
         rows = [f"{name},{um!r},{value!r}\n" for name in ("index_n", "index_k", "irradiance") if f"{name}_wavelength" in table
@@ -86,26 +111,12 @@ def _grid_value(axis: str, value: Any) -> Any:
     return [value]
 
 
-def _set_attribute(table: xr.Dataset, name: str, value: str | float) -> None:
-    """Sets an attribute of a Dataset. A text too long for an attribute becomes a variable of characters instead."""
-    encoded = value.encode("utf-8", "surrogateescape") if isinstance(value, str) else b""
-    if len(encoded) > _native.most_attribute_bytes:
-        encoding = {"char_dim_name": f"{name}_length", "dtype": np.dtype("S1")}
-        table[name] = xr.Variable((), np.array(encoded), encoding=encoding)
-    else:
-        table.attrs[name] = value if isinstance(value, str) else np.float64(value)
-
-
 def _attributes_of(table: xr.Dataset) -> dict[str, str | float]:
-    """The attributes of a Dataset, with the long texts that _set_attribute stored as variables."""
+    """The attributes of a Dataset, with the long texts that files of dolp 0.2 have as variables."""
     attributes = {name: value if isinstance(value, str) else float(floats(f"Dataset: attribute {name}", value))
                   for name, value in table.attrs.items() if isinstance(value, (str, int, float, np.integer, np.floating))}
     return attributes | {name: os.fsdecode(variable.values.item()) for name, variable in table.data_vars.items()
                          if variable.ndim == 0 and variable.dtype.kind == "S"}
-
-
-def _text(dims: Iterable[Hashable]) -> str:
-    return f"({', '.join(map(str, dims))})"
 
 
 def _variables(parts: _native.Parts, dims: tuple[Hashable, ...], shape: tuple[int, ...],

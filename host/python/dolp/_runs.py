@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from . import _native
-from ._arguments import Array, Path, axis_values, check_names, label_values, device_name, flag, native_path, short, word
+from ._arguments import Array, Path, axis_values, check_names, label_values, device_name, flag, native_path, short, word, word_list
 from ._datasets import concatenated, dataset_at, table_dataset
 from ._model_warning import warn_of_model
 from ._native import InputError
@@ -21,13 +21,16 @@ from ._scene import Scene
 
 
 def table(scene: Scene, *, evaluator: str | None = None, device: str = "", keep_all: bool = False,
-          **axes: Array) -> xr.Dataset:
-    """The table over the scene's grid: a Dataset with the contents of the table's file.
+          quantities: Iterable[str] = (), **axes: Array) -> xr.Dataset:
+    """The table over the scene's grid: a Dataset with the contents of the table's file, and with
+    the names of materials and bands as an index, as in `t.sel(material="iron", band="8-14")`.
 
     `axes` (theta_deg, sigma or wind_m_s, q, wavelength_um or band_um, temperature_K, and n, k or material) replace axes
     of the scene. Each axis is a number or a list, and the table has all combinations of their values. Materials are
     names, as in `dolp.table(scene, material=["gold (Ordal)", "iron"])`, or "all". A complex n gives n and k. Winds become
     a second coordinate along sigma; `t.swap_dims(sigma="wind_m_s").sel(wind_m_s=5)` selects a wind.
+
+    `quantities`: the variables of the table, such as `["dolp", "status"]`; all if there are none.
 
     Any other number of the scene can be an axis, with its key as the name. The program then computes one table for each
     value and joins the tables. Only attributes equal in all tables remain. `lookup` takes other values of the key, as in
@@ -42,19 +45,21 @@ def table(scene: Scene, *, evaluator: str | None = None, device: str = "", keep_
     key = next((name for name in axes if "." in name), None)
     if key is None:
         on_axes = with_axes(native_scene(scene), axes)
-        whole = table_dataset(*native_evaluator(scene, evaluator, device).table(on_axes, flag("keep_all", keep_all)))
+        whole = table_dataset(*native_evaluator(scene, evaluator, device).table(on_axes, flag("keep_all", keep_all),
+                                                                                word_list("quantities", quantities)))
         warn_of_model(scene, whole.get("status", 0), whole.attrs)
         return whole
     columns = [column for column, *_ in _native.axes() if column != "temperature_K" or column in axes]
     _check_varied("axes", [key], columns)
     others = {name: values for name, values in axes.items() if name != key}
     values = np.array(axis_values(key, axes[key]))
-    return concatenated([table(scene.with_({key: value}), evaluator=evaluator, device=device, keep_all=keep_all, **others)
+    return concatenated([table(scene.with_({key: value}), evaluator=evaluator, device=device, keep_all=keep_all,
+                               quantities=quantities, **others)
                          for value in values.tolist()], key, values)
 
 
 def write_table(scene: Scene, path: Path, *, evaluator: str | None = None, device: str = "", keep_all: bool = False,
-                resume: bool = False, **axes: Array) -> str:
+                resume: bool = False, quantities: Iterable[str] = (), **axes: Array) -> str:
     """Writes the table that `table` would return to a file (.nc, .csv or .npy). It does so part by part, so that memory
     does not grow with the size of the table.
 
@@ -70,7 +75,7 @@ def write_table(scene: Scene, path: Path, *, evaluator: str | None = None, devic
         raise InputError(f"axes: {key} is no axis of a file; write a file for each value, of scene.with_({{{key!r}: VALUE}})")
     on_axes = with_axes(native_scene(scene), axes)
     return native_evaluator(scene, evaluator, device).write_table(on_axes, native_path("path", path), flag("keep_all", keep_all),
-                                                           flag("resume", resume))
+                                                                  flag("resume", resume), word_list("quantities", quantities))
 
 
 def evaluate(scene: Scene, *, evaluator: str | None = None, device: str = "", keep_all: bool = False,

@@ -181,7 +181,6 @@ struct AtomicFile::Impl {
   File file;
   fs::path name;         // temporary name of the incomplete file; empty if it has no name
   bool is_kept = false;  // true: the destructor does not remove an incomplete file
-  std::uint64_t size = 0;
 
   Impl(fs::path of_user, fs::path of_file, std::pair<File, fs::path> unfinished)
       : path(std::move(of_user)),
@@ -196,10 +195,18 @@ struct AtomicFile::Impl {
 
   int descriptor() const { return file.get(); }
 
+  std::uint64_t size() const {
+    struct stat now {};
+    if (::fstat(descriptor(), &now) != 0) fail_errno(path, "cannot read its size");
+    return static_cast<std::uint64_t>(now.st_size);
+  }
+
+  std::string open_file() const { return std::string(kOpenFiles) + '/' + std::to_string(descriptor()); }
+
   void link() {  // gives a temporary name to the file
-    const std::string open_file = std::string(kOpenFiles) + '/' + std::to_string(descriptor());
+    const std::string own = open_file();
     name = with_new_name(target, [&](const fs::path& free_name) {
-             return ::linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, free_name.c_str(), AT_SYMLINK_FOLLOW);
+             return ::linkat(AT_FDCWD, own.c_str(), AT_FDCWD, free_name.c_str(), AT_SYMLINK_FOLLOW);
            }).first;
   }
 
@@ -208,8 +215,9 @@ struct AtomicFile::Impl {
     if (device.get() < 0 && interrupted()) throw Cancelled();
     if (device.get() < 0) fail_errno(path, "cannot open for writing");
     std::string bytes;
-    for (std::uint64_t done = 0; done < size; done += bytes.size()) {
-      bytes.resize(static_cast<std::size_t>(std::min<std::uint64_t>(kBytesAtOnce, size - done)));
+    const std::uint64_t whole = size();
+    for (std::uint64_t done = 0; done < whole; done += bytes.size()) {
+      bytes.resize(static_cast<std::size_t>(std::min<std::uint64_t>(kBytesAtOnce, whole - done)));
       read_all(descriptor(), path, done, bytes.data(), bytes.size());
       write_all(device.get(), path, bytes);
     }
@@ -241,7 +249,6 @@ AtomicFile::AtomicFile(const fs::path& path, const fs::path& under_way) {
   if (!is_locked || !has_name(found, under_way)) throw InputError(under_way.string() + ": another run writes it");
   if (found.st_nlink > 1) fail(under_way, "is a file that has other names too; remove it");
   keep_permissions(file, impl_->target);
-  impl_->size = static_cast<std::uint64_t>(found.st_size);
 }
 
 AtomicFile::AtomicFile(AtomicFile&&) noexcept = default;
@@ -250,18 +257,22 @@ AtomicFile::~AtomicFile() = default;
 
 const fs::path& AtomicFile::path() const { return impl_->path; }
 
+fs::path AtomicFile::open_path() const {
+  // Prefers the open file, because the name may be gone, or be that of another file by now.
+  return ::access(kOpenFiles, X_OK) == 0 ? fs::path(impl_->open_file()) : fs::absolute(impl_->name);
+}
+
 void AtomicFile::write_at(std::uint64_t offset, const void* bytes, std::size_t size) {
   write_all(impl_->path, {static_cast<const char*>(bytes), size}, [&](const char* next, std::size_t most) {
     const ssize_t written = ::pwrite(impl_->descriptor(), next, most, static_cast<off_t>(offset));
     if (written > 0) offset += static_cast<std::uint64_t>(written);
-    impl_->size = std::max(impl_->size, offset);
     return written;
   });
 }
 
-void AtomicFile::append(std::string_view bytes) { write_at(impl_->size, bytes.data(), bytes.size()); }
+void AtomicFile::append(std::string_view bytes) { write_at(impl_->size(), bytes.data(), bytes.size()); }
 
-std::uint64_t AtomicFile::size() const { return impl_->size; }
+std::uint64_t AtomicFile::size() const { return impl_->size(); }
 
 void AtomicFile::read_at(std::uint64_t offset, void* bytes, std::size_t size) const {
   read_all(impl_->descriptor(), impl_->path, offset, static_cast<char*>(bytes), size);
@@ -269,7 +280,6 @@ void AtomicFile::read_at(std::uint64_t offset, void* bytes, std::size_t size) co
 
 void AtomicFile::resize(std::uint64_t size) {
   if (::ftruncate(impl_->descriptor(), static_cast<off_t>(size)) != 0) fail_errno(impl_->path, "cannot write");
-  impl_->size = size;
 }
 
 void AtomicFile::commit() {

@@ -31,6 +31,8 @@ class AtomicFile {
   ~AtomicFile();
 
   const std::filesystem::path& path() const;
+  /// A path by which a library can open the incomplete file. It stays valid until commit().
+  std::filesystem::path open_path() const;
   /// Writes bytes at an offset. Errors: IoError; Cancelled if interrupted().
   void write_at(std::uint64_t offset, const void* bytes, std::size_t size);
   void append(std::string_view bytes);

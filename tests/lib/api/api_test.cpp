@@ -451,11 +451,6 @@ TEST_F(Library, TableOfContentsThatDoNotFit_IsAnInputError) {
   refuses([](dolp::TableValues& table) { table.axes[dolp::Axis::kTheta][0] = 91; });
   refuses([](dolp::TableValues& table) { table.axes[dolp::Axis::kQ][0] = std::nan(""); });
   refuses([](dolp::TableValues& table) { table[Quantity::kAlbedo].pop_back(); });
-  for (const char* const variable : {"dolp", "theta", "status"}) {
-    refuses([&](dolp::TableValues& table) {
-      table.attributes.push_back({variable, std::string(dolp::kMostAttributeBytes + 1, 'x')});
-    });
-  }
   refuses([](dolp::TableValues& table) { table.status.pop_back(); });
   refuses([](dolp::TableValues& table) { table.index_n.values.push_back(1.0); });
   refuses([](dolp::TableValues& table) { table.index_n.used.push_back(1.0); });

@@ -235,7 +235,22 @@ def beams(model, reference):
               sign @ back.transpose(0, 2, 1) @ sign / m00, MATRIX)
 
 
-REFERENCES = (mishchenko_travis, masuda, scatmech, gaussian_sea, shaw, smooth_surfaces, closed_forms)
+# Files of n and k in the layouts of public archives, with the index that each has at a wavelength in um.
+INDEX_FILES = {"aria.csv": (10.6, 1.87 + 0.69j), "basalt.ri": (10.6, 1.87 + 0.69j), "mineral.lnk": (10.6, 1.87 + 0.69j),
+               "opac.csv": (10.6, 1.22 + 0.06063j), "wavenumber.csv": (8.0, 1.42 + 0.14j)}
+
+
+def index_files(model):
+    found, expected = [], []
+    for name, (wavelength_um, index) in INDEX_FILES.items():
+        settings = {"surface.n": None, "surface.material_file": str(DATA.parent / "index_files" / name),
+                    "spectrum.wavelength_um": wavelength_um, "surface.sigma": 0}
+        found.append(s_and_p(model.evaluate(settings, theta_deg=ZENITHS)))
+        expected.append(fresnel(index, ZENITHS))
+    yield Row("Files of n and k", "R_s and R_p of mirrors, from five layouts of public archives", found, expected, EXACT)
+
+
+REFERENCES = (mishchenko_travis, masuda, scatmech, gaussian_sea, shaw, smooth_surfaces, index_files, closed_forms)
 
 
 class Validation(unittest.TestCase):

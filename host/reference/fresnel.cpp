@@ -37,8 +37,10 @@ FresnelCoefficients measured_coefficients(const MeasuredReflectance& measured, d
     const double ratio = std::sin(beta_deg * std::numbers::pi / 180.0) / std::sin(after * std::numbers::pi / 180.0);
     const double half = 0.5 * (measured.r_s[1] - measured.r_p[1]) * ratio * ratio;
     const double mean = 0.5 * (r_s + r_p);
-    r_s = mean + half;
-    r_p = mean - half;
+    // The difference is at most so large that both reflectances are in [0, 1]. Their mean stays as it is.
+    const double excess = std::max({0.0, std::abs(half) - mean, std::abs(half) - (1.0 - mean)});
+    r_s = std::max(mean + half - std::copysign(excess, half), 0.0);
+    r_p = std::max(mean - half + std::copysign(excess, half), 0.0);
   }
   return {std::sqrt(r_s), std::sqrt(r_p), 1.0 - r_s, 1.0 - r_p};
 }

@@ -20,7 +20,8 @@ struct Film {
 };
 
 /// Measured reflectances R_s and R_p of a smooth surface at one wavelength. Between measured angles they are linear in
-/// the angle beta. Between the first two angles only R_s + R_p is linear; R_s - R_p is proportional to sin^2(beta).
+/// the angle beta. Between the first two angles only R_s + R_p is linear; R_s - R_p is proportional to sin^2(beta), but
+/// at most so large that R_s and R_p are in [0, 1].
 struct MeasuredReflectance {
   std::vector<double> beta_deg;  ///< angles of incidence, ascending from 0 to 90; r_s and r_p are equal at 0
   std::vector<double> r_s;

@@ -68,6 +68,15 @@ SmoothAbsorptance bare_absorptance(const OpticalConstants& index, double cosine)
           transmitted / of_s * (std::norm(square - 1.0) / of_p)};
 }
 
+/// (R_s - R_p) / 2 between the first two rows of measured reflectances, at sin^2(beta) = `sin2`, before it is limited.
+double free_half_difference(const MeasuredReflectance& measured, double sin2) {
+  const double end = std::sin(measured.beta_deg[1] * std::numbers::pi / 180.0);
+  return 0.5 * (measured.r_s[1] - measured.r_p[1]) * sin2 / (end * end);
+}
+
+/// The largest |R_s - R_p| / 2 with which R_s and R_p are in [0, 1].
+double half_difference_limit(double mean) { return std::max(std::min(mean, 1.0 - mean), 0.0); }
+
 SmoothAbsorptance covered_absorptance(const FacetOptics& optics, double cosine) {
   if (!optics.measured) {
     const ReflectedAmplitudes r = film_amplitudes(optics, cosine);
@@ -82,9 +91,9 @@ SmoothAbsorptance covered_absorptance(const FacetOptics& optics, double cosine) 
   const double r_s = std::lerp(measured.r_s[i - 1], measured.r_s[i], share);
   const double r_p = std::lerp(measured.r_p[i - 1], measured.r_p[i], share);
   if (i > 1) return {1.0 - r_s, 1.0 - r_p};
-  const double end = std::sin(measured.beta_deg[1] * std::numbers::pi / 180.0);
-  const double half = 0.5 * (measured.r_s[1] - measured.r_p[1]) * (1.0 - cosine) * (1.0 + cosine) / (end * end);
   const double mean = 0.5 * (r_s + r_p);
+  const double most = half_difference_limit(mean);
+  const double half = std::clamp(free_half_difference(measured, (1.0 - cosine) * (1.0 + cosine)), -most, most);
   return {1.0 - mean - half, 1.0 - mean + half};
 }
 
@@ -145,6 +154,20 @@ SmoothAbsorptance smooth_absorptance(const FacetOptics& optics, double cosine) {
   SmoothAbsorptance absorbed = covered_absorptance(optics, cosine);
   absorbed.split = split_of(optics, cosine, absorbed);
   return absorbed;
+}
+
+bool limits_difference(const MeasuredReflectance& measured) {
+  constexpr int kSteps = 90;
+  constexpr double kRounding = 1e-12;
+  const double first = 0.5 * (measured.r_s[0] + measured.r_p[0]);
+  const double second = 0.5 * (measured.r_s[1] + measured.r_p[1]);
+  for (int i = 1; i < kSteps; ++i) {
+    const double share = static_cast<double>(i) / kSteps;
+    const double sine = std::sin(share * measured.beta_deg[1] * std::numbers::pi / 180.0);
+    const double most = half_difference_limit(std::lerp(first, second, share));
+    if (std::abs(free_half_difference(measured, sine * sine)) > most + kRounding) return true;
+  }
+  return false;
 }
 
 double reflectance_level(const FacetOptics& optics) {

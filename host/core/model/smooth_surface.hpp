@@ -38,6 +38,9 @@ struct SmoothAbsorptance {
 /// and the relative error of `split` is 1e-10.
 SmoothAbsorptance smooth_absorptance(const FacetOptics& optics, double cosine);
 
+/// True if |R_s - R_p| is limited somewhere between the first two rows, so that both stay in [0, 1].
+bool limits_difference(const MeasuredReflectance& measured);
+
 /// The unit for errors of reflectances: the reflectance or the absorptance at normal incidence, whichever is smaller.
 /// Films may reflect nothing at one angle, so for all but bare media both are means over four angles.
 double reflectance_level(const FacetOptics& optics);

@@ -35,6 +35,12 @@ Intensity moments_intensity(double emitted, double incident, double net, double 
   return {emitted * r.absorbed + incident * r.rho_i, split_terms, std::min({apart, by_reflected, by_absorbed})};
 }
 
+/// The part of rho to which spectral errors of rho_Q are relative. rho_Q is half the difference of rho_s and rho_p, and
+/// their errors are relative to the reflected or the absorbed light, whichever is less.
+double polarised_terms(const Reflectance& r) {
+  return std::max(std::abs(r.rho_q), std::min(std::abs(r.rho_i), std::abs(r.absorbed)));
+}
+
 /// Adds one spectral sample, with the emissivity 1 - rho, to `sum`. `rounding`: relative rounding error of each term.
 void add_moments_sample(Stokes& sum, const SpectralSample& sample, const Reflectance& r, double direct,
                         double rounding) {
@@ -45,7 +51,7 @@ void add_moments_sample(Stokes& sum, const SpectralSample& sample, const Reflect
   sum.i += intensity.value;
   sum.q += net * r.rho_q;
   sum.i_error += intensity.error + rounding * intensity.terms;
-  sum.q_error += std::abs(net) * r.rho_q_error + rounding * net_terms * std::abs(r.rho_q);
+  sum.q_error += std::abs(net) * r.rho_q_error + rounding * net_terms * polarised_terms(r);
 }
 
 void add_emitting_sample(Stokes& sum, const SpectralSample& sample, const Reflectance& r, const Emissivity& e,
@@ -58,7 +64,7 @@ void add_emitting_sample(Stokes& sum, const SpectralSample& sample, const Reflec
   sum.i_error += emitted * e.i_error + std::abs(incident) * r.rho_i_error +
                  rounding * (emitted_terms + std::abs(incident * r.rho_i));
   sum.q_error += emitted * e.q_error + std::abs(incident) * r.rho_q_error +
-                 rounding * (emitted_terms + std::abs(incident * r.rho_q));
+                 rounding * (emitted_terms + std::abs(incident) * polarised_terms(r));
 }
 
 struct Span {

@@ -12,6 +12,7 @@
 #include "model/smooth_surface.hpp"
 #include "spectrum/planck.hpp"
 #include "spectrum/sky_factors.hpp"
+#include "spectrum/spectral_segment.hpp"
 
 namespace dolp {
 namespace {
@@ -28,22 +29,19 @@ constexpr double kPieceWavelengthRatio = 1.5;
 // h c / k_B in um K. Planck's function underflows if the exponent h c / (lambda k_B T) exceeds kLargestPlanckExponent.
 constexpr double kExponentScale_umK = 14388.0;
 constexpr double kLargestPlanckExponent = 750.0;
-constexpr double kPieceRelativeError = 1e-12;  // relative error of a sum over pieces
 
 // The band is cut into segments at the rows of the optical tables and, with films, at fringe_ends(). A segment gets the
-// fewest Gauss nodes, at most kMostNodes, with nodes_error() <= kNodesRelativeError (films: see smooth_segment()).
+// fewest Gauss nodes, at most kMostNodes, with nodes_error() <= kNodesRelativeError (films: film_rule()).
 constexpr double kNodesRelativeError = 1e-10;
-constexpr double kSmallestPart = 1e-4;  // argument `least` of nodes_error()
-constexpr int kMostNodes = 24;
 // A probe is an angle of incidence on the smooth surface. The nodes of a segment are tested at probes. Some probes are
 // fixed. The other probes are critical angles of total reflection, at wavelengths that kCriticalShares places in the
 // segment. The error bound is kProbeSafety times the largest error at a probe.
-constexpr double kProbeSafety = 10.0;
 constexpr std::array<double, 7> kProbeCosines = {1.0, 0.5, 0.25, 0.15, 0.1, 0.07, 0.04};
 constexpr std::array<double, 7> kCriticalShares = {0.03, 0.19, 0.34, 0.52, 0.67, 0.81, 0.96};
-// If the error with kMostNodes nodes exceeds kShareOfTolerance times the tolerance, the segment is cut into panels with
-// kPanelNodes nodes each. The number of panels doubles until the error is at most kPanelShareOfTolerance times the
-// tolerance. The limit for a band is about kMostPanels, or kMostMirrorPanels for a mirror, whose samples cost little.
+// Without films: if the error with kMostNodes nodes exceeds kShareOfTolerance times the tolerance, the segment is cut
+// into panels with kPanelNodes nodes each. The number of panels doubles until the error is at most
+// kPanelShareOfTolerance times the tolerance. The limit for a band is about kMostPanels, or kMostMirrorPanels for a
+// mirror, whose samples cost little.
 constexpr double kShareOfTolerance = 0.005;
 constexpr double kPanelShareOfTolerance = 0.03;
 constexpr int kLeastPanels = 4;
@@ -51,11 +49,9 @@ constexpr double kMostPanels = 32.0;
 constexpr double kMostMirrorPanels = 512.0;
 constexpr double kMostFringes = 256.0;  // largest number of parts into which fringe_ends() divides a band
 
-/// A node of the 16-point Gauss rule. Its spectral factors are multiplied by the weight of the node.
-struct FineNode : SpectralFactors {
-  double wavelength_um = 0.0;
-  double path = 0.0;
-};
+const SkyProfile* profile_of(const SceneModel& scene) {
+  return scene.surroundings ? scene.surroundings->profile.get() : nullptr;
+}
 
 double source_irradiance(const SceneModel& scene, double wavelength_um, double emitted) {
   const Source& source = *scene.source;
@@ -75,19 +71,6 @@ double path_exitance(const Path& path, double wavelength_um) {
   if (!path.temperature_K) return 0.0;
   return std::numbers::pi * (1.0 - path.transmittance) * planck_radiance(wavelength_um, *path.temperature_K);
 }
-
-const SkyProfile* profile_of(const SceneModel& scene) {
-  return scene.surroundings ? scene.surroundings->profile.get() : nullptr;
-}
-
-/// A scene, and the sampler of its sky, which takes long to make.
-struct SampledScene {
-  explicit SampledScene(const SceneModel& of) : model(of) {
-    if (const SkyProfile* profile = profile_of(of)) sky.emplace(*profile);
-  }
-  const SceneModel& model;
-  std::optional<SkySampler> sky;
-};
 
 FineNode fine_node(SampledScene& sampled, double wavelength_um, double weight) {
   const SceneModel& scene = sampled.model;
@@ -167,6 +150,12 @@ std::vector<double> segment_ends(double from_um, double to_um,
   return ends;
 }
 
+}  // namespace
+
+SampledScene::SampledScene(const SceneModel& scene) : model(scene) {
+  if (const SkyProfile* profile = profile_of(scene)) sky.emplace(*profile);
+}
+
 std::vector<FineNode> fine_nodes(SampledScene& scene, double from_um, double to_um) {
   const std::optional<Source>& source = scene.model.source;
   const bool tabulated = source && source->kind == Source::Kind::kTabulated;
@@ -206,6 +195,8 @@ std::vector<double> gauss_wavelengths(double from_um, double to_um, int count) {
   return wavelengths_um;
 }
 
+namespace {
+
 std::vector<double> lagrange(const std::vector<double>& nodes_um, double wavelength_um) {
   std::vector<double> values(nodes_um.size(), 1.0);
   for (std::size_t j = 0; j < nodes_um.size(); ++j)
@@ -213,6 +204,8 @@ std::vector<double> lagrange(const std::vector<double>& nodes_um, double wavelen
       if (k != j) values[j] *= (wavelength_um - nodes_um[k]) / (nodes_um[j] - nodes_um[k]);
   return values;
 }
+
+}  // namespace
 
 std::vector<SpectralSample> samples_at(const SceneModel& scene, const std::vector<double>& nodes_um,
                                        const std::vector<FineNode>& fine) {
@@ -227,6 +220,8 @@ std::vector<SpectralSample> samples_at(const SceneModel& scene, const std::vecto
   }
   return samples;
 }
+
+namespace {
 
 /// Wavelengths that divide the band into parts in which the films cause about one interference fringe each.
 std::vector<double> fringe_ends(const SceneModel& scene) {
@@ -243,24 +238,6 @@ std::vector<double> fringe_ends(const SceneModel& scene) {
   return ends_um;
 }
 
-std::vector<double> probe_cosines(const Surface& surface, double from_um, double to_um) {
-  std::vector<double> cosines(kProbeCosines.begin(), kProbeCosines.end());
-  for (const double share : kCriticalShares) {
-    const OpticalConstants index = surface.material.at(std::lerp(from_um, to_um, share));
-    const double square = index.n * index.n - index.k * index.k;
-    if (square > 0.0 && square < 1.0) cosines.push_back(std::sqrt(1.0 - square));
-  }
-  return cosines;
-}
-
-/// Integrals over wavelength of a spectral factor: the factor (`whole`), times 1 - R_s (`s`) and times 1 - R_p (`p`).
-struct ProbeSum {
-  double whole = 0.0;
-  double s = 0.0;
-  double p = 0.0;
-};
-using ProbeSums = std::array<ProbeSum, 3>;
-
 template <typename Node>
 void add_probe(ProbeSums& sums, const Node& node, const FacetOptics& index, double cosine) {
   const SmoothAbsorptance at = smooth_absorptance(index, cosine);
@@ -270,6 +247,24 @@ void add_probe(ProbeSums& sums, const Node& node, const FacetOptics& index, doub
     sums[i].s += factors[i] * at.s;
     sums[i].p += factors[i] * at.p;
   }
+}
+
+/// Divisor of an error at a probe: see probe_error().
+double error_scale(const ProbeSum& sum, double least) {
+  const double absorbed = 0.5 * (sum.s + sum.p);
+  return std::max(std::min(absorbed, sum.whole - absorbed), least * sum.whole);
+}
+
+}  // namespace
+
+std::vector<double> critical_cosines(const Surface& surface, double from_um, double to_um) {
+  std::vector<double> cosines;
+  for (const double share : kCriticalShares) {
+    const OpticalConstants index = surface.material.at(std::lerp(from_um, to_um, share));
+    const double square = index.n * index.n - index.k * index.k;
+    if (square > 0.0 && square < 1.0) cosines.push_back(std::sqrt(1.0 - square));
+  }
+  return cosines;
 }
 
 std::vector<ProbeSums> exact_sums(const Surface& surface, const std::vector<FineNode>& fine,
@@ -282,22 +277,31 @@ std::vector<ProbeSums> exact_sums(const Surface& surface, const std::vector<Fine
   return sums;
 }
 
-/// Computes ProbeSum::s and ProbeSum::p from `samples`. Returns their largest error, divided by the absorbed or the
-/// reflected radiation. The smaller of both is the divisor, but it counts as at least `least` times ProbeSum::whole.
+double probe_error(const std::vector<SpectralSample>& samples, const ProbeSums& exact, double cosine,
+                   const ProbeSums& scale, double least) {
+  ProbeSums sums;
+  for (const SpectralSample& sample : samples) add_probe(sums, sample, sample.index, cosine);
+  double worst = 0.0;
+  for (std::size_t j = 0; j < sums.size(); ++j) {
+    if (exact[j].whole == 0.0) continue;
+    const double part = error_scale(scale[j], least);
+    worst = std::max({worst, std::abs(exact[j].s - sums[j].s) / part, std::abs(exact[j].p - sums[j].p) / part});
+  }
+  return worst;
+}
+
+double enough_for_tolerance(const SceneModel& scene) {
+  return std::max(kShareOfTolerance * scene.accuracy.tolerance, kNodesRelativeError);
+}
+
+namespace {
+
+/// The largest probe_error() of all probes, each relative to its own sums.
 double nodes_error(const std::vector<SpectralSample>& samples, const std::vector<ProbeSums>& exact,
                    const std::vector<double>& cosines, double least) {
   double worst = 0.0;
-  for (std::size_t i = 0; i < cosines.size(); ++i) {
-    ProbeSums sums;
-    for (const SpectralSample& sample : samples) add_probe(sums, sample, sample.index, cosines[i]);
-    for (std::size_t j = 0; j < sums.size(); ++j) {
-      const ProbeSum& right = exact[i][j];
-      if (right.whole == 0.0) continue;
-      const double absorbed = 0.5 * (right.s + right.p);
-      const double part = std::max(std::min(absorbed, right.whole - absorbed), least * right.whole);
-      worst = std::max({worst, std::abs(right.s - sums[j].s) / part, std::abs(right.p - sums[j].p) / part});
-    }
-  }
+  for (std::size_t i = 0; i < cosines.size(); ++i)
+    worst = std::max(worst, probe_error(samples, exact[i], cosines[i], exact[i], least));
   return worst;
 }
 
@@ -315,22 +319,16 @@ struct SegmentRule {
   double error = 0.0;
 };
 
-double enough_for_tolerance(const SceneModel& scene) {
-  return std::max(kShareOfTolerance * scene.accuracy.tolerance, kNodesRelativeError);
-}
-
 SegmentRule smooth_segment(SampledScene& sampled, double from_um, double to_um, const std::vector<FineNode>& fine,
                            const std::vector<double>& cosines) {
   const SceneModel& scene = sampled.model;
   if (scene.surface.has_constant_optics()) return {samples_at(scene, gauss_wavelengths(from_um, to_um, 1), fine), 0.0};
   SegmentRule rule;
-  // Interference fringes of films need many nodes. So with films a larger error is enough if the tolerance allows it.
-  const double enough = scene.surface.coating.empty() ? kNodesRelativeError : enough_for_tolerance(scene);
   const std::vector<ProbeSums> exact = exact_sums(scene.surface, finer_nodes(sampled, from_um, to_um), cosines);
   for (int count = 1; count <= kMostNodes; ++count) {
     rule.samples = samples_at(scene, gauss_wavelengths(from_um, to_um, count), fine);
     rule.error = nodes_error(rule.samples, exact, cosines, kSmallestPart);
-    if (rule.error <= enough) break;
+    if (rule.error <= kNodesRelativeError) break;
   }
   return rule;
 }
@@ -357,7 +355,8 @@ void append_segment(SampledScene& sampled, double from_um, double to_um, Spectra
   const SceneModel& scene = sampled.model;
   const std::vector<FineNode> fine = fine_nodes(sampled, from_um, to_um);
   for (const FineNode& node : fine) rule.path_exitance += node.path;
-  const std::vector<double> cosines = probe_cosines(scene.surface, from_um, to_um);
+  std::vector<double> cosines = critical_cosines(scene.surface, from_um, to_um);
+  cosines.insert(cosines.end(), kProbeCosines.begin(), kProbeCosines.end());
   SegmentRule segment = smooth_segment(sampled, from_um, to_um, fine, cosines);
   const double tolerance = scene.accuracy.tolerance;
   if (segment.error <= enough_for_tolerance(scene)) {
@@ -404,13 +403,14 @@ std::vector<FacetOptics> SpectralRule::indices() const {
 
 SpectralRule spectral_rule(const SceneModel& scene) {
   if (!scene.spectrum.is_band()) return single_wavelength_rule(scene, scene.spectrum.min_um);
-  SpectralRule rule;
-  rule.relative_error = kPieceRelativeError;
   const std::vector<double> rows_um = scene.surface.optics_rows_um();
   const std::vector<double> fringes_um = fringe_ends(scene);
   const std::vector<double> ends = segment_ends(scene.spectrum.min_um, scene.spectrum.max_um, {&rows_um, &fringes_um});
-  std::vector<SpectralSample> panels;
   SampledScene sampled(scene);
+  if (!scene.surface.coating.empty()) return film_rule(sampled, ends);
+  SpectralRule rule;
+  rule.relative_error = kPieceRelativeError;
+  std::vector<SpectralSample> panels;
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) append_segment(sampled, ends[i], ends[i + 1], rule, panels);
   rule.panels = panels.size() / kPanelNodes;
   rule.samples.insert(rule.samples.end(), panels.begin(), panels.end());

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <dolp/number_range.hpp>
+#include "model/smooth_surface.hpp"
 #include "scene/scene_document.hpp"
 #include "scene/spectral_data.hpp"
 #include "spectrum/planck.hpp"
@@ -169,6 +170,7 @@ class Remarks {
       if (layer.thickness_um >= kLikelyNanometresOfFilm)
         add(key + "thickness_um", "is in micrometres; were nanometres meant?");
     }
+    if (!scene_.names.reflectance_file.empty()) add_reflectances("surface.reflectance_file");
     if (!scene_.names.source_file.empty()) add_gap("source.file", bridged_gap(scene_.source->table, used_um(scene_)));
   }
 
@@ -227,6 +229,14 @@ class Remarks {
     add_gap(key, gap);
     if (const auto k_gap = bridged_gap(material.k, used_um(scene_)); k_gap != gap) add_gap(key, k_gap);
     if (!gap) add_coarse_rows(key, material);
+  }
+
+  void add_reflectances(const std::string& key) {
+    const std::vector<std::shared_ptr<const MeasuredReflectance>>& measured = scene_.surface.reflectance->measured;
+    if (std::ranges::none_of(measured, [](const auto& rows) { return limits_difference(*rows); })) return;
+    add(key, fmt::format("no row between 0 and {} degrees: r_s - r_p, proportional to sin^2 there, is limited so that "
+                         "both stay in [0, 1]",
+                         measured.front()->beta_deg[1]));
   }
 
   void add_coarse_rows(const std::string& key, const Material& used, const std::string& name = "") {

@@ -15,6 +15,7 @@
 #include "properties_support.hpp"
 #include "reference/fresnel.hpp"
 #include "reference/reference_evaluator.hpp"
+#include "run/scene_remarks.hpp"
 #include "temporary_file.hpp"
 
 namespace dolp {
@@ -319,6 +320,43 @@ TEST(MeasuredReflectances, OfAMedium_GiveNearlyItsTable) {
     EXPECT_NEAR(measured[kDolp], medium[kDolp], 1e-4) << masking;
     EXPECT_NEAR(measured[kRhoI], medium[kRhoI], 1e-4) << masking;
     EXPECT_LE(measured[kErrorEstimate], 1e-4) << masking;
+  }
+}
+
+// Between two rows at 0 and 90 degrees the mean of R_s and R_p is a straight line, and their difference grows like
+// sin^2(beta), but at most so far that both are in [0, 1]. At 60 degrees this limit acts: without it, R_s is 1.033 in
+// the first case, and R_p is -0.038 in the second.
+TEST(MeasuredReflectances, WideFirstInterval_StaysWithinZeroAndOneInEveryEvaluator) {
+  struct Case {
+    const char* rows;
+    double rho_i, rho_q;  // of the smooth surface
+  };
+  for (const Case& own : {Case{"0,1,1\n90,1,0.2\n", 1.0 - 0.4 * 2.0 / 3.0, 0.4 * 2.0 / 3.0},
+                          {"0,0,0\n90,0.9,0\n", 0.45 * 2.0 / 3.0, 0.45 * 2.0 / 3.0},
+                          {"0,0,0\n90,0,0.9\n", 0.45 * 2.0 / 3.0, -0.45 * 2.0 / 3.0}}) {
+    const TemporaryFile file("measured.csv", std::string("beta_deg,r_s,r_p\n") + own.rows);
+    const auto scene_of = [&](const char* sigma) {
+      return scene_with({"surface.masking=smith", "surface.q=3", std::string("surface.sigma=") + sigma,
+                         "surface.coating=none", "surface.n={}", "surface.k={}", "grid.theta_deg=[60]",
+                         "surface.reflectance_file=" + file.path(), "accuracy.tolerance=1e-3"});
+    };
+    const PointResult mirror = results_of(scene_of("0")).front();
+    EXPECT_NEAR(mirror[kRhoI], own.rho_i, 1e-14) << own.rows;
+    EXPECT_NEAR(mirror[kRhoQ], own.rho_q, 1e-14) << own.rows;
+    // Facets with slopes of a few sigma see other angles of incidence. R changes by at most 1.6 per radian.
+    constexpr double kSpread = 0.01;
+    const SceneValues rough = scene_of("1e-3");
+    const PointResult kernels = results_of(rough).front();
+    ReferenceEvaluator reference({.relative_tolerance = 1e-6});
+    const PointResult right = evaluate_scene(rough, grid_entries(rough), reference, {}).front();
+    EXPECT_NEAR(kernels[kRhoI], own.rho_i, kSpread) << own.rows;
+    for (const Quantity quantity : {kRhoI, kRhoQ})
+      EXPECT_NEAR(kernels[quantity], right[quantity],
+                  (kernels[kRhoErrorEstimate] + right[kRhoErrorEstimate]) * right[kRhoI])
+          << own.rows;
+    const std::vector<std::string> remarks = remarks_on(rough);
+    ASSERT_EQ(remarks.size(), 1U) << own.rows;
+    EXPECT_TRUE(contains(remarks[0], "no row between 0 and 90 degrees")) << remarks[0];
   }
 }
 

@@ -22,10 +22,4 @@ TEST_F(BenchProgram, Throughput_Json_GridsHaveTheirRows) {
   }
 }
 
-TEST_F(BenchProgram, Throughput_Json_EveryMaterial_HasItsRow) {
-  const json result = study_of("throughput --quick --entries 64 --case materials");
-  EXPECT_EQ(result["results"].size(), 2U * 12U);  // 2 maskings, 12 surfaces
-  for (const json& row : result["results"]) EXPECT_GT(row["kernels_over_one"].get<double>(), 0.0) << row.dump();
-}
-
 }  // namespace

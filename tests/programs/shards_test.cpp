@@ -27,7 +27,7 @@ temperature_K = 250.0
 [grid]
 wavelength_um = [12.0, 8.0]
 n = [1.4, 3.0]
-theta_deg = [0, 90, 85, 12, 60, 30, 89.95]
+theta_deg = [0, 12, 30, 60, 85, 89.95, 90]
 sigma = { from = 0.8, to = 0.05, count = 20 }
 q = { from = 1.6, to = 6, count = 20 }
 )";
@@ -35,7 +35,8 @@ q = { from = 1.6, to = 6, count = 20 }
 // A table that a run computes in more than one part.
 const std::vector<std::string> kLarge = split_at(
     "--set grid.theta_deg={from=0,to=89,count=320} --set grid.sigma={from=0.1,to=0.8,count=64} --set "
-    "grid.q={from=1.8,to=6,count=64} --set grid.wavelength_um=[10.0,8.0] --set grid.n=[1.5] --tolerance 1e-2",
+    "grid.q={from=1.8,to=6,count=64} --set grid.wavelength_um=[10.0,8.0] --set grid.n=[1.5] --tolerance 1e-2 "
+    "--quantities dolp,status",
     ' ');
 
 class Shards : public CommandLine {

@@ -25,7 +25,7 @@ TEST(Dropping, RandomScenes_TheAnswerWithEverythingIsWithinTheEstimates) {
   RandomScenes scenes(kSeed);
   std::map<Part, int> dropped;
   int without_moments = 0;
-  for (std::size_t i = 0; i < draws_wanted(120); ++i) {
+  for (std::size_t i = 0; i < draws_wanted(400); ++i) {
     const SceneValues scene = scenes.next();
     const std::vector<SceneEntry> entries = scenes.entries(scene);
     const EffectPlan plan = plan_effects(scene, entries, false);

@@ -331,11 +331,11 @@ TEST(Sky, ConstantProfile_HasTheBitsOfItsTemperature) {
   const std::string text =
       "[surface]\nn = 1.5\nsigma = 0.3\n[emission]\ntemperature_K = 300\n[surroundings]\n%s\n[spectrum]\n"
       "wavelength_um = 10.6\n[grid]\ntheta_deg = [0, 40, 75, 90]\n";
-  const auto known = std::make_shared<KnownData>(
-      KnownData{.table = "t.nc", .profile = profile_of({0.0, 30.0, 90.0}, {250.0, 250.0, 250.0})});
   const auto results_with = [&](const std::string& key) {
     std::string own = text;
     own.replace(own.find("%s"), 2, key);
+    const auto known = std::make_shared<KnownData>(
+        KnownData{.table = "t.nc", .profile = profile_of({0.0, 30.0, 90.0}, {250.0, 250.0, 250.0})});
     const SceneValues scene = parse_scene(own, "s.toml", {}, known);
     CpuEvaluator cpu;
     std::vector<std::uint64_t> bits;

@@ -1,4 +1,5 @@
 // Python binding of the library, with arrays and dictionaries as arguments and results. Users call dolp/__init__.py.
+#include <netcdf.h>
 #include <pybind11/functional.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -322,6 +323,8 @@ py::dict description(const dolp::Device& device) {
 }  // namespace
 
 PYBIND11_MODULE(_native, module) {
+  // HDF5 prints errors, except in the thread that starts it. xarray handles errors in this thread.
+  nc_initialize();
   add_error(module, "InputError", PyExc_ValueError, "A scene, points, a table or an argument is wrong.");
   add_error(module, "DeviceError", PyExc_RuntimeError, "There is no usable Vulkan device, or it was lost.");
   add_error(module, "IoError", PyExc_OSError, "A file could not be read or written.");

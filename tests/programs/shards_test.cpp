@@ -210,7 +210,8 @@ TEST_F(Inputs, OtherEvaluatorOrOptions_AreNamed_AndAShardOfThemIsNotKept) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
       {{"--evaluator", "reference"}, "evaluator reference, not cpu"},
       {{"--keep-all"}, "keep_all yes, not no"},
-      {{"--precision", "double"}, "precision double, not auto"}};
+      {{"--precision", "double"}, "precision double, not auto"},
+      {{"--quantities", "status,dolp"}, "quantities dolp,status, not all"}};
   for (const auto& [options, part] : cases) {
     ASSERT_EQ(shard(1).status, 0);
     std::vector<std::string> other = {"table", "named.toml", "-o", "t.nc", "--shard", "2/2"};

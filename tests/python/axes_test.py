@@ -31,6 +31,11 @@ class Axes(PackageCase):
             bound = own.error_estimate + right.error_estimate
             self.assertTrue(bool((abs(own.dolp - right.dolp) <= bound).all()))
         path = self.folder / "t.nc"
+        axes = {"material": MATERIALS[:2], "band_um": [(8, 9), (10, 12)], **AXES}
+        dolp.write_table(self.scene, path, **axes)
+        self.assert_same(dolp.table(self.scene, **axes).drop_vars(["material", "band"]), xr.load_dataset(path))
+        self.assertEqual(float(dolp.lookup(xr.load_dataset(path), material="quartz", band_um="8-9", theta_deg=40).dolp),
+                         float(dolp.lookup(path, material="quartz", band_um="8-9", theta_deg=40).dolp))
         table.to_netcdf(path)
         again = xr.load_dataset(path)
         for source in (table, again, table.isel(material=[2, 1]), table.sel(material="PET")):

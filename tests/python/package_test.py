@@ -36,6 +36,13 @@ class Package(PackageCase):
                 self.assert_same(dolp.table(scene, evaluator=evaluator), xr.load_dataset(self.folder / "t.nc"))
         self.run_program("table", str(self.folder / "scene.toml"), "-o", "t.nc")
         self.assert_same(dolp.table(self.scene), xr.load_dataset(self.folder / "t.nc"))
+        chosen = ["status", "dolp"]
+        dolp.write_table(self.scene, self.folder / "t.nc", evaluator="cpu", quantities=chosen)
+        table = dolp.table(self.scene, evaluator="cpu", quantities=chosen)
+        self.assertEqual(set(table.data_vars), set(chosen))
+        self.assert_same(table, xr.load_dataset(self.folder / "t.nc"))
+        with self.assertRaisesRegex(dolp.InputError, "quantities: dlop: must be one of dolp, q_over_i,.* status"):
+            dolp.table(self.scene, quantities=["dlop"])
 
     def test_a_csv_table_opens_in_numpy_and_pandas(self):
         self.run_program("table", "scene.toml", "-o", "t.csv", "--set", "title=\"a, b # c\"")

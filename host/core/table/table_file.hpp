@@ -54,7 +54,7 @@ TableFormat format_of(const std::filesystem::path& path);
 void check_output_path(const std::filesystem::path& path);
 
 /// The suffix of the path chooses the format.
-/// .nc: NetCDF-4 with the conventions CF-1.8, not compressed. The status is an int, because CF-1.8 has no unsigned int.
+/// .nc: a classic format of netCDF, with the conventions CF-1.8.
 /// .csv and "-": one row per entry. The columns are the axes of the table, such as `wavelength_um,theta_deg`, then the
 /// variables. Each attribute is a line `# name: value` before the header; further lines of a value begin with `#   `.
 /// .npy: a structured array with the shape of the axes and the column names of a .csv, such as `t["dolp"][i, j, k]`.

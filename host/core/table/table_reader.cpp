@@ -27,12 +27,16 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostShrinking = 1032;  // largest factor by which a tool may have compressed values (deflate)
 constexpr std::size_t kMostStoredTextBytes = 64U << 20U;  // size limit of a text; a scene has at most 16 MiB
 
-/// True for a file that begins as a netCDF file of a classic format or, as tables of dolp 0.2 are, an HDF5 file.
-bool begins_as_netcdf(const fs::path& path) {
-  std::array<char, 4> start{};
-  std::ifstream(path, std::ios::binary).read(start.data(), start.size());
-  const std::string_view bytes(start.data(), start.size());
-  return bytes.starts_with("CDF") || bytes == "\x89HDF";
+/// Refuses what netCDF-C should not open: files of other formats, and files with a damaged head. In a file, netCDF-C
+/// reads zeros beyond the end, and it could fill all memory. In memory, it does not.
+bool is_sound(const fs::path& path) {
+  constexpr std::size_t kMostHeadBytes = 2 * kMostTextBytes;
+  std::string head(std::min<std::uintmax_t>(fs::file_size(path), kMostHeadBytes), '\0');
+  std::ifstream(path, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
+  if (!head.starts_with("CDF")) return head.starts_with("\x89HDF");  // tables of dolp 0.2
+  NetcdfFile opened;
+  return opened.open([&](int* id) { return nc_open_mem("head", NC_NOWRITE, head.size(), head.data(), id); }) ==
+         NC_NOERR;
 }
 
 /// An open netCDF file of any format. Errors: InputError that begins with the file's name.
@@ -42,9 +46,8 @@ class Reader {
     check_regular_file(path.string(), path.string() + ": ");
     bytes_ = fs::file_size(path);
     const std::string name = fs::absolute(path).string();  // netCDF-C takes some relative names for addresses
-    const int status = !begins_as_netcdf(path)
-                           ? NC_ENOTNC
-                           : file_.open([&](int* id) { return nc_open(name.c_str(), NC_NOWRITE, id); });
+    const auto open = [&](int* id) { return nc_open(name.c_str(), NC_NOWRITE, id); };
+    const int status = is_sound(path) ? file_.open(open) : NC_ENOTNC;
     if (is_lack_of_memory(status)) throw std::bad_alloc();
     if (status != NC_NOERR) fail("is not a NetCDF table of dolp, or cannot be read");
   }
@@ -95,22 +98,26 @@ class Reader {
   NetcdfFile file_;
 };
 
-/// The values of a variable that is a list; empty if the file lacks it. Errors: InputError for more than `most` values.
-std::vector<double> read_list(const Reader& reader, const std::string& name, std::size_t most,
-                              bool may_be_scalar = false) {
+/// The values of a list or a single number; empty if the file lacks it. Errors: InputError for more than `most` values.
+std::vector<double> read_numbers(const Reader& reader, const std::string& name, std::size_t most) {
   const std::optional<int> variable = reader.find(name);
   if (!variable) return {};
-  std::vector<std::size_t> shape = reader.shape_of(*variable, name);
-  if (may_be_scalar && shape.empty()) shape = {1};
-  if (shape.empty()) reader.fail(name + ": has one value and no dimension, as in a part of a table");
-  if (shape.size() != 1) reader.fail(name + ": is not a list");
-  if (shape[0] > most) {
-    reader.fail(fmt::format("{}: {} values; a table has at most {} entries", name, shape[0], kMostTableEntries));
-  }
-  reader.check_claim(name, shape[0] * sizeof(double));
-  std::vector<double> values(shape[0]);
+  const std::vector<std::size_t> shape = reader.shape_of(*variable, name);
+  const std::size_t count = shape.empty() ? 1 : shape.front();
+  if (shape.size() > 1) reader.fail(name + ": is not a list");
+  if (count > most)
+    reader.fail(fmt::format("{}: {} values; a table has at most {} entries", name, count, kMostTableEntries));
+  reader.check_claim(name, count * sizeof(double));
+  std::vector<double> values(count);
   reader.call(name, nc_get_var_double, *variable, values.data());
   return values;
+}
+
+std::vector<double> read_axis(const Reader& reader, const std::string& name, std::size_t most) {
+  const std::optional<int> variable = reader.find(name);
+  if (variable && reader.shape_of(*variable, name).empty())
+    reader.fail(name + ": has one value and no dimension, as in a part of a table");
+  return read_numbers(reader, name, most);
 }
 
 /// The texts of `stored`, as netCDF-C allocated them.
@@ -121,15 +128,15 @@ std::vector<std::string> take_texts(std::vector<char*>& stored) {
   return texts;
 }
 
-/// The texts of a variable: a list of texts of variable length, or rows of letters, padded with zero bytes.
+/// The texts of a variable: texts of variable length, or rows of letters, padded with zero bytes.
 std::vector<std::string> read_texts(const Reader& reader, const std::string& name, std::size_t most) {
   const std::optional<int> variable = reader.find(name);
   if (!variable) return {};
-  const std::vector<std::size_t> shape = reader.shape_of(*variable, name);
+  std::vector<std::size_t> shape = reader.shape_of(*variable, name);
   const bool has_letters = reader.type_of(*variable, name) == NC_CHAR;
-  const bool is_list =
-      has_letters ? shape.size() == 2 : reader.type_of(*variable, name) == NC_STRING && shape.size() == 1;
-  if (!is_list || shape[0] > most) reader.fail(name + ": is not a list of texts");
+  if (has_letters && shape.size() == 1) shape.insert(shape.begin(), 1);
+  const bool is_list = has_letters ? shape.size() == 2 : reader.type_of(*variable, name) == NC_STRING;
+  if (!is_list || shape.empty() || shape[0] > most) reader.fail(name + ": is not a list of texts");
   const std::size_t width = has_letters ? shape[1] : sizeof(char*);
   if (width > kMostStoredTextBytes) reader.fail(name + ": the text is too long");
   reader.check_claim(name, shape[0] * width);
@@ -151,9 +158,9 @@ std::vector<std::string> read_texts(const Reader& reader, const std::string& nam
 /// The labels of an axis. Files of dolp 0.2 and of xarray have them in a variable with the name of the axis.
 std::vector<std::string> read_labels(const Reader& reader, Axis axis, std::size_t most) {
   if (axis == Axis::kMaterial && reader.find(kMaterialName.name)) return read_texts(reader, kMaterialName.name, most);
-  const std::vector<double> low = read_list(reader, kBandLow.name, most);
+  const std::vector<double> low = read_numbers(reader, kBandLow.name, most);
   if (axis != Axis::kBand || low.empty()) return read_texts(reader, description_of(axis).name, most);
-  const std::vector<double> high = read_list(reader, kBandHigh.name, low.size());
+  const std::vector<double> high = read_numbers(reader, kBandHigh.name, low.size());
   if (high.size() != low.size()) reader.fail(kBandHigh.name + std::string(": is cut short"));
   std::vector<std::string> labels;
   for (std::size_t i = 0; i < low.size(); ++i) labels.push_back(Spectrum{low[i], high[i]}.label());
@@ -209,15 +216,7 @@ std::vector<Attribute> read_attributes(const Reader& reader) {
 void append_long_texts(const Reader& reader, std::vector<Attribute>& attributes) {
   for (const char* name : {"title", "history", "scene", "scene_path", "scene_overrides", "surroundings_profile",
                            "coating", "reflectance", "materials", kSpectralData}) {
-    const std::optional<int> variable = reader.find(name);
-    if (!variable) continue;
-    const std::vector<std::size_t> shape = reader.shape_of(*variable, name);
-    if (reader.type_of(*variable, name) != NC_CHAR || shape.size() != 1 || shape[0] > kMostStoredTextBytes)
-      reader.fail(std::string(name) + ": is no text, or too long");
-    reader.check_claim(name, shape[0]);
-    std::string text(shape[0], '\0');
-    reader.call(name, nc_get_var_text, *variable, text.data());
-    attributes.push_back({name, std::move(text)});
+    for (std::string& text : read_texts(reader, name, 1)) attributes.push_back({name, std::move(text)});
   }
 }
 
@@ -240,29 +239,30 @@ struct TableReader::Impl {
         values.resize(head.labels[axis].size());
         std::iota(values.begin(), values.end(), 0.0);
       } else {
-        values = read_list(reader, description_of(axis).name, most);
+        values = read_axis(reader, description_of(axis).name, most);
       }
       if (values.empty() && description_of(axis).is_required)
         reader.fail("is not a table of dolp (no axis theta, sigma or q)");
       most /= std::max<std::size_t>(values.size(), 1);
     }
-    head.beta_deg = read_list(reader, kBeta.name, kMostAngles);
-    head.wind_m_s = read_list(reader, kWind.name, kMostTableEntries);
+    head.beta_deg = read_numbers(reader, kBeta.name, kMostAngles);
+    head.wind_m_s = read_numbers(reader, kWind.name, kMostTableEntries);
     if (!head.wind_m_s.empty() && head.wind_m_s.size() != head.axes[Axis::kSigma].size())
       reader.fail("is not a table of dolp (wind_m_s is not over sigma)");
   }
 
-  bool find(const char* name, std::size_t value_bytes, bool has_beta = false) {
+  /// `more`: dimensions of the variable besides the axes.
+  bool find(const char* name, std::size_t value_bytes, const std::vector<std::size_t>& more = {}) {
     const std::optional<int> variable = reader.find(name);
     if (!variable) return false;
     std::vector<std::size_t> shape;
     for (const std::vector<double>& values : head.axes) {
       if (!values.empty()) shape.push_back(values.size());
     }
-    if (has_beta) shape.push_back(head.beta_deg.size());
+    shape.insert(shape.end(), more.begin(), more.end());
     if (reader.shape_of(*variable, name) != shape)
       reader.fail(fmt::format("is not a table of dolp ({} is not over its axes)", name));
-    reader.check_claim(name, head.size() * value_bytes * (has_beta ? head.beta_deg.size() : 1));
+    reader.check_claim(name, head.size() * value_bytes * (more.empty() ? 1 : more.front()));
     open.emplace_back(name, *variable);
     return true;
   }
@@ -277,8 +277,9 @@ struct TableReader::Impl {
     }
     for (const ResponseVariable variable : kAllResponseVariables) {
       const ResponseDescription& described = description_of(variable);
-      if (!head.beta_deg.empty() && find(described.name, sizeof(double), described.has_beta))
-        layout.responses.push_back(variable);
+      std::vector<std::size_t> more;
+      if (described.has_beta) more.push_back(head.beta_deg.size());
+      if (!head.beta_deg.empty() && find(described.name, sizeof(double), more)) layout.responses.push_back(variable);
     }
     layout.has_status = find("status", sizeof(std::uint32_t));
     if (open.empty()) reader.fail("is not a table of dolp (none of its variables is there)");
@@ -288,10 +289,10 @@ struct TableReader::Impl {
     for (const TableCurve& described : kTableCurves) {
       Curve& curve = head.*described.curve;
       // Files of dolp 0.2 store n, k and E0 of the scene as variables with their own wavelengths, not in an attribute.
-      curve.wavelength_um = read_list(reader, described.name + std::string("_wavelength"), kMostTableEntries);
+      curve.wavelength_um = read_numbers(reader, described.name + std::string("_wavelength"), kMostTableEntries);
       const bool is_of_scene = !curve.wavelength_um.empty();
       std::vector<double>& values = is_of_scene ? curve.values : curve.used;
-      values = read_list(reader, described.name, kMostTableEntries, true);
+      values = read_numbers(reader, described.name, kMostTableEntries);
       const std::size_t count = is_of_scene ? curve.wavelength_um.size() : head.counts()[Axis::kWavelength];
       if (values.size() != count && (is_of_scene || !values.empty()))
         reader.fail(described.name + std::string(": is cut short"));
@@ -372,8 +373,8 @@ std::vector<Attribute> read_attributes(const fs::path& path) {
   append_long_texts(reader, head.attributes);
   for (const TableCurve& described : kTableCurves) {  // in files of dolp 0.2
     Curve& curve = head.*described.curve;
-    curve.wavelength_um = read_list(reader, described.name + std::string("_wavelength"), kMostTableEntries);
-    if (!curve.wavelength_um.empty()) curve.values = read_list(reader, described.name, kMostTableEntries, true);
+    curve.wavelength_um = read_numbers(reader, described.name + std::string("_wavelength"), kMostTableEntries);
+    if (!curve.wavelength_um.empty()) curve.values = read_numbers(reader, described.name, kMostTableEntries);
     if (curve.values.size() != curve.wavelength_um.size()) reader.fail(described.name + std::string(": is cut short"));
   }
   if (std::string data = spectral_data_of(head); !data.empty())

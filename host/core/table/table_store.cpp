@@ -37,6 +37,18 @@ bool has_large_variable(const TableLayout& layout) {
   return layout.head.size() * widest * sizeof(double) > kMostVariableBytes;
 }
 
+/// Names of the variables in the table with the quantity's error bound and status.
+std::string present_qualifiers(const TableLayout& layout, Quantity quantity) {
+  if (!layout.head.beta_deg.empty()) return kResponseQualifier;
+  std::vector<std::string_view> present;
+  for (const std::string_view name : split(description_of(quantity).ancillary, ' ')) {
+    const auto is_named = [name](Quantity other) { return name == description_of(other).name; };
+    const bool is_status = layout.has_status && name == kStatusQualifier;
+    if (is_status || std::ranges::any_of(layout.quantities, is_named)) present.push_back(name);
+  }
+  return fmt::format("{}", fmt::join(present, " "));
+}
+
 /// The limits in um of a band with the label "LOW-HIGH".
 std::array<double, 2> band_limits(const std::string& label) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -169,6 +181,7 @@ void TableStore::Impl::renew_head(AtomicFile& table) {
   std::string head(fresh.size() - values_bytes(layout), '\0');
   fresh.read_at(0, head.data(), head.size());
   table.write_at(0, head.data(), head.size());
+  if (table.size() > fresh.size()) table.resize(fresh.size());
   check(file.open([&](int* id) { return nc_open(table.open_path().c_str(), NC_WRITE, id); }));
 }
 
@@ -230,7 +243,7 @@ void TableStore::Impl::define_results() {
   for (const Quantity quantity : layout.quantities) {
     const QuantityDescription& described = description_of(quantity);
     define_result(described, dimensions, units_of(quantity, layout.head.stokes_units),
-                  beta_deg.empty() ? described.ancillary : kResponseQualifier);
+                  present_qualifiers(layout, quantity));
   }
   for (const ResponseVariable variable : layout.responses) {
     const ResponseDescription& described = description_of(variable);

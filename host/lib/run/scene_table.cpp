@@ -215,12 +215,11 @@ void choose_variables(TableLayout& layout, const std::vector<std::string>& names
 }
 
 std::string identity_of(const SceneValues& scene, const std::string& evaluator, const RunOptions& options) {
-  std::string variables;
-  for (const std::string& name : std::set(options.quantities.begin(), options.quantities.end()))
-    variables += (variables.empty() ? "; quantities " : ",") + name;
-  return fmt::format("program dolp {} ({}); evaluator {}; precision {}; keep_all {}; scene {}; data fnv1a64:{:016x}{}",
-                     program_version(), program_commit(), evaluator, name_of(scene.accuracy.precision),
-                     options.keep_all ? "yes" : "no", scene_hash(scene), data_hash(scene), variables);
+  const std::set<std::string> names(options.quantities.begin(), options.quantities.end());
+  return fmt::format(
+      "program dolp {} ({}); evaluator {}; precision {}; keep_all {}; quantities {}; scene {}; data fnv1a64:{:016x}",
+      program_version(), program_commit(), evaluator, name_of(scene.accuracy.precision), options.keep_all ? "yes" : "no",
+      names.empty() ? "all" : fmt::format("{}", fmt::join(names, ",")), scene_hash(scene), data_hash(scene));
 }
 
 TableValues table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results) {

@@ -122,11 +122,12 @@ def _attributes_of(table: xr.Dataset) -> dict[str, str | float]:
 def _variables(parts: _native.Parts, dims: tuple[Hashable, ...], shape: tuple[int, ...],
                encoding: dict[str, Any]) -> dict[str, xr.Variable]:
     quantities, status, _ = parts
+    names = {name for name, *_ in quantities} | ({"status"} if status.size else set())
     variables = {}
     for name, long_name, units, ancillary, values in quantities:
         known = {"long_name": long_name, "units": units}
-        if ancillary:
-            known["ancillary_variables"] = ancillary
+        if present := [qualifier for qualifier in ancillary.split() if qualifier in names]:
+            known["ancillary_variables"] = " ".join(present)
         variables[name] = xr.Variable(dims, values.reshape(shape), known, encoding)
     if status.size:
         variables["status"] = xr.Variable(dims, status.view(np.int32).reshape(shape), _status_attributes())

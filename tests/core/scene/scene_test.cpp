@@ -344,6 +344,13 @@ TEST(SceneAxis_Linear, IsExactForWholeDegreesAndDescends) {
   EXPECT_EQ(scene.grid[Axis::kTheta], (std::vector<double>{80, 70, 60, 50, 40, 30, 20, 10}));
 }
 
+TEST(SceneAxis_List, IsSortedUnlessItAscendsOrDescends) {
+  for (const auto& [list, values] : {std::pair("[30, 0, 60]", std::vector<double>{0, 30, 60}),
+                                     std::pair("[60, 30, 0]", std::vector<double>{60, 30, 0})}) {
+    EXPECT_EQ(parse(kMinimal + "[grid]\ntheta_deg = " + list + "\n").grid[Axis::kTheta], values) << list;
+  }
+}
+
 TEST(SceneAxis_Log, HasExactEndsAndEqualRatios) {
   const SceneValues scene = parse(kMinimal + "[grid]\nsigma = { from = 0.01, to = 1, count = 3, spacing = \"log\" }\n");
   // The value in the middle is 0.01^0.5 * 1^0.5. Both powers and their product have a rounding error.

@@ -46,6 +46,8 @@ TEST(SceneRemarks, ProbablyMeantOtherwise_IsOneLineThatNamesKeyAndUnit) {
            {{"geometry.view_zenith_deg=60"},
             "has no effect: mode hemispherical has its view at grid.theta_deg; mode bistatic uses it"},
            {{"grid.theta_deg=[0, 0.5, 1, 1.5]"}, "is at most 1.5 degrees; is it in radians?"},
+           {{"grid.theta_deg=[0, 60, 30]"},
+            "neither ascends nor descends; the table has the values in ascending order"},
            {{"surface.sigma=3"}, "3 is a slope of 72 degrees, not a height; real surfaces have less than 2"},
            {{"grid.sigma=[0.1, 3]"}, "3 is a slope of 72 degrees, not a height; real surfaces have less than 2"},
        }) {

@@ -167,6 +167,15 @@ TEST_F(Verify, AlbedoAndEmissivitiesOffByThreeBounds_AreFoundInEveryEntry) {
   }
 }
 
+// The bound of rho is relative to rho_I, which is mostly diffuse here. The albedo is that of the specular part.
+TEST_F(Verify, AlbedoBesideAStrongDiffusePart_HasItsOwnBound) {
+  make_table(joined(kOneEntry, {"--set", "surface.masking=v-cavity", "--set", "surface.diffuse=1", "--set",
+                                "surface.diffuse_exponent=-0.9", "--set", "grid.theta_deg=89.99", "--set",
+                                "surface.n=3", "--set", "surface.k=90", "--set", "grid.sigma=0.06"}));
+  const nlohmann::json json = verify_json(kDone);
+  EXPECT_EQ(json["passed"], true);
+}
+
 TEST_F(Verify, RadiationWithoutPolarisation_HasABoundFromRho) {
   const TableValues table = make_table({"--set", "grid.theta_deg=0"});
   ASSERT_LT(table[Quantity::kDolp][0], 1e-8);  // the bound of DOLP divided by DOLP is useless

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <dolp/errors.hpp>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <set>
 #include <span>
@@ -15,7 +16,9 @@
 #include <dolp/number_range.hpp>
 #include <dolp/status.hpp>
 #include "base/numbers.hpp"
+#include "model/angles.hpp"
 #include "plan/effects.hpp"
+#include "radiometry/diffuse.hpp"
 #include "reference/reference_evaluator.hpp"
 #include "run/response_run.hpp"
 #include "run/scene_run.hpp"
@@ -63,6 +66,7 @@ struct BoundTerms {
   bool depends_on_rho = true;  ///< false if the run needed no rho
   double tolerance = 0.0;
   EmissionModel model = EmissionModel::kMoments;
+  std::optional<DiffuseReflection> diffuse = {};  ///< nullopt if the surface has no diffuse part
 };
 
 BoundTerms bound_terms(const SceneModel& scene, const EffectPlan& plan) {
@@ -88,6 +92,7 @@ BoundTerms bound_terms(const SceneModel& scene, const EffectPlan& plan) {
   terms.rounding += rule.relative_error;
   terms.tolerance = scene.accuracy.tolerance;
   if (scene.emission) terms.model = scene.emission->model;
+  if (scene.surface.diffuse > 0.0) terms.diffuse.emplace(scene.surface, scene.surface.optics_at(scene.spectrum.min_um));
   return terms;
 }
 
@@ -100,7 +105,8 @@ std::vector<BoundTerms> bound_terms(const SceneValues& scene, const SceneEntries
 /// Error bounds that the table states, or those of the reference.
 struct Estimates {
   double dolp = kInfinity;
-  double rho = kInfinity;  ///< relative to rho_I
+  double rho = kInfinity;       ///< relative to rho_I
+  double specular_share = 1.0;  ///< specular part of rho_I, relative to rho_I
 };
 
 double absolute(double relative, double value) { return std::isinf(relative) ? relative : relative * std::abs(value); }
@@ -132,7 +138,7 @@ double error_bound(Bound bound, const Estimates& estimates, const PointResult& r
     case Bound::kEmissivity:
       return 2.0 * (terms.model == EmissionModel::kMoments ? of_rho : of_dolp / terms.emitted) + terms.rounding;
     case Bound::kAlbedo:
-      return absolute(estimates.rho + terms.rounding, reference[Quantity::kAlbedo]);
+      return absolute(estimates.rho / estimates.specular_share + terms.rounding, reference[Quantity::kAlbedo]);
   }
   return kInfinity;
 }
@@ -166,15 +172,23 @@ void add(TableCheck& check, QuantityCheck& of_quantity, const CheckedValue& valu
   if (!value.complaint.empty()) check.failures.push_back(value);
 }
 
+/// The albedo is that of the specular part, and the error bound of rho is relative to rho_I with its diffuse part.
+double specular_share(const BoundTerms& terms, const PointResult& reference, double theta_deg) {
+  if (!terms.diffuse) return 1.0;
+  return 1.0 - terms.diffuse->rho(cos_sin_deg(theta_deg).cos).i / reference[Quantity::kRhoI];
+}
+
 CheckedValue compare(const TableSample& sample, const Compared& compared, std::size_t i, const PointResult& reference,
                      const BoundTerms& terms) {
   const TableValues& table = sample.table;
   CheckedValue value{description_of(compared.quantity).name, position_of(sample.positions[i], table)};
   value.stored = table[compared.quantity][i];
   value.reference = reference[compared.quantity];
+  const double theta_deg = std::ranges::find(value.position, Axis::kTheta, &AxisValue::axis)->value;
+  const double share = specular_share(terms, reference, theta_deg);
   const Estimates stated{estimate_at(table[Quantity::kErrorEstimate], i),
-                         estimate_at(table[Quantity::kRhoErrorEstimate], i)};
-  const Estimates of_reference{reference[Quantity::kErrorEstimate], reference[Quantity::kRhoErrorEstimate]};
+                         estimate_at(table[Quantity::kRhoErrorEstimate], i), share};
+  const Estimates of_reference{reference[Quantity::kErrorEstimate], reference[Quantity::kRhoErrorEstimate], share};
   BoundTerms keeps_all = terms;
   keeps_all.dropped = 0.0;
   value.stated = error_bound(compared.bound, stated, reference, terms);

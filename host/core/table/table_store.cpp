@@ -70,9 +70,9 @@ struct TableStore::Impl {
   TableLayout layout;
   std::string path;  // of the table, for messages
   NetcdfFile file;
-  std::vector<int> variables;             // in the order of for_each_variable
-  std::vector<int> dimensions;            // of the entries
-  AxisArray<std::vector<int>> dimension;  // of coordinates along an axis: none if the table lacks the axis
+  std::vector<int> variables;                                // in the order of for_each_variable
+  std::vector<int> dimensions;                               // of the entries
+  AxisArray<std::vector<int>> dimension;                     // empty if the table lacks the axis
   std::vector<std::pair<int, std::vector<double>>> numbers;  // coordinates to write when all is defined
   std::vector<std::pair<int, std::string>> letters;
 
@@ -173,7 +173,7 @@ void TableStore::Impl::create(const std::string& name) {
   call(nc_sync);
 }
 
-/// Writes the head of `table` again, because it may be damaged, or be that of a complete table. The values stay.
+/// Writes the head of `table` again, because it may be damaged, or belong to a complete table. The values stay.
 void TableStore::Impl::renew_head(AtomicFile& table) {
   AtomicFile fresh(table.path());
   create(fresh.open_path());

@@ -176,7 +176,7 @@ void add(TableCheck& check, QuantityCheck& of_quantity, const CheckedValue& valu
   if (!value.complaint.empty()) check.failures.push_back(value);
 }
 
-/// The albedo is that of the specular part, and the error bound of rho is relative to rho_I with its diffuse part.
+/// The albedo belongs to the specular part, and the error bound of rho is relative to rho_I with its diffuse part.
 double specular_share(const BoundTerms& terms, const PointResult& reference, double theta_deg) {
   if (!terms.diffuse) return 1.0;
   return 1.0 - terms.diffuse->rho(cos_sin_deg(theta_deg).cos).i / reference[Quantity::kRhoI];

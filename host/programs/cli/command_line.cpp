@@ -123,9 +123,8 @@ std::vector<OptionRow> option_rows() {
       {"table response eval mueller plan lookup fit explore verify devices", "--device", &Options::device,
        "Vulkan device: its position or a part of its name"},
       {"table response eval mueller lookup fit", "--evaluator", &Options::evaluator,
-       "vulkan; cpu: the same text on the CPU; reference: independent adaptive quadrature; without it, that of the "
-       "table "
-       "or vulkan",
+       "vulkan; cpu: the same text on the CPU; reference: independent adaptive quadrature; by default the evaluator of "
+       "the table, or vulkan",
        CLI::IsMember({"vulkan", "cpu", "reference"})},
       {"verify", "--evaluator", &Options::evaluator, "vulkan; cpu: the same text on the CPU",
        CLI::IsMember({"vulkan", "cpu"})},

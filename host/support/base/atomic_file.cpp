@@ -258,7 +258,7 @@ AtomicFile::~AtomicFile() = default;
 const fs::path& AtomicFile::path() const { return impl_->path; }
 
 fs::path AtomicFile::open_path() const {
-  // Prefers the open file, because the name may be gone, or be that of another file by now.
+  // Prefers the open file, because the name may be gone, or belong to another file by now.
   return ::access(kOpenFiles, X_OK) == 0 ? fs::path(impl_->open_file()) : fs::absolute(impl_->name);
 }
 

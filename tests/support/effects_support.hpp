@@ -41,6 +41,8 @@ class RandomScenes {
     scene.accuracy.tolerance = std::pow(10.0, -random_.uniform(2.0, 6.0));
     scene.accuracy.precision = Precision::kDouble;
     add_radiation(scene);
+    if (scene.emission && keeps_projected_area(model.masking) && random_.chance(0.3))
+      scene.emission->model = EmissionModel::kDirect;
     if (random_.chance(0.1)) scene.surface.material = resonance(scene.spectrum);
     const bool is_direct = scene.emission && scene.emission->model == EmissionModel::kDirect;
     if (model.masking == Masking::kVCavity && !is_direct && coin()) scene.surface.scattering = Scattering::kMultiple;
@@ -65,7 +67,9 @@ class RandomScenes {
 
  private:
   bool coin() { return random_.chance(0.5); }
-  double temperature_K() { return random_.log_uniform(100.0, 6000.0); }
+  double temperature_K() {  // the radiance at 1 K is 0 in double
+    return random_.chance(0.05) ? 1.0 : random_.log_uniform(100.0, 6000.0);
+  }
 
   void add_radiation(SceneValues& scene) {
     if (random_.chance(0.8)) scene.emission = Emission{temperature_K(), EmissionModel::kMoments};
@@ -112,8 +116,7 @@ inline std::string describe(const SceneValues& s) {
       s.spectrum.min_um, s.spectrum.max_um, name_of(s.geometry.mode), s.geometry.view_zenith_deg,
       s.geometry.relative_azimuth_deg, s.accuracy.tolerance);
   if (s.emission)
-    text += fmt::format(", emission {:.9g} K{}", s.emission->temperature_K,
-                        s.emission->model == EmissionModel::kFresnel ? " fresnel" : "");
+    text += fmt::format(", emission {:.9g} K {}", s.emission->temperature_K, name_of(s.emission->model));
   if (s.surroundings) text += fmt::format(", surroundings {:.9g} K", s.surroundings->temperature_K);
   if (s.source) text += fmt::format(", source {:.4g} or {:.4g}", s.source->irradiance, s.source->relative_irradiance);
   if (s.path)

@@ -42,12 +42,14 @@ void set_dolp(PointResult& result, const Stokes& sum) {
   }
 }
 
-void add_emissivity(PointResult& result, const SpectralRule& rule, std::span<const Emissivity> emissivities) {
+void add_emissivity(PointResult& result, const SpectralRule& rule, std::span<const Emissivity> emissivities,
+                    double cos_theta) {
+  const MeanWeight weight_of = mean_weight(rule, cos_theta);
   double total = 0.0;
   double i = 0.0;
   double q = 0.0;
   for (std::size_t j = 0; j < emissivities.size(); ++j) {
-    const double weight = rule.samples[j].emitted;
+    const double weight = weight_of(rule.samples[j]);
     total += weight;
     i += weight * emissivities[j].i;
     q += weight * emissivities[j].q;
@@ -175,11 +177,16 @@ Radiometry::Radiometry(const SceneModel& scene, SpectralRule rule, const Radiome
       beam_specular_(scene.surface.specular),
       settings_(settings),
       knows_rho_(settings.kept.moments || scene.surface.specular == 0.0),
+      knows_emissivity_(knows_rho_ || emission_model(scene) == EmissionModel::kFresnel),
       rule_(std::move(rule)),
       kept_rule_(kept_rule(rule_, settings.kept)) {
   const KeptEffects& kept = settings.kept;
   if (!kept.moments) scene_.surface.specular = 0.0;
   if (!kept.diffuse) scene_.surface.diffuse = 0.0;
+  if (!kept.emission && emission_model(scene) == EmissionModel::kDirect) {
+    scene_.emission->model = EmissionModel::kMoments;  // the moments lack the direct emission
+    knows_emissivity_ = false;
+  }
   if (kept.surroundings && kept.profile)
     basis_ = settings.sky ? settings.sky : sky_basis(scene, std::array<const SpectralRule*, 1>{&rule_});
   sky_ = sky_weights(kept_rule_, basis_.get());
@@ -210,8 +217,7 @@ Radiometry::Optics Radiometry::optics_with(std::vector<FacetOptics> facets) cons
 
 PointResult Radiometry::finished(PointResult result) const {
   if (!settings_.kept.moments) result[kAlbedo] = kNan;
-  if (!knows_rho_ && emission_model(scene_) != EmissionModel::kFresnel)
-    result[kEmissivityS] = result[kEmissivityP] = kNan;
+  if (!knows_emissivity_) result[kEmissivityS] = result[kEmissivityP] = kNan;
   if (!knows_rho_) result[kRhoI] = result[kRhoQ] = result[kRhoErrorEstimate] = kNan;
   result[kErrorEstimate] += settings_.dropped;
   result.status |= tolerance_status(result, scene_.accuracy.tolerance);
@@ -322,7 +328,7 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
   result[kAlbedo] = moments.front().albedo / cos_theta;
   result[kRhoErrorEstimate] = relative_bound(mean.error, mean.rho_i);
   set_dolp(result, sum);
-  if (scene_.emission) add_emissivity(result, rule_, emissivities);
+  if (scene_.emission) add_emissivity(result, rule_, emissivities, cos_theta);
   if (scene_.emission && scene_.emission->has_bracket) {
     const auto direct = emissivities_of(EmissionModel::kDirect);
     const Bracket between = bracket(scene_, kept_rule_, reflectances, {direct.data(), direct.size()}, sky, cos_theta);

@@ -87,10 +87,11 @@ class Radiometry {
 
   PointResult finished(PointResult result) const;
 
-  SceneModel scene_;  ///< the scene; its specular or diffuse part is 0 if KeptEffects drops it
+  SceneModel scene_;  ///< the scene as it is kept: without dropped specular, diffuse or direct emission
   double beam_specular_;
   RadiometrySettings settings_;
   bool knows_rho_;
+  bool knows_emissivity_;
   SpectralRule rule_;
   SpectralRule kept_rule_;                 ///< rule_, with 0 for the radiation of dropped effects
   std::shared_ptr<const SkyBasis> basis_;  ///< functions of the sky; null if the scene has no sky profile or drops it

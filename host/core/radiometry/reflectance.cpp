@@ -12,12 +12,6 @@ namespace {
 // Relative rounding error of a reflectance, which takes fewer than 8 operations on positive terms.
 constexpr double kReflectanceRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
-double mean_weight(const SpectralSample& sample, double total_emitted, double total_incident, double cos_theta) {
-  if (total_emitted != 0.0) return sample.emitted;
-  if (total_incident != 0.0) return sample.irradiance * cos_theta + sample.surroundings;
-  return sample.width;
-}
-
 }  // namespace
 
 Reflectance reflectance(const Surface& surface, const Moments& moments, double cos_theta, const DiffuseLight& diffuse) {
@@ -41,22 +35,27 @@ bool is_unphysical(const Reflectance& r) {
   return std::max(above, below) > r.rho_q_error + kReflectanceRounding;
 }
 
+MeanWeight mean_weight(const SpectralRule& rule, double cos_theta) {
+  SpectralFactors total;
+  for (const SpectralSample& sample : rule.samples) {
+    total.emitted += sample.emitted;
+    total.surroundings += sample.irradiance * cos_theta + sample.surroundings;
+  }
+  if (total.emitted != 0.0) return {.emitted = 1.0};
+  if (total.surroundings != 0.0) return {.irradiance = cos_theta, .surroundings = 1.0};
+  return {.width = 1.0};
+}
+
 MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Reflectance> reflectances,
                                  double cos_theta) {
-  double emitted = 0.0;
-  double incident = 0.0;
-  for (const SpectralSample& sample : rule.samples) {
-    emitted += sample.emitted;
-    incident += sample.irradiance * cos_theta + sample.surroundings;
-  }
-  const auto weight_of = [&](std::size_t j) { return mean_weight(rule.samples[j], emitted, incident, cos_theta); };
+  const MeanWeight weight_of = mean_weight(rule, cos_theta);
   MeanReflectance mean;
   double total = 0.0;
   double rho_i_error = 0.0;
   double rho_q_error = 0.0;
   for (std::size_t j = 0; j < reflectances.size(); ++j) {
     const Reflectance& r = reflectances[j];
-    const double weight = weight_of(j);
+    const double weight = weight_of(rule.samples[j]);
     total += weight;
     mean.rho_i += weight * r.rho_i;
     mean.rho_q += weight * r.rho_q;
@@ -64,7 +63,7 @@ MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Refle
     rho_q_error += std::abs(weight) * (r.rho_q_error + rule.relative_error * std::abs(r.rho_q));
   }
   const auto error_of = [&](double Reflectance::*rho) {
-    return panel_error(rule, [&](std::size_t j, std::size_t m) { return weight_of(j) * (reflectances[m].*rho); });
+    return panel_error(rule, [&](std::size_t j, std::size_t m) { return weight_of(rule.samples[j]) * (reflectances[m].*rho); });
   };
   rho_i_error += error_of(&Reflectance::rho_i);
   rho_q_error += error_of(&Reflectance::rho_q);

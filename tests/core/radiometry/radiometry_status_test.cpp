@@ -108,6 +108,27 @@ TEST(Radiometry, NoRadiation_HasNoDolpAndSaysSo) {
             kOutsideModelDomain | kIntensityNotPositive | kRhoToleranceNotMet);
 }
 
+// Planck's function is 0 in double at 1 K and 10 um.
+TEST(Radiometry, EmissionOfZero_LeavesTheSourceAndTheEmissivity) {
+  SceneValues scene = night_scene();
+  scene.surroundings.reset();
+  scene.source = Source{};
+  scene.source->irradiance = 2.0;
+  scene.emission->temperature_K = 1.0;
+  const Direction direction = direction_of(30.0);
+  for (const EmissionModel model : {EmissionModel::kMoments, EmissionModel::kFresnel, EmissionModel::kDirect}) {
+    scene.emission->model = model;
+    Moments moments = moments_of({0.3, 0.1}, direction.cos_theta);
+    moments.direct_i = 0.6 * direction.cos_theta;
+    moments.direct_q = 0.2 * direction.cos_theta;
+    const PointResult result = evaluate(scene, direction, moments);
+    EXPECT_NEAR(result[Quantity::kDolp], 1.0 / 3.0, 1e-14);
+    EXPECT_GT(result[Quantity::kEmissivityS], 0.0);
+    if (model == EmissionModel::kDirect) EXPECT_NEAR(result[Quantity::kEmissivityS], 0.8, 1e-14);
+    EXPECT_EQ(result.status & kNoDolpPromised, 0U);
+  }
+}
+
 TEST(Radiometry, MomentsThatAreNotNumbers_AreOutsideTheDomainEverywhere) {
   Moments moments;
   moments.r_i = std::numeric_limits<double>::quiet_NaN();

@@ -144,7 +144,7 @@ struct IndexNode {
   real branch_im;
   real critical_cos;  // cos(beta) at which total reflection begins, sqrt(1 - Re N^2), if k is 0 or small; else 0
   real curve_start;   // position of the table of reflectances in the buffer DOLP_BINDING_RULE_NODES
-  real curve_cells;   // number of cells of the table of reflectances; 0 without a table
+  real curve_cells;   // number of cells of the table of reflectances, negative if they are measured; 0 without a table
 };
 
 struct GeometryNode {

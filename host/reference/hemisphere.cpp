@@ -270,9 +270,15 @@ class Hemisphere {
     return values;
   }
 
-  // Angles beta at which the Fresnel coefficients bend sharply: total reflection, and the (pseudo-)Brewster angle.
+  // Angles beta at which the Fresnel coefficients bend sharply: total reflection, and the (pseudo-)Brewster angle; or
+  // the rows of measured reflectances.
   std::vector<double> special_beta_rad() const {
-    std::vector<double> angles{std::atan(std::hypot(constants_.index.n, constants_.index.k))};
+    std::vector<double> angles;
+    if (constants_.measured) {
+      for (const double beta_deg : constants_.measured->beta_deg) angles.push_back(beta_deg * pi / 180.0);
+      return angles;
+    }
+    angles = {std::atan(std::hypot(constants_.index.n, constants_.index.k))};
     if (constants_.index.n < 1.0) angles.push_back(std::asin(constants_.index.n));
     return angles;
   }

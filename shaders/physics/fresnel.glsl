@@ -42,14 +42,22 @@ Fresnel fresnel(IndexNode index, real cos_beta) {
   return fresnel_of_sums(real2(index.n2m1_re, index.n2m1_im), cos_beta, w, s_sum, p_sum);
 }
 
-// Reads R_s, 1 - R_s and (R_s - R_p) / sin^2(beta) of films or of measured reflectances from a table. Each cell of the
-// table has cubics in sqrt(cos(beta)) (host/compute/plan/reflectance_curve.cpp).
+// Reads R_s, 1 - R_s and (R_s - R_p) / sin^2(beta) of films or of measured reflectances from a table
+// (host/compute/plan/reflectance_curve.cpp). Each cell of the table has cubics in sqrt(cos(beta)) (films) or in
+// sqrt(1 - cos(beta)) (measured). Measured reflectances have a kink at each measured angle. So beyond the angle in a
+// cell, other cubics follow.
 Fresnel reflectance_at(IndexNode index, real cos_beta) {
-  int cells = int(index.curve_cells);
-  real position = sqrt(cos_beta) * real(cells);
+  bool is_measured = index.curve_cells < real(0.0);
+  int cells = int(abs(index.curve_cells));
+  real position = sqrt(is_measured ? max(real(1.0) - cos_beta, real(0.0)) : cos_beta) * real(cells);
   int cell = min(int(position), cells - 1);
   real x = position - real(cell);
-  int first = int(index.curve_start) + DOLP_CURVE_NODES * cell;
+  int start = int(index.curve_start);
+  int first = start + DOLP_CURVE_NODES * cell;
+  if (is_measured) {
+    real2 kink = rule_node(start + DOLP_CURVE_NODES * cells + cell);
+    if (x > kink.x) first = start + int(kink.y);
+  }
   real value[3];
   for (int i = 0; i < 3; ++i) {
     real2 low = rule_node(first + 2 * i);

@@ -79,7 +79,7 @@ double masking_error(const KernelData& data, const MomentsEntry& entry, double u
 
 // R_s, an upper bound of M00 = (R_s + R_p) / 2. The bound falls as cos(beta) grows.
 double reflectance_s(const kernel::IndexNode& index, double cos_beta) {
-  if (index.curve_cells > 0.0) return 1.0;  // with films R_s may grow with cos(beta)
+  if (index.curve_cells != 0.0) return 1.0;  // with films R_s may grow with cos(beta)
   const std::complex<double> w =
       std::sqrt(std::complex<double>(index.n2m1_re + cos_beta * cos_beta, std::max(index.n2m1_im, 0.0)));
   return std::min(1.0, std::norm((cos_beta - w) / (cos_beta + w)));

@@ -170,6 +170,10 @@ kernel::IndexNode index_node(const FacetOptics& optics) {
           0.0};
 }
 
+double tables_tolerance(const MomentsRequest& request) {
+  return std::max(request.tolerance, kTablesShareOfTolerance * request.scene_tolerance);
+}
+
 // Adds the reflectance tables of all indices. Equal indices share a table. Interference fringes of films also increase
 // the numbers of nodes.
 void add_curves(KernelData& data, const MomentsRequest& request, Tables tables) {
@@ -182,11 +186,12 @@ void add_curves(KernelData& data, const MomentsRequest& request, Tables tables) 
     if (numbers.try_emplace(optics, different.size()).second) different.push_back(&optics);
   }
   std::vector<ReflectanceCurve> curves(different.size());
+  const double tolerance = tables_tolerance(request);
   if (tables == Tables::kCounted) {
-    std::ranges::fill(curves, reflectance_curve(*different[different.size() / 2], request.tolerance));
+    std::ranges::fill(curves, reflectance_curve(*different[different.size() / 2], tolerance));
   } else {
     parallel_ranges(curves.size(), 1, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) curves[i] = reflectance_curve(*different[i], request.tolerance);
+      for (std::size_t i = first; i < last; ++i) curves[i] = reflectance_curve(*different[i], tolerance);
     });
   }
   std::vector<double> starts;
@@ -200,7 +205,7 @@ void add_curves(KernelData& data, const MomentsRequest& request, Tables tables) 
     const std::size_t number = numbers.at(request.optics[i]);
     const ReflectanceCurve& curve = curves[number];
     data.indices[i].curve_start = starts[number];
-    data.indices[i].curve_cells = static_cast<double>(curve.cells);
+    data.indices[i].curve_cells = (request.optics[i].measured ? -1.0 : 1.0) * static_cast<double>(curve.cells);
     data.indices[i].pole_re = curve.pole.real();
     data.indices[i].pole_im = curve.pole.imag();
     data.curve_errors.push_back({curve.error, curve.steepness});
@@ -315,7 +320,8 @@ KernelData kernel_data(const MomentsRequest& request, const RuleModel& model, Ta
   data.directions = request.theta_deg.size();
   data.rule_nodes = rule_nodes(data.rule_order);
   const bool is_single = request.scattering == Scattering::kSingle;
-  if (request.sky) data.sky = append_sky(*request.sky, request.tolerance, is_single, data.rule_nodes);
+  const SkyTolerances for_sky{request.tolerance, tables_tolerance(request)};
+  if (request.sky) data.sky = append_sky(*request.sky, for_sky, is_single, data.rule_nodes);
   for (const FacetOptics& index : request.optics) data.indices.push_back(index_node(index));
   add_curves(data, request, tables);
   if (request.response) take_responses(data, *request.response);

@@ -1,7 +1,9 @@
 #include "plan/reflectance_curve.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <numbers>
 #include <ranges>
 #include <utility>
 
@@ -19,14 +21,10 @@ constexpr double kSafety = 2.0;       // error bound divided by the largest erro
 
 /// R_s, 1 - R_s and the split (R_s - R_p) / sin^2(beta) at one angle.
 using Values = std::array<double, 3>;
+using Cubics = std::array<std::array<double, 4>, 3>;
 constexpr std::size_t kSplit = 2;
 
 Values curve_values(const SmoothAbsorptance& absorbed) { return {1.0 - absorbed.s, absorbed.s, absorbed.split}; }
-
-SmoothAbsorptance absorptance_at(const FacetOptics& optics, double v) {
-  constexpr double kLeastCosine = 1e-12;  // smooth_absorptance() does not allow 0, where films reflect everything
-  return smooth_absorptance(optics, std::clamp(v * v, kLeastCosine, 1.0));
-}
 
 /// Coefficients of the cubic through values at 0, 1/3, 2/3 and 1.
 std::array<double, 4> cubic_through(double a, double b, double c, double d) {
@@ -43,8 +41,18 @@ class Sixths {
   Sixths(const FacetOptics& optics, std::size_t cells) : optics_(optics), absorptances_(6 * cells + 1) { compute(1); }
 
   std::size_t cells() const { return absorptances_.size() / 6; }
-  double v(std::size_t i) const { return static_cast<double>(i) / static_cast<double>(absorptances_.size() - 1); }
+  const FacetOptics& optics() const { return optics_; }
   const SmoothAbsorptance& operator[](std::size_t i) const { return absorptances_[i]; }
+
+  /// The variable of the table.
+  double variable(std::size_t i) const {
+    return static_cast<double>(i) / static_cast<double>(absorptances_.size() - 1);
+  }
+  double cosine(std::size_t i) const {
+    constexpr double kLeastCosine = 1e-12;  // smooth_absorptance() does not allow 0, where films reflect everything
+    const double square = variable(i) * variable(i);
+    return std::clamp(optics_.measured ? 1.0 - square : square, kLeastCosine, 1.0);
+  }
 
   /// Doubles the number of cells. Computes only the absorptances between the known ones.
   void divide() {
@@ -57,31 +65,118 @@ class Sixths {
  private:
   void compute(std::size_t step) {
     for (std::size_t i = step - 1; i < absorptances_.size(); i += step)
-      absorptances_[i] = absorptance_at(optics_, v(i));
+      absorptances_[i] = smooth_absorptance(optics_, cosine(i));
   }
 
   const FacetOptics& optics_;
   std::vector<SmoothAbsorptance> absorptances_;
 };
 
-void add_cell(ReflectanceCurve& curve, const Sixths& sixths, std::size_t cell) {
-  const double start = sixths.v(6 * cell), end = sixths.v(6 * cell + 6);
-  std::array<Values, 7> values;
+/// Values at the sixths of a cell.
+using CellValues = std::array<Values, 7>;
+
+Cubics cubics_through(const CellValues& values) {
+  Cubics cubics;
+  for (std::size_t part = 0; part < cubics.size(); ++part)
+    cubics[part] = cubic_through(values[0][part], values[2][part], values[4][part], values[6][part]);
+  return cubics;
+}
+
+void append(std::vector<std::array<double, 2>>& nodes, const Cubics& cubics) {
+  for (const std::array<double, 4>& cubic : cubics) {
+    nodes.push_back({cubic[0], cubic[1]});
+    nodes.push_back({cubic[2], cubic[3]});
+  }
+}
+
+/// A cell, with a kink where other cubics begin. Without a kink, its place is beyond the cell.
+struct Cell {
+  std::size_t number = 0;
+  Cubics before = {};
+  double kink = 2.0;
+  Cubics after = {};
+};
+
+CellValues cell_values(const Sixths& sixths, std::size_t cell) {
+  CellValues values;
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = curve_values(sixths[6 * cell + i]);
-  for (std::size_t part = 0; part < 3; ++part) {
-    const std::array<double, 4> cubic =
-        cubic_through(values[0][part], values[2][part], values[4][part], values[6][part]);
-    curve.nodes.push_back({cubic[0], cubic[1]});
-    curve.nodes.push_back({cubic[2], cubic[3]});
-    // Moments contain the split times sin^2(beta) = 1 - v^4, so the error of the split has this weight.
-    const double weight = part == kSplit ? 1.0 - start * start * start * start : 1.0;
+  return values;
+}
+
+void add_errors(ReflectanceCurve& curve, const Sixths& sixths, const Cell& cell, const CellValues& values) {
+  const std::size_t first = 6 * cell.number, last = first + 6;
+  const double start = sixths.variable(first), end = sixths.variable(last);
+  const double least_cosine = std::min(sixths.cosine(first), sixths.cosine(last));
+  // Change of ln(variable), times 2, with the relative rounding error of cos(beta)
+  const double relative = sixths.optics().measured ? 0.5 / end : end;
+  for (std::size_t part = 0; part < cell.before.size(); ++part) {
+    // Moments contain the split times sin^2(beta), so the error of the split has this weight.
+    const double weight = part == kSplit ? 1.0 - least_cosine * least_cosine : 1.0;
     for (const std::size_t i : {1U, 3U, 5U}) {
-      const double off = std::abs(at(cubic, static_cast<double>(i) / 6.0) - values[i][part]);
+      const double x = static_cast<double>(i) / 6.0;
+      const double off = std::abs(at((x > cell.kink ? cell.after : cell.before)[part], x) - values[i][part]);
       curve.error = std::max(curve.error, kSafety * weight * off);
     }
     const double change = std::abs(values[6][part] - values[0][part]) / (end - start);
-    curve.steepness = std::max(curve.steepness, weight * change * end);
+    curve.steepness = std::max(curve.steepness, weight * change * relative);
   }
+}
+
+double u_at(double beta_deg) { return std::numbers::sqrt2 * std::sin(beta_deg * std::numbers::pi / 360.0); }
+
+/// The cell of measured reflectances, split at its first row.
+Cell measured_cell(const Sixths& sixths, std::size_t number) {
+  const MeasuredReflectance& measured = *sixths.optics().measured;
+  const auto cubics_below = [&](std::size_t row) {
+    CellValues values;
+    for (std::size_t i = 0; i < values.size(); i += 2)
+      values[i] = curve_values(measured_absorptance(measured, row, sixths.cosine(6 * number + i)));
+    return cubics_through(values);
+  };
+  const std::size_t row = measured.row_above(std::acos(sixths.cosine(6 * number)) * 180.0 / std::numbers::pi);
+  Cell cell{number, cubics_below(row)};
+  const double place = u_at(measured.beta_deg[row]) * static_cast<double>(sixths.cells()) - static_cast<double>(number);
+  if (row + 1 == measured.beta_deg.size() || place >= 1.0) return cell;
+  cell.kink = place;
+  cell.after = cubics_below(row + 1);
+  return cell;
+}
+
+/// So many cells that measured angles are in different cells, if the limit allows it.
+std::size_t fewest_cells(const FacetOptics& optics) {
+  if (!optics.measured) return kFewestCells;
+  double step = 1.0 / static_cast<double>(kFewestCells);
+  const std::vector<double>& beta_deg = optics.measured->beta_deg;
+  for (std::size_t i = 1; i < beta_deg.size(); ++i) step = std::min(step, u_at(beta_deg[i]) - u_at(beta_deg[i - 1]));
+  if (step * static_cast<double>(kMostCells) < 1.0) return kMostCells;
+  return std::bit_ceil(static_cast<std::size_t>(std::ceil(1.0 / step)));
+}
+
+ReflectanceCurve film_curve(const Sixths& sixths) {
+  ReflectanceCurve curve{.cells = sixths.cells()};
+  curve.nodes.reserve(DOLP_CURVE_NODES * curve.cells);
+  for (std::size_t i = 0; i < curve.cells; ++i) {
+    const CellValues values = cell_values(sixths, i);
+    const Cell cell{i, cubics_through(values)};
+    append(curve.nodes, cell.before);
+    add_errors(curve, sixths, cell, values);
+  }
+  return curve;
+}
+
+ReflectanceCurve measured_curve(const Sixths& sixths) {
+  ReflectanceCurve curve{.cells = sixths.cells()};
+  std::vector<std::array<double, 2>> kinks, beyond;
+  for (std::size_t i = 0; i < curve.cells; ++i) {
+    const Cell cell = measured_cell(sixths, i);
+    append(curve.nodes, cell.before);
+    add_errors(curve, sixths, cell, cell_values(sixths, i));
+    kinks.push_back({cell.kink, static_cast<double>((DOLP_CURVE_NODES + 1) * curve.cells + beyond.size())});
+    if (cell.kink < 1.0) append(beyond, cell.after);
+  }
+  curve.nodes.insert(curve.nodes.end(), kinks.begin(), kinks.end());
+  curve.nodes.insert(curve.nodes.end(), beyond.begin(), beyond.end());
+  return curve;
 }
 
 /// A pole over cos(beta) that models the steepest part of R_s or R_p. Its real part is where this part lies. Its
@@ -90,13 +185,12 @@ std::complex<double> steepest_pole(const Sixths& sixths) {
   std::complex<double> pole(0.0, 1.0);
   for (const double SmoothAbsorptance::*part : {&SmoothAbsorptance::s, &SmoothAbsorptance::p}) {
     std::vector<std::pair<double, double>> curve;  // cos(beta) and the absorptance
-    for (std::size_t cell = 1; cell <= sixths.cells(); ++cell) {
-      const double v = sixths.v(6 * cell);
-      curve.emplace_back(v * v, sixths[6 * cell].*part);
-    }
+    for (std::size_t cell = 1; cell <= sixths.cells(); ++cell)
+      curve.emplace_back(sixths.cosine(6 * cell), sixths[6 * cell].*part);
     const auto [least, most] = std::ranges::minmax(curve | std::views::values);
     for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
-      const double slope = std::abs(curve[i + 1].second - curve[i].second) / (curve[i + 1].first - curve[i].first);
+      const double run = std::abs(curve[i + 1].first - curve[i].first);
+      const double slope = std::abs(curve[i + 1].second - curve[i].second) / run;
       const double width = 0.5 * (most - least) / std::max(slope, 0.5 * (most - least));
       if (width < pole.imag()) pole = {0.5 * (curve[i].first + curve[i + 1].first), width};
     }
@@ -108,11 +202,10 @@ std::complex<double> steepest_pole(const Sixths& sixths) {
 
 ReflectanceCurve reflectance_curve(const FacetOptics& optics, double tolerance) {
   const double wanted = kShareOfTolerance * tolerance * std::max(reflectance_level(optics), kLeastLevel);
-  Sixths sixths(optics, kFewestCells);
+  Sixths sixths(optics, fewest_cells(optics));
   ReflectanceCurve curve;
   while (true) {
-    curve = {.cells = sixths.cells()};
-    for (std::size_t cell = 0; cell < curve.cells; ++cell) add_cell(curve, sixths, cell);
+    curve = optics.measured ? measured_curve(sixths) : film_curve(sixths);
     if (curve.error <= wanted || curve.cells == kMostCells) break;
     sixths.divide();
   }

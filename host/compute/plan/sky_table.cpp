@@ -120,12 +120,13 @@ std::uint32_t SkyTable::word() const {
   return count == 0 ? 0U : start << DOLP_SKY_START_SHIFT | corners << DOLP_SKY_CORNERS_SHIFT | log2_cells;
 }
 
-SkyTable append_sky(const SkyBasis& basis, double tolerance, bool splits, std::vector<std::array<double, 2>>& nodes) {
+SkyTable append_sky(const SkyBasis& basis, const SkyTolerances& tolerances, bool splits,
+                    std::vector<std::array<double, 2>>& nodes) {
   SkyTable table;
   table.count = static_cast<std::uint32_t>(basis.size());
   table.start = static_cast<std::uint32_t>(nodes.size());
-  const std::uint32_t most = tolerance < kTightSky ? kMostTightSkyCells : kMostSkyCells;
-  const double allowed = kSkyTableShare * tolerance / kSkyTableSafety;
+  const std::uint32_t most = tolerances.table < kTightSky ? kMostTightSkyCells : kMostSkyCells;
+  const double allowed = kSkyTableShare * tolerances.table / kSkyTableSafety;
   std::uint32_t cells = kLeastSkyCells;
   const auto may_double = [&] { return 2 * cells * table.count <= most; };
   while (corner_distances(basis, cells).maxCoeff() > allowed && may_double()) cells *= 2;
@@ -137,7 +138,7 @@ SkyTable append_sky(const SkyBasis& basis, double tolerance, bool splits, std::v
   const Eigen::MatrixXd& ends = table_cells.ends();
   table.has_cusp = splits && (ends.row(1) - ends.row(0)).cwiseAbs().maxCoeff() * cells > kLeastBend;
   std::vector<Corner> corners = corners_of(basis);
-  const auto split = static_cast<std::ptrdiff_t>(splits ? split_corners(corners, ends.cols(), tolerance) : 0);
+  const auto split = static_cast<std::ptrdiff_t>(splits ? split_corners(corners, ends.cols(), tolerances.integral) : 0);
   table.corners = static_cast<std::uint32_t>(split);
   const Eigen::RowVectorXd bends = bends_of(std::span(corners).subspan(static_cast<std::size_t>(split)), ends.cols());
   for (Eigen::Index k = 0; k < ends.cols(); ++k) {

@@ -25,8 +25,14 @@ struct SkyTable {
   std::uint32_t word() const;
 };
 
+struct SkyTolerances {
+  double integral;  ///< of the moments; decides how many corners split the azimuths
+  double table;     ///< decides how many cells a table has
+};
+
 /// Appends to `nodes` as many cells as the tolerance needs, up to a limit. If `splits`, the kernel splits the azimuths
 /// at the sharpest corners. The cosines of the zeniths of these corners then follow the cells in `nodes`.
-SkyTable append_sky(const SkyBasis& basis, double tolerance, bool splits, std::vector<std::array<double, 2>>& nodes);
+SkyTable append_sky(const SkyBasis& basis, const SkyTolerances& tolerances, bool splits,
+                    std::vector<std::array<double, 2>>& nodes);
 
 }  // namespace dolp

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <compare>
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct MeasuredReflectance {
   std::vector<double> beta_deg;  ///< angles of incidence, ascending from 0 to 90; r_s and r_p are equal at 0
   std::vector<double> r_s;
   std::vector<double> r_p;
+
+  std::size_t row_above(double angle_deg) const;  ///< the first row beyond the angle; the last row if there is none
 };
 
 /// The material of a facet: a bare medium, a medium under films, or a surface with measured reflectances.

@@ -51,6 +51,7 @@ struct MomentsRequest {
   Scattering scattering = Scattering::kSingle;  ///< kMultiple only with v-cavity
   bool wants_direct = false;                    ///< requests also direct_i and direct_q; only with v-cavity or smith
   double tolerance = 1e-4;                      ///< allowed error of a moment, as a share of r_i
+  double scene_tolerance = 0.0;                 ///< limits the cost of tables if `tolerance` is far smaller
   Precision precision = Precision::kAuto;       ///< kAuto means float
   bool may_interpolate = true;                 ///< allows interpolation between slope distributions, within `tolerance`
   bool has_extra_splits = false;               ///< integrates with more panels than usual, to check another computation

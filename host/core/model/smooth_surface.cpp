@@ -77,37 +77,45 @@ double free_half_difference(const MeasuredReflectance& measured, double sin2) {
 /// The largest |R_s - R_p| / 2 with which R_s and R_p are in [0, 1].
 double half_difference_limit(double mean) { return std::max(std::min(mean, 1.0 - mean), 0.0); }
 
-SmoothAbsorptance covered_absorptance(const FacetOptics& optics, double cosine) {
-  if (!optics.measured) {
-    const ReflectedAmplitudes r = film_amplitudes(optics, cosine);
-    return {std::max(1.0 - std::norm(r.s), 0.0), std::max(1.0 - std::norm(r.p), 0.0)};
-  }
-  const MeasuredReflectance& measured = *optics.measured;
-  const double beta_deg = std::acos(std::min(cosine, 1.0)) * 180.0 / std::numbers::pi;
-  const auto above = std::ranges::upper_bound(measured.beta_deg, beta_deg);
-  const auto i = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(
-      above - measured.beta_deg.begin(), 1, static_cast<std::ptrdiff_t>(measured.beta_deg.size()) - 1));
-  const double share = (beta_deg - measured.beta_deg[i - 1]) / (measured.beta_deg[i] - measured.beta_deg[i - 1]);
-  const double r_s = std::lerp(measured.r_s[i - 1], measured.r_s[i], share);
-  const double r_p = std::lerp(measured.r_p[i - 1], measured.r_p[i], share);
-  if (i > 1) return {1.0 - r_s, 1.0 - r_p};
+double beta_deg_at(double cosine) { return std::acos(std::min(cosine, 1.0)) * 180.0 / std::numbers::pi; }
+
+/// measured_absorptance() without `split`.
+SmoothAbsorptance between_rows(const MeasuredReflectance& measured, std::size_t row, double cosine) {
+  const double before_deg = measured.beta_deg[row - 1];
+  const double share = (beta_deg_at(cosine) - before_deg) / (measured.beta_deg[row] - before_deg);
+  const double r_s = std::lerp(measured.r_s[row - 1], measured.r_s[row], share);
+  const double r_p = std::lerp(measured.r_p[row - 1], measured.r_p[row], share);
+  if (row > 1) return {1.0 - r_s, 1.0 - r_p};
   const double mean = 0.5 * (r_s + r_p);
   const double most = half_difference_limit(mean);
   const double half = std::clamp(free_half_difference(measured, (1.0 - cosine) * (1.0 + cosine)), -most, most);
   return {1.0 - mean - half, 1.0 - mean + half};
 }
 
-/// (R_s - R_p) / sin^2(beta). Near normal incidence, where it is 0 / 0, it is extrapolated linearly in sin^2(beta).
-double split_of(const FacetOptics& optics, double cosine, const SmoothAbsorptance& absorbed_here) {
+SmoothAbsorptance covered_absorptance(const FacetOptics& optics, double cosine) {
+  if (optics.measured) return between_rows(*optics.measured, optics.measured->row_above(beta_deg_at(cosine)), cosine);
+  const ReflectedAmplitudes r = film_amplitudes(optics, cosine);
+  return {std::max(1.0 - std::norm(r.s), 0.0), std::max(1.0 - std::norm(r.p), 0.0)};
+}
+
+/// Adds `split`, (R_s - R_p) / sin^2(beta), to absorptances. Near normal incidence, where it is 0 / 0, it is
+/// extrapolated linearly in sin^2(beta).
+template <typename Absorptance>
+SmoothAbsorptance with_split(const Absorptance& absorptance_at, double cosine) {
   constexpr double kStep = 1e-5;
+  SmoothAbsorptance absorbed = absorptance_at(cosine);
   const double sin2 = (1.0 - cosine) * (1.0 + cosine);
-  if (sin2 >= kStep) return (absorbed_here.p - absorbed_here.s) / sin2;
+  if (sin2 >= kStep) {
+    absorbed.split = (absorbed.p - absorbed.s) / sin2;
+    return absorbed;
+  }
   const auto at = [&](double square) {
-    const SmoothAbsorptance absorbed = covered_absorptance(optics, std::sqrt(1.0 - square));
-    return (absorbed.p - absorbed.s) / square;
+    const SmoothAbsorptance near = absorptance_at(std::sqrt(1.0 - square));
+    return (near.p - near.s) / square;
   };
   const double first = at(kStep);
-  return first + (sin2 / kStep - 1.0) * (at(2.0 * kStep) - first);
+  absorbed.split = first + (sin2 / kStep - 1.0) * (at(2.0 * kStep) - first);
+  return absorbed;
 }
 
 }  // namespace
@@ -151,9 +159,16 @@ double fringe_count(const FacetOptics& optics) {
 
 SmoothAbsorptance smooth_absorptance(const FacetOptics& optics, double cosine) {
   if (optics.is_bare()) return bare_absorptance(optics.index, cosine);
-  SmoothAbsorptance absorbed = covered_absorptance(optics, cosine);
-  absorbed.split = split_of(optics, cosine, absorbed);
-  return absorbed;
+  return with_split([&](double at) { return covered_absorptance(optics, at); }, cosine);
+}
+
+std::size_t MeasuredReflectance::row_above(double angle_deg) const {
+  const auto above = std::upper_bound(beta_deg.begin() + 1, beta_deg.end() - 1, angle_deg);
+  return static_cast<std::size_t>(above - beta_deg.begin());
+}
+
+SmoothAbsorptance measured_absorptance(const MeasuredReflectance& measured, std::size_t row, double cosine) {
+  return with_split([&](double at) { return between_rows(measured, row, at); }, cosine);
 }
 
 bool limits_difference(const MeasuredReflectance& measured) {

@@ -38,6 +38,10 @@ struct SmoothAbsorptance {
 /// and the relative error of `split` is 1e-10.
 SmoothAbsorptance smooth_absorptance(const FacetOptics& optics, double cosine);
 
+/// The absorptances that two neighbouring rows of measured reflectances give, continued beyond the rows. `row`: the row
+/// at the larger angle.
+SmoothAbsorptance measured_absorptance(const MeasuredReflectance& measured, std::size_t row, double cosine);
+
 /// True if |R_s - R_p| is limited somewhere between the first two rows, so that both stay in [0, 1].
 bool limits_difference(const MeasuredReflectance& measured);
 

@@ -16,15 +16,14 @@ namespace {
 
 constexpr Eigen::Index kFewestThinned = 32;  // with fewer samples, a thinner rule saves little
 // Number of angles at which curves are compared, and how many more for each fringe between grazing and normal
-// incidence. With half as many, the rule of paint_on_metal keeps 92 of 412 samples instead of 56, with twice as
-// many 56.
+// incidence. With half, this and twice as many, the rule of paint_on_metal keeps 60, 62 and 56 of 414 samples.
 constexpr Eigen::Index kThinAngles = 64;
 constexpr Eigen::Index kThinAnglesOfFringe = 12;
 constexpr double kMostThinFringes = 64.0;
-constexpr Eigen::Index kSamplesOfTest = 4;
+constexpr Eigen::Index kSamplesOfTest = 2;
 // The largest error of a sum at a tested angle is at most this share of the tolerance. The tested angles are as dense
 // as those that choose the samples, so that the error elsewhere is at most kThinSafety times as large.
-constexpr double kThinShareOfTolerance = 0.02;
+constexpr double kThinShareOfTolerance = 0.03;
 constexpr double kLeastThinError = 1e-10;
 constexpr double kThinSafety = 2.0;
 constexpr double kLeastPart = 1e-4;  // the absorbed and the reflected share of radiation count as at least this

@@ -140,6 +140,7 @@ PartRequests::PartRequests(const SceneValues& scene, const SpectralIndices& samp
   moments_.wants_direct = plan.needs_direct;
   moments_.precision = beams_.precision = level.precision;
   moments_.tolerance = level.tolerance;
+  moments_.scene_tolerance = scene.accuracy.tolerance;
   moments_.has_extra_splits = level.is_check;
   moments_.basis = level.basis;
   moments_.sky = plan.sky;

@@ -124,23 +124,25 @@ CountedPart counted(const RunPrediction& run, const SceneValues& scene, const Sc
   return sample;
 }
 
-/// Counts the work of a small sample first. If the run allows it, counts a larger sample instead.
+/// Counts the work of a small sample first, and then of larger samples, as far as the run allows it. Entries may differ
+/// much in their work, so each sample decides whether a larger one is affordable.
 CountedPart counted_sample(RunPrediction& run, const SceneValues& scene, const SceneEntries& entries,
                            const EffectPlan& plan) {
+  constexpr std::size_t kGrowth = 4;
   const std::size_t all = run.counts_directions ? entries.theta_deg().size() : entries.size();
   const std::size_t most = std::min(all, run.counts_directions ? kCountedDirections : kCountedEntries);
   const std::size_t entries_of_few = std::max<std::size_t>(1, kFewCountedMoments / run.spectral_samples);
-  const std::size_t few = run.counts_directions ? 1 : std::min(most, entries_of_few);
-  CountedPart sample = counted(run, scene, entries, plan, few);
-  const double each = sample.evaluations() / static_cast<double>(few);
-  const double allowed = allowed_evaluations(each * static_cast<double>(all));
-  const double fit = each > 0.0 ? std::min(allowed / each, static_cast<double>(most)) : static_cast<double>(most);
-  const auto count = static_cast<std::size_t>(fit);
-  run.counted_evaluations = sample.evaluations();
-  if (count <= few) return sample;
-  sample = counted(run, scene, entries, plan, count);
-  run.counted_evaluations += sample.evaluations();
-  return sample;
+  std::size_t count = run.counts_directions ? 1 : std::min(most, entries_of_few);
+  while (true) {
+    CountedPart sample = counted(run, scene, entries, plan, count);
+    run.counted_evaluations += sample.evaluations();
+    const double each = sample.evaluations() / static_cast<double>(count);
+    const double allowed = allowed_evaluations(each * static_cast<double>(all));
+    const double next =
+        std::min(static_cast<double>(std::min(most, kGrowth * count)), allowed / each);  // each may be 0
+    if (next < static_cast<double>(count + 1)) return sample;
+    count = static_cast<std::size_t>(next);
+  }
 }
 
 void count_work(RunPrediction& run, const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,

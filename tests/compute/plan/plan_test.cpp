@@ -267,6 +267,49 @@ TEST(ReflectanceCurve, CubicsOfAFilm_KeepTheirBound) {
   }
 }
 
+// Straight lines between rows have kinks at the rows, which are in different cells.
+TEST(ReflectanceCurve, MeasuredRows_AreReadWithTheirKinks) {
+  const auto rows = std::make_shared<MeasuredReflectance>();
+  rows->beta_deg = {0.0, 3.0, 5.0, 40.0, 41.5, 80.0, 90.0};
+  rows->r_s = {0.3, 0.4, 0.2, 0.9, 0.1, 0.8, 0.7};
+  rows->r_p = {0.3, 0.35, 0.6, 0.5, 0.2, 0.1, 0.9};
+  FacetOptics optics;
+  optics.measured = rows;
+  const ReflectanceCurve curve = reflectance_curve(optics, 1e-6);
+  EXPECT_LT(curve.error, 1e-6);
+  std::size_t beyond = 0;
+  for (double beta_deg = 0.005; beta_deg < 90.0; beta_deg += 0.0173) {
+    const double cosine = std::cos(beta_deg * std::numbers::pi / 180.0);
+    const double position = std::sqrt(1.0 - cosine) * static_cast<double>(curve.cells);
+    const auto cell = static_cast<std::size_t>(position);
+    const double x = position - static_cast<double>(cell);
+    const auto& [kink, after] = curve.nodes[curve.cells * DOLP_CURVE_NODES + cell];
+    const auto first = x > kink ? static_cast<std::size_t>(after) : cell * DOLP_CURVE_NODES;
+    beyond += x > kink ? 1 : 0;
+    const auto read = [&](std::size_t part) {
+      const auto* node = &curve.nodes[first + 2 * part];
+      return node[0][0] + x * (node[0][1] + x * (node[1][0] + x * node[1][1]));
+    };
+    const SmoothAbsorptance absorbed = smooth_absorptance(optics, cosine);
+    EXPECT_NEAR(read(0), 1.0 - absorbed.s, curve.error) << beta_deg;
+    EXPECT_NEAR(read(1), absorbed.s, curve.error) << beta_deg;
+    const double sin2 = (1.0 - cosine) * (1.0 + cosine);
+    EXPECT_NEAR(read(2) * sin2, absorbed.split * sin2, curve.error) << beta_deg;
+  }
+  EXPECT_GT(beyond, 0U);
+}
+
+TEST(KernelData, SceneTolerance_LimitsTheTablesOfTighterLevels) {
+  FacetOptics film(1.5, 0.0);
+  film.films = {{{2.2, 0.01}, 5.8}};
+  MomentsRequest request{.tolerance = 1e-5, .theta_deg = {40.0}, .optics = {film}, .sigma = {0.2}, .q = {2.0}};
+  const double cells = kernel_data(request).indices[0].curve_cells;
+  request.tolerance = 1e-8;
+  EXPECT_GT(kernel_data(request).indices[0].curve_cells, cells);
+  request.scene_tolerance = 1e-4;  // tables have a tenth of it
+  EXPECT_EQ(kernel_data(request).indices[0].curve_cells, cells);
+}
+
 TEST(SkyTable, CellsOfAFunctionWithACorner_KeepTheirBoundBesideIt) {
   const SkyNodes sky_nodes({0.0, 50.0, 90.0});
   Eigen::VectorXd values(static_cast<Eigen::Index>(sky_nodes.zenith_deg().size()));
@@ -274,7 +317,7 @@ TEST(SkyTable, CellsOfAFunctionWithACorner_KeepTheirBoundBesideIt) {
     values[i] = 0.2 + std::abs(sky_nodes.zenith_deg()[static_cast<std::size_t>(i)] - 50.0) / 90.0;
   const SkyBasis basis(sky_nodes, {values}, 1e-9);
   std::vector<std::array<double, 2>> nodes(7);
-  const SkyTable table = append_sky(basis, 1e-4, true, nodes);
+  const SkyTable table = append_sky(basis, {1e-4, 1e-4}, true, nodes);
   EXPECT_EQ(table.start, 7U);
   EXPECT_EQ(table.corners_deg, std::vector<double>{50.0});
   const std::size_t cells = std::size_t{1} << table.log2_cells;

@@ -360,6 +360,31 @@ TEST(MeasuredReflectances, WideFirstInterval_StaysWithinZeroAndOneInEveryEvaluat
   }
 }
 
+// Rows that change by up to half from angle to angle: straight lines between them have kinks, as in integrals over
+// facets. The tables of the kernels follow the kinks, so that the results meet their tolerance.
+TEST(MeasuredReflectances, JaggedRows_MeetTheToleranceAndTheReference) {
+  const TemporaryFile file("jagged.csv",
+                           "beta_deg,r_s,r_p\n0,0.3,0.3\n7,0.5,0.2\n9,0.4,0.3\n31,0.8,0.1\n33,0.4,0.4\n60,0.7,0.2\n"
+                           "71,0.5,0.1\n90,0.9,0.7\n");
+  for (const char* masking : {"smith", "v-cavity"}) {
+    const SceneValues scene =
+        scene_with({std::string("surface.masking=") + masking, "surface.q=3", "surface.sigma=0.05",
+                    "surface.coating=none", "surface.n={}", "surface.k={}", "grid.theta_deg=[0, 32, 70]",
+                    "surface.reflectance_file=" + file.path(), "accuracy.tolerance=1e-3"});
+    const std::vector<PointResult> results = results_of(scene);
+    ReferenceEvaluator reference({.relative_tolerance = 1e-5});
+    const std::vector<PointResult> right = evaluate_scene(scene, grid_entries(scene), reference, {});
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      EXPECT_EQ(results[i].status & kAnyToleranceNotMet, 0U) << masking << i;
+      EXPECT_NEAR(results[i][kRhoI], right[i][kRhoI],
+                  (results[i][kRhoErrorEstimate] + right[i][kRhoErrorEstimate]) * right[i][kRhoI])
+          << masking << i;
+      EXPECT_NEAR(results[i][kQOverI], right[i][kQOverI], results[i][kErrorEstimate] + right[i][kErrorEstimate])
+          << masking << i;
+    }
+  }
+}
+
 TEST(MeasuredReflectances, BadFiles_AreRefusedWithTheirLine) {
   const std::pair<const char*, const char*> cases[] = {
       {"beta_deg,r_s,r_p\n0,0.1,0.1\n80,0.5,0.2\n", ":3: beta_deg = 80: must be 90 in one row"},

@@ -16,6 +16,8 @@ import sys
 import tempfile
 import unittest
 
+import yaml
+
 sys.dont_write_bytecode = True  # no cache folders in the sources
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -188,6 +190,14 @@ class Manual(unittest.TestCase):
                     self.assertTrue(target.exists(), "leads nowhere")
                     if anchor:
                         self.assertIn(anchor, anchors(target.read_text(encoding="utf-8")))
+
+    def test_workflow_runs_the_commands_of_the_readme(self):
+        workflow = yaml.safe_load((ROOT / ".github/workflows/tests.yml").read_text(encoding="utf-8"))
+        commands = [step["run"] for step in workflow["jobs"]["readme"]["steps"] if "run" in step]
+        readme = (ROOT / "README.md").read_text(encoding="utf-8")
+        self.assertEqual(commands, ["bash host/quickstart.sh", "bash tests/run.sh"])
+        for command in commands:
+            self.assertIn(f"\n{command} ", readme)
 
     def test_model_has_one_place(self):
         """Only shaders/physics/README.md describes the model. No file mentions the file that described it before."""

@@ -44,12 +44,12 @@ void set_dolp(PointResult& result, const Stokes& sum) {
 
 void add_emissivity(PointResult& result, const SpectralRule& rule, std::span<const Emissivity> emissivities,
                     double cos_theta) {
-  const MeanWeight weight_of = mean_weight(rule, cos_theta);
+  const MeanLight light = mean_light(rule, cos_theta);
   double total = 0.0;
   double i = 0.0;
   double q = 0.0;
   for (std::size_t j = 0; j < emissivities.size(); ++j) {
-    const double weight = weight_of(rule.samples[j]);
+    const double weight = mean_weight(rule.samples[j], light, cos_theta);
     total += weight;
     i += weight * emissivities[j].i;
     q += weight * emissivities[j].q;

@@ -35,20 +35,33 @@ bool is_unphysical(const Reflectance& r) {
   return std::max(above, below) > r.rho_q_error + kReflectanceRounding;
 }
 
-MeanWeight mean_weight(const SpectralRule& rule, double cos_theta) {
-  SpectralFactors total;
+MeanLight mean_light(const SpectralRule& rule, double cos_theta) {
+  double emitted = 0.0;
+  double incident = 0.0;
   for (const SpectralSample& sample : rule.samples) {
-    total.emitted += sample.emitted;
-    total.surroundings += sample.irradiance * cos_theta + sample.surroundings;
+    emitted += sample.emitted;
+    incident += sample.irradiance * cos_theta + sample.surroundings;
   }
-  if (total.emitted != 0.0) return {.emitted = 1.0};
-  if (total.surroundings != 0.0) return {.irradiance = cos_theta, .surroundings = 1.0};
-  return {.width = 1.0};
+  if (emitted != 0.0) return MeanLight::kEmitted;
+  return incident != 0.0 ? MeanLight::kIncident : MeanLight::kWidth;
+}
+
+double mean_weight(const SpectralSample& sample, MeanLight light, double cos_theta) {
+  switch (light) {
+    case MeanLight::kEmitted:
+      return sample.emitted;
+    case MeanLight::kIncident:
+      return sample.irradiance * cos_theta + sample.surroundings;
+    case MeanLight::kWidth:
+      return sample.width;
+  }
+  return 0.0;
 }
 
 MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Reflectance> reflectances,
                                  double cos_theta) {
-  const MeanWeight weight_of = mean_weight(rule, cos_theta);
+  const MeanLight light = mean_light(rule, cos_theta);
+  const auto weight_of = [&](const SpectralSample& sample) { return mean_weight(sample, light, cos_theta); };
   MeanReflectance mean;
   double total = 0.0;
   double rho_i_error = 0.0;
@@ -63,7 +76,8 @@ MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Refle
     rho_q_error += std::abs(weight) * (r.rho_q_error + rule.relative_error * std::abs(r.rho_q));
   }
   const auto error_of = [&](double Reflectance::*rho) {
-    return panel_error(rule, [&](std::size_t j, std::size_t m) { return weight_of(rule.samples[j]) * (reflectances[m].*rho); });
+    return panel_error(
+        rule, [&](std::size_t j, std::size_t m) { return weight_of(rule.samples[j]) * (reflectances[m].*rho); });
   };
   rho_i_error += error_of(&Reflectance::rho_i);
   rho_q_error += error_of(&Reflectance::rho_q);
@@ -83,6 +97,7 @@ Emissivity direct_emissivity(const Surface& surface, const Moments& moments, dou
                              const DiffuseLight& diffuse) {
   const double scale = surface.specular / cos_theta;
   const double rest = 1.0 - surface.specular;
+  if (surface.specular == 0.0) return {.i = rest - diffuse.i, .q = -diffuse.q, .terms = rest + diffuse.i};
   return {.i = scale * moments.direct_i + rest - diffuse.i,
           .q = scale * moments.direct_q - diffuse.q,
           .i_error = scale * moments.direct_i_error,

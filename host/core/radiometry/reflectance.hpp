@@ -39,22 +39,14 @@ Reflectance reflectance(const Surface& surface, const Moments& moments, double c
 /// True if rho_s or rho_p is outside [0, 1] by more than its error.
 bool is_unphysical(const Reflectance& r);
 
-/// Weight of a spectral sample in the mean of a reflectance or an emissivity: a sum of the sample's factors.
-struct MeanWeight {
-  double emitted = 0.0;
-  double irradiance = 0.0;
-  double surroundings = 0.0;
-  double width = 0.0;
-  double operator()(const SpectralFactors& sample) const {
-    return emitted * sample.emitted + irradiance * sample.irradiance + surroundings * sample.surroundings +
-           width * sample.width;
-  }
-};
+/// The light with which a sample counts in the mean of a reflectance or an emissivity.
+enum class MeanLight { kEmitted, kIncident, kWidth };
 
-/// The weights are the emitted light; if it is 0, the incident light; if both are 0, the sample widths.
-MeanWeight mean_weight(const SpectralRule& rule, double cos_theta);
+/// The emitted light; if there is none, the incident light; if there is neither, the sample width.
+MeanLight mean_light(const SpectralRule& rule, double cos_theta);
+double mean_weight(const SpectralSample& sample, MeanLight light, double cos_theta);
 
-/// Mean of rho over the samples, with mean_weight().
+/// Mean of rho over the samples, with mean_light().
 MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Reflectance> reflectances, double cos_theta);
 
 Emissivity fresnel_emissivity(const FacetOptics& index, double cos_theta);

@@ -107,7 +107,7 @@ PlannedRun planned_run(const SceneValues& scene, const std::string& device, Effe
   const RunPrediction& run = planned.run;
   const double evaluations = run.first_evaluations + run.again_evaluations;
   const double per_moment = evaluations / static_cast<double>(std::max<std::size_t>(run.moments, 1));
-  planned.between = forecast_interpolation(scene, planned.plan, allowed_evaluations(evaluations),
+  planned.between = forecast_interpolation(scene, planned.plan, allowed_evaluations(scene, evaluations),
                                            per_moment * static_cast<double>(run.spectral_samples));
   planned.run.host_bytes += static_cast<double>(without_a_run);
   return planned;

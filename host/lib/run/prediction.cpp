@@ -128,7 +128,7 @@ CountedPart counted(const RunPrediction& run, const SceneValues& scene, const Sc
 /// much in their work, so each sample decides whether a larger one is affordable.
 CountedPart counted_sample(RunPrediction& run, const SceneValues& scene, const SceneEntries& entries,
                            const EffectPlan& plan) {
-  constexpr std::size_t kGrowth = 4;
+  constexpr std::size_t kGrowth = 2;
   const std::size_t all = run.counts_directions ? entries.theta_deg().size() : entries.size();
   const std::size_t most = std::min(all, run.counts_directions ? kCountedDirections : kCountedEntries);
   const std::size_t entries_of_few = std::max<std::size_t>(1, kFewCountedMoments / run.spectral_samples);
@@ -137,7 +137,7 @@ CountedPart counted_sample(RunPrediction& run, const SceneValues& scene, const S
     CountedPart sample = counted(run, scene, entries, plan, count);
     run.counted_evaluations += sample.evaluations();
     const double each = sample.evaluations() / static_cast<double>(count);
-    const double allowed = allowed_evaluations(each * static_cast<double>(all));
+    const double allowed = allowed_evaluations(scene, each * static_cast<double>(all));
     const double next =
         std::min(static_cast<double>(std::min(most, kGrowth * count)), allowed / each);  // each may be 0
     if (next < static_cast<double>(count + 1)) return sample;
@@ -172,7 +172,9 @@ std::size_t response_bytes(const MomentsStep& step) {
 
 }  // namespace
 
-double allowed_evaluations(double of_run) { return std::max(kFreeEvaluations, of_run / kPlanShare); }
+double allowed_evaluations(const SceneValues& scene, double run_evaluations) {
+  return std::max(scene.surface.is_bare() ? kFreeEvaluations : kFreeEvaluationsOfCurves, run_evaluations / kPlanShare);
+}
 
 RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& effects,
                           bool has_double, const RequestVisitor& visit) {

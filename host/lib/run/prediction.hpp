@@ -20,12 +20,14 @@ inline constexpr std::size_t kCountedDirections = 6;
 inline constexpr std::size_t kFewCountedMoments = 8;
 
 // Each of two parts of a plan, the sample and the forecast of lookups, may take 1 / kPlanShare of the run. It may take
-// kFreeEvaluations integrand evaluations in any case, which one core computes in about 0.1 s.
+// kFreeEvaluations integrand evaluations in any case, which one core computes in about 0.1 s. With films or measured
+// reflectances an evaluation takes four times as long.
 inline constexpr double kPlanShare = 25.0;
 inline constexpr double kFreeEvaluations = 1e6;
+inline constexpr double kFreeEvaluationsOfCurves = 2.5e5;
 
-/// Integrand evaluations that a part of a plan may take for a run with `of_run` evaluations.
-double allowed_evaluations(double of_run);
+/// Integrand evaluations that a part of a plan may take for a run of `scene` with so many evaluations.
+double allowed_evaluations(const SceneValues& scene, double run_evaluations);
 
 struct RunPrediction {
   std::size_t entries = 0;

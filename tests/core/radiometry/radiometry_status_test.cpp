@@ -111,7 +111,10 @@ TEST(Radiometry, NoRadiation_HasNoDolpAndSaysSo) {
 // Planck's function is 0 in double at 1 K and 10 um.
 TEST(Radiometry, EmissionOfZero_LeavesTheSourceAndTheEmissivity) {
   SceneValues scene = night_scene();
+  scene.surface.specular = 1.0;
+  scene.surface.diffuse = 0.0;
   scene.surroundings.reset();
+  scene.path.reset();
   scene.source = Source{};
   scene.source->irradiance = 2.0;
   scene.emission->temperature_K = 1.0;
@@ -122,9 +125,11 @@ TEST(Radiometry, EmissionOfZero_LeavesTheSourceAndTheEmissivity) {
     moments.direct_i = 0.6 * direction.cos_theta;
     moments.direct_q = 0.2 * direction.cos_theta;
     const PointResult result = evaluate(scene, direction, moments);
-    EXPECT_NEAR(result[Quantity::kDolp], 1.0 / 3.0, 1e-14);
+    EXPECT_NEAR(result[Quantity::kDolp], 0.5, 1e-14);  // rho_s = 0.3, rho_p = 0.1
     EXPECT_GT(result[Quantity::kEmissivityS], 0.0);
-    if (model == EmissionModel::kDirect) EXPECT_NEAR(result[Quantity::kEmissivityS], 0.8, 1e-14);
+    if (model == EmissionModel::kDirect) {
+      EXPECT_NEAR(result[Quantity::kEmissivityS], 0.8, 1e-14);
+    }
     EXPECT_EQ(result.status & kNoDolpPromised, 0U);
   }
 }

@@ -30,6 +30,8 @@ import scenes
 
 _HANG_S = 240           # a call that takes longer counts as a hang; ordinary calls take under a second
 _PATIENCE_S = 60        # the reference may need minutes for an entry (bands, thick films); `verify` is then ended
+# A scene with more integrand evaluations, such as a band of a film of 1 mm, is planned and not computed.
+_MOST_EVALUATIONS = 2e8
 _COMMANDS_EVERY = 10
 _EVALUATOR = "cpu"      # of the calls; the commands use the Vulkan device
 _MOST_REPORTED = 20
@@ -76,7 +78,7 @@ class Walk:
         self._folder = folder
 
     def scene(self, seed: int, report: Callable[[str], None]) -> str:
-        """Runs all calls on the scene of a seed. Returns "taken" or "refused"."""
+        """Runs all calls on the scene of a seed. Returns "taken", "refused" or "large"."""
         report("draw")
         text = scenes.draw(seed, self._folder)
         try:
@@ -84,10 +86,20 @@ class Walk:
         except dolp.InputError as error:
             check_refusal(str(error))
             scene = None
+        report("plan")
+        if scene is not None and self._is_large(scene):
+            return "large"
         refused = "no scene" if scene is None else self._calls(scene, report)
         if seed % _COMMANDS_EVERY == 0:
             self._commands(text, bool(refused), report)
         return "refused" if refused else "taken"
+
+    @staticmethod
+    def _is_large(scene: dolp.Scene) -> bool:
+        try:
+            return bool(dolp.plan(scene).values["evaluations"] > _MOST_EVALUATIONS)
+        except dolp.InputError:
+            return False
 
     def _calls(self, scene: dolp.Scene, report: Callable[[str], None]) -> str:
         """Runs the calls of the package. Returns why `table` refuses the scene, or an empty text."""

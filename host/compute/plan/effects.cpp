@@ -250,7 +250,9 @@ Effect band_row(const SceneValues& scene, const EffectPlan& plan, const SceneEnt
 }  // namespace
 
 bool gives_emissivity(const SceneValues& scene, const EffectPlan& plan) {
-  return scene.emission && (plan.gives_rho || is_fresnel(scene));
+  if (!scene.emission || is_fresnel(scene)) return scene.emission.has_value();
+  const bool lacks_direct = emits_as(scene, EmissionModel::kDirect) && !plan.kept.emission;
+  return plan.gives_rho && !lacks_direct;
 }
 
 EffectPlan plan_effects(const SceneValues& scene, const SceneEntries& entries, bool keep_all) {

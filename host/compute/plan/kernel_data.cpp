@@ -185,24 +185,23 @@ void add_curves(KernelData& data, const MomentsRequest& request, Tables tables) 
   for (const FacetOptics& optics : request.optics) {
     if (numbers.try_emplace(optics, different.size()).second) different.push_back(&optics);
   }
+  double fringes = 0.0;
+  for (const FacetOptics* optics : different) fringes = std::max(fringes, fringe_count(*optics));
+  const bool is_counted = tables == Tables::kCounted;
+  if (is_counted) different = {different[different.size() / 2]};  // a film may need many megabytes for each wavelength
   std::vector<ReflectanceCurve> curves(different.size());
   const double tolerance = tables_tolerance(request);
-  if (tables == Tables::kCounted) {
-    std::ranges::fill(curves, reflectance_curve(*different[different.size() / 2], tolerance));
-  } else {
-    parallel_ranges(curves.size(), 1, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) curves[i] = reflectance_curve(*different[i], tolerance);
-    });
-  }
+  parallel_ranges(curves.size(), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) curves[i] = reflectance_curve(*different[i], tolerance);
+  });
   std::vector<double> starts;
-  double fringes = 0.0;
-  for (std::size_t i = 0; i < curves.size(); ++i) {
+  for (const ReflectanceCurve& curve : curves) {
     starts.push_back(static_cast<double>(data.rule_nodes.size()));
-    data.rule_nodes.insert(data.rule_nodes.end(), curves[i].nodes.begin(), curves[i].nodes.end());
-    fringes = std::max(fringes, fringe_count(*different[i]));
+    data.rule_nodes.insert(data.rule_nodes.end(), curve.nodes.begin(), curve.nodes.end());
   }
+  if (is_counted) data.left_out_nodes = (numbers.size() - 1) * curves.front().nodes.size();
   for (std::size_t i = 0; i < request.optics.size(); ++i) {
-    const std::size_t number = numbers.at(request.optics[i]);
+    const std::size_t number = is_counted ? 0 : numbers.at(request.optics[i]);
     const ReflectanceCurve& curve = curves[number];
     data.indices[i].curve_start = starts[number];
     data.indices[i].curve_cells = (request.optics[i].measured ? -1.0 : 1.0) * static_cast<double>(curve.cells);

@@ -86,6 +86,7 @@ struct KernelData {
   std::vector<std::uint32_t> shape_of;
   /// Nodes and weights of the rules. The list continues with the tables of the sky (SkyTable) and of the reflectances.
   std::vector<std::array<double, 2>> rule_nodes;
+  std::size_t left_out_nodes = 0;  ///< nodes of reflectance tables that Tables::kCounted leaves out
   SkyTable sky;
   std::optional<Response> response;  ///< set if the columns are responses; null if they belong to the sky
 
@@ -105,7 +106,7 @@ struct KernelData {
 
 struct RuleModel;
 
-/// kCounted: reflectance tables have no values, and sizes that one of them suggests. This suffices to count work.
+/// kCounted: all indices share the reflectance table of one of them. This suffices to count work.
 enum class Tables : std::uint8_t { kComputed, kCounted };
 
 /// The kernel's inputs for a request. `model` sets the numbers of nodes; the default is rule_model().

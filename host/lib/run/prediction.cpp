@@ -124,20 +124,45 @@ CountedPart counted(const RunPrediction& run, const SceneValues& scene, const Sc
   return sample;
 }
 
+/// What the sample computes in place of the run: with films or measured reflectances, only a part of each band.
+struct CountedScene {
+  SceneValues scene;
+  EffectPlan plan;
+  double band_share = 1.0;  ///< width of the part of a band, divided by the width of the band
+};
+
+/// A film of many fringes has so many spectral samples that one entry may take minutes. So the sample has a part of
+/// each band, with about kCountedSamples spectral samples.
+CountedScene counted_scene(const RunPrediction& run, const SceneValues& scene, const SceneEntries& entries,
+                           const EffectPlan& plan) {
+  CountedScene counted{scene, plan};
+  if (scene.surface.is_bare() || run.first.basis || run.spectral_samples <= kCountedSamples) return counted;
+  counted.band_share = static_cast<double>(kCountedSamples) / static_cast<double>(run.spectral_samples);
+  const auto narrow = [&](Spectrum& band) {
+    const double middle_um = 0.5 * (band.min_um + band.max_um);
+    const double half_um = 0.5 * counted.band_share * (band.max_um - band.min_um);
+    band = {middle_um - half_um, middle_um + half_um};
+  };
+  narrow(counted.scene.spectrum);
+  for (Spectrum& band : counted.scene.bands) narrow(band);
+  counted.plan.rules = nullptr;
+  counted.plan = with_spectra(std::move(counted.plan), counted.scene, entries);
+  return counted;
+}
+
 /// Counts the work of a small sample first, and then of larger samples, as far as the run allows it. Entries may differ
 /// much in their work, so each sample decides whether a larger one is affordable.
-CountedPart counted_sample(RunPrediction& run, const SceneValues& scene, const SceneEntries& entries,
-                           const EffectPlan& plan) {
+CountedPart counted_sample(RunPrediction& run, const CountedScene& given, const SceneEntries& entries) {
   constexpr std::size_t kGrowth = 2;
   const std::size_t all = run.counts_directions ? entries.theta_deg().size() : entries.size();
   const std::size_t most = std::min(all, run.counts_directions ? kCountedDirections : kCountedEntries);
   const std::size_t entries_of_few = std::max<std::size_t>(1, kFewCountedMoments / run.spectral_samples);
   std::size_t count = run.counts_directions ? 1 : std::min(most, entries_of_few);
   while (true) {
-    CountedPart sample = counted(run, scene, entries, plan, count);
+    CountedPart sample = counted(run, given.scene, entries, given.plan, count);
     run.counted_evaluations += sample.evaluations();
     const double each = sample.evaluations() / static_cast<double>(count);
-    const double allowed = allowed_evaluations(scene, each * static_cast<double>(all));
+    const double allowed = allowed_evaluations(given.scene, each * static_cast<double>(all) / given.band_share);
     const double next =
         std::min(static_cast<double>(std::min(most, kGrowth * count)), allowed / each);  // each may be 0
     if (next < static_cast<double>(count + 1)) return sample;
@@ -147,7 +172,7 @@ CountedPart counted_sample(RunPrediction& run, const SceneValues& scene, const S
 
 void count_work(RunPrediction& run, const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
                 std::size_t given) {
-  const CountedPart sample = counted_sample(run, scene, entries, plan);
+  const CountedPart sample = counted_sample(run, counted_scene(run, scene, entries, plan), entries);
   const Count& moments = sample.moments;
   const Count& beams = sample.beams;
   const double moments_scale = scale_of(run.moments, moments);

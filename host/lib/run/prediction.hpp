@@ -16,15 +16,18 @@ inline constexpr std::size_t kCountedEntries = 256;
 /// If the entries of a direction share work, the prediction computes whole directions instead, at most this many.
 inline constexpr std::size_t kCountedDirections = 6;
 
+/// With films or measured reflectances, the sample has the part of a band that has about so many spectral samples.
+inline constexpr std::size_t kCountedSamples = 8;
+
 /// A first sample with about so many moments, or with one direction, decides how large the sample may be.
 inline constexpr std::size_t kFewCountedMoments = 8;
 
 // Each of two parts of a plan, the sample and the forecast of lookups, may take 1 / kPlanShare of the run. It may take
 // kFreeEvaluations integrand evaluations in any case, which one core computes in about 0.1 s. With films or measured
-// reflectances an evaluation takes four times as long.
+// reflectances an evaluation takes four times as long, and each entry of the sample makes new reflectance tables.
 inline constexpr double kPlanShare = 25.0;
 inline constexpr double kFreeEvaluations = 1e6;
-inline constexpr double kFreeEvaluationsOfCurves = 2.5e5;
+inline constexpr double kFreeEvaluationsOfCurves = 1e5;
 
 /// Integrand evaluations that a part of a plan may take for a run of `scene` with so many evaluations.
 double allowed_evaluations(const SceneValues& scene, double run_evaluations);

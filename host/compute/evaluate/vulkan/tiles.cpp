@@ -31,7 +31,7 @@ TileSizes sizes_on(const dolp::Device& device, const TileCosts& costs, std::uint
 }
 
 std::uint64_t rule_bytes(const Packing& packing, const KernelData& data) {
-  return data.rule_nodes.size() * packing.node_bytes<std::array<double, 2>>();
+  return (data.rule_nodes.size() + data.left_out_nodes) * packing.node_bytes<std::array<double, 2>>();
 }
 
 std::uint64_t tiles_in(std::uint64_t invocations, std::uint32_t tile) { return (invocations + tile - 1) / tile; }

@@ -13,8 +13,6 @@
 #define DOLP_BINDING_MASKING_NODES 8  // the masking tables as texels, from which moments.comp reads
 #define DOLP_BINDING_SLOPES DOLP_BINDING_TASKS      // SlopeNode[]: the input, one node per invocation
 #define DOLP_BINDING_AZIMUTHS DOLP_BINDING_MOMENTS  // AzimuthNode[]: the output, one node per invocation
-#define DOLP_BINDING_BEAMS DOLP_BINDING_THETAS      // BeamNode[]: the input, one node per entry
-#define DOLP_BINDING_MUELLERS DOLP_BINDING_MOMENTS  // MuellerNode[]: the output, one node per entry
 
 // ---- Specialization constants --------------------------------------------------------------------------------------
 #define DOLP_SPEC_LOCAL_SIZE 0
@@ -39,8 +37,8 @@
 #define DOLP_COLUMNS_DIRECT 3u        // responses of the direct emission
 
 // ---- Push constants of all entry points -----------------------------------------------------------------------------
-// first, count: position of the first task (moments.comp), slope (slopes.comp), entry (mueller.comp) or shape
-// (masking_table.comp), and their number. The outputs of the first three begin at position 0.
+// first, count: position of the first task (moments.comp), slope (slopes.comp) or shape (masking_table.comp), and their
+// number. The outputs of the first two begin at position 0.
 // largest_order: largest order of the rules in DOLP_BINDING_RULE_NODES.
 // sky: from bit 0, log2 of the number of cells in the table of each function of the sky; from bit
 // DOLP_SKY_CORNERS_SHIFT, the number of corners (kinks of the radiance over the zenith); from bit DOLP_SKY_START_SHIFT,
@@ -145,36 +143,6 @@ struct IndexNode {
   real critical_cos;  // cos(beta) at which total reflection begins, sqrt(1 - Re N^2), if k is 0 or small; else 0
   real curve_start;   // position of the table of reflectances in the buffer DOLP_BINDING_RULE_NODES
   real curve_cells;   // number of cells of the table of reflectances, negative if they are measured; 0 without a table
-};
-
-struct GeometryNode {
-  real c_i;  // cos(theta_i)
-  real s_i;
-  real c_r;  // cos(theta_r)
-  real s_r;
-  real slope;  // tan(alpha)
-  real cos_beta;
-  real cos_2eta_i;
-  real sin_2eta_i;
-  real cos_2eta_r;
-  real sin_2eta_r;
-};
-
-// One pair of directions. The host computes the geometry, the reflection of the facet and the density in double.
-struct BeamNode {
-  GeometryNode g;
-  ShapeNode shape;  // its members `scale` and `cut` serve the masking integral in physics/in_plane.glsl
-  real density;     // D(alpha) / 4 in 1/sr, divided by 2^Beam::power. The quotient fits a float: 0 or in [1/2, 1)
-  // Mueller matrix of the facet in the frame of the facet, with r_s* r_p = cross_re + i cross_im:
-  // [m00 m01 0 0; m01 m00 0 0; 0 0 cross_re -cross_im; 0 0 cross_im cross_re].
-  real m00;
-  real m01;
-  real cross_re;
-  real cross_im;
-};
-
-struct MuellerNode {
-  real m[16];
 };
 
 #define DOLP_AZIMUTH_NUMBERS 8  // how many members an AzimuthNode has

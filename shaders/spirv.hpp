@@ -16,7 +16,6 @@ DOLP_ENTRY_POINT(slopes);
 DOLP_ENTRY_POINT(slopes_sky);
 DOLP_ENTRY_POINT(slopes_responses);
 DOLP_ENTRY_POINT(masking_table);
-DOLP_ENTRY_POINT(mueller);
 // Entry points of bench/, which exist only in float.
 DOLP_ENTRY_POINT(product_rule);
 #undef DOLP_ENTRY_POINT

@@ -155,7 +155,7 @@ ScatteringMatrix matrix_of(const ScatteringRequest& request, const ScatteringEnt
           : BouncesSum{reference_scattering(surface, index, theta_i_deg, theta_r_deg, delta_phi_deg), 0.0};
   ScatteringMatrix matrix;
   for (std::size_t i = 0; i < matrix.m.size(); ++i) matrix.m[i] = f.matrix[i / 4][i % 4];
-  matrix.error = f.error + kScatteringErrorDouble * std::abs(matrix.m[0]);
+  matrix.error = f.error + kScatteringError * std::abs(matrix.m[0]);
   return matrix;
 }
 

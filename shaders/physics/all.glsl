@@ -14,5 +14,3 @@
 #include "physics/orders.glsl"
 #include "physics/azimuths.glsl"
 #include "physics/moments.glsl"
-#include "physics/in_plane.glsl"
-#include "physics/mueller.glsl"

@@ -65,11 +65,9 @@ TEST_F(Mueller, Evaluators_AgreeWithinTheirStatedErrors) {
     return error;
   };
   for (const char* evaluator : {"vulkan", "cpu"}) {
-    const double in_float = worst({"--evaluator", evaluator});
-    EXPECT_LE(in_float, 1e-5);
-    EXPECT_GT(in_float, 1e-11);  // the reference uses other formulas, so rounding differs
-    EXPECT_LE(worst({"--evaluator", evaluator, "--precision", "double"}), 1e-11);
-    EXPECT_LE(worst({"--evaluator", evaluator, "--tolerance", "1e-8"}), 1e-11);
+    const double error = worst({"--evaluator", evaluator});
+    EXPECT_LE(error, 1e-11);
+    EXPECT_GT(error, 0.0);  // the reference uses other formulas, so rounding differs
   }
 }
 
@@ -85,18 +83,17 @@ TEST_F(Mueller, SetAndColumns_SayTheSame) {
 
 TEST_F(Mueller, Json_SaysWhatRan) {
   put("points.csv", "theta_i_deg,theta_r_deg,delta_phi_deg\n30,40,100\n90,40,100\n");
-  const Outcome outcome = mueller({"--json", "--precision", "double"});
+  const Outcome outcome = mueller({"--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const json report = json::parse(outcome.out);
   EXPECT_EQ(report["title"], "Sixteen entries");
   EXPECT_EQ(report["output"], "out.csv");
   EXPECT_EQ(report["entries"], 2);
   EXPECT_EQ(report["without_value"], 1);
-  EXPECT_EQ(report["evaluator"], "vulkan");
+  EXPECT_EQ(report["evaluator"], "cpu");  // beams need no device
   EXPECT_EQ(report["precision"], "double");
   EXPECT_EQ(report["worst_error_estimate"], 1e-11);
-  EXPECT_EQ(report["dispatches"], 1);
-  for (const char* key : {"device", "driver", "wall_s", "kernel_s", "setup_s", "tolerance"}) {
+  for (const char* key : {"device", "wall_s", "beams_s", "tolerance"}) {
     EXPECT_TRUE(report.contains(key)) << key;
   }
   EXPECT_TRUE(std::isnan(parse_csv(content("out.csv")).at("m33").at(1)));
@@ -109,10 +106,9 @@ TEST_F(Mueller, HeaderWithoutRows_HeaderWithoutRows) {
   EXPECT_EQ(content("out.csv"), "theta_i_deg,theta_r_deg,delta_phi_deg," + kElements + "\n");
 }
 
-TEST_F(Mueller, Strict_FloatBelowItsAccuracy_Exit1WithTheResults) {
-  EXPECT_EQ(mueller({"--quiet", "--tolerance", "1e-6", "--precision", "float", "--strict"}).status, 1);
+TEST_F(Mueller, WithoutADevice_Computes) {
+  EXPECT_EQ(without_device({"mueller", "scene.toml", "--points", "points.csv", "-o", "out.csv", "--strict"}).status, 0);
   EXPECT_EQ(parse_csv(content("out.csv")).at("m00").size(), 4U);
-  EXPECT_EQ(mueller({"--quiet", "--tolerance", "1e-6", "--strict"}).status, 0);
 }
 
 struct Mistake {
@@ -126,8 +122,7 @@ TEST_F(Mueller, Mistake_OneLineAndNothingWritten) {
   const std::string header = "theta_i_deg,theta_r_deg,delta_phi_deg";
   for (const Mistake& mistake : std::vector<Mistake>{
            {header + ",q\n1,2,3,1.4\n", "--set surface.masking=smith", {"points.csv:2", "q = 1.4", "smith"}},
-           {header + "\n1,2,3\n", "--keep-all", {"--keep-all"}},
-           {header + "\n1,2,3\n", "--device nosuch", {"nosuch"}, 3}}) {
+           {header + "\n1,2,3\n", "--keep-all", {"--keep-all"}}}) {
     put("points.csv", mistake.points);
     const Outcome outcome = mueller(split_at(mistake.options, ' '));
     for (const std::string& part : mistake.message) expect_refused(outcome, part, mistake.status);

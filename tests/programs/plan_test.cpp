@@ -214,15 +214,13 @@ TEST_F(Plan, Bistatic_PredictsMomentsAndBeams) {
   EXPECT_EQ(predicted["beams"], 16);
   EXPECT_TRUE(predicted["first_attempt"]["is_exact"]);
   EXPECT_EQ(predicted["evaluations"], table(joined(kBistatic, {"--evaluator", "cpu"}))["evaluations"]);
-  EXPECT_EQ(predicted["pipelines"].size(), 3U);
+  EXPECT_EQ(predicted["pipelines"].size(), 2U);  // the host computes the beams
   ASSERT_EQ(predicted["further_attempts"]["share"], 0.0);
   EXPECT_EQ(predicted["first_attempt"]["dispatches"], table(kBistatic)["dispatches"]);
   const json alone = plan(joined(kBeamAlone, {"--tolerance", "1e-5"}));
   EXPECT_EQ(alone["moments"], 0);
   EXPECT_EQ(alone["beams"], 16);
   EXPECT_TRUE(alone["rule"].is_null());
-  EXPECT_GT(alone["further_attempts"]["beams"], 0.0);
-  EXPECT_GT(alone["device_bytes"], 0);
   EXPECT_GT(alone["estimated_cpu_s"], 0.0);
 }
 

@@ -23,9 +23,7 @@ class FixedPrecision final : public ModelEvaluator {
     return evaluator_->evaluate(own, progress);
   }
   std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override {
-    ScatteringRequest own = request;
-    own.precision = precision_;
-    return evaluator_->scatter(own, progress);
+    return evaluator_->scatter(request, progress);
   }
   bool has_double() const override { return precision_ == Precision::kDouble; }
   bool computes_each_entry() const override { return true; }

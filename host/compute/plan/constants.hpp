@@ -57,9 +57,9 @@ inline constexpr int kCriticalBounces = 3;  // last bounce at which the beginnin
 inline constexpr double kResponseTolerance = 0.25;
 inline constexpr double kResponseRoundings = 4.0;  // rounding of x in chebyshev_at() (columns.glsl), in unit roundoffs
 
-// ---- Skies (sky_table.cpp). The numbers are for two sets of entries: first a sky of 19 rows over 100 x 100 entries with
-// integral masking, then `dolp table` with smith masking and 16 x 6 x 6 entries at 1e-4 (theta to 85 degrees, sigma
-// 0.05 to 0.5, q 1.76 to 3).
+// ---- Skies (sky_table.cpp). The numbers are for two sets of entries: first a sky of 19 rows over 100 x 100 entries
+// with integral masking, then `dolp table` with smith masking and 16 x 6 x 6 entries at 1e-4 (theta to 85 degrees,
+// sigma 0.05 to 0.5, q 1.76 to 3).
 
 inline constexpr std::uint32_t kLeastSkyCells = 512;            // fewest cells in the table of one function of a sky
 inline constexpr std::uint32_t kMostSkyCells = 1U << 15U;       // most cells of the tables of all functions together
@@ -113,13 +113,6 @@ inline constexpr double kVeryManyBounces = 1024.0;
 inline constexpr double kVeryManyBouncesError = 1e-2;
 /// At least this share of the bounces of a ray in a groove is not grazing, see left_after() in error_bounds.cpp.
 inline constexpr double kNotGrazing = 0.6;
-
-// ---- pBRDF of grooves (further_bounces.cpp)
-
-/// Most bounces whose light the pBRDF of grooves contains. The work grows as the square of this number.
-inline constexpr int kMostBouncesOfBeam = 1000;
-inline constexpr double kNegligibleBounces = 0.01;  // share of the wanted accuracy that the omitted bounces may take
-inline constexpr double kSlowestFall = 0.1;         // smallest divisor 2q - 3 in beyond_last() of further_bounces.cpp
 
 // ---- Grids (shape_plan.cpp, rows.cpp, refinement.cpp). The numbers are million evaluations of `dolp table` for 32^3
 // entries at 1e-4 (theta to 85 degrees, sigma 0.05 to 1, q 1.75 to 6): with `integral`, then with smith masking.

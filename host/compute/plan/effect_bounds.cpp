@@ -4,12 +4,12 @@
 #include <numbers>
 
 #include "base/numbers.hpp"
+#include "beams/beam_geometry.hpp"
 #include "model/angles.hpp"
 #include "model/direction.hpp"
 #include "model/scattering.hpp"
 #include "model/slopes.hpp"
 #include "model/smooth_surface.hpp"
-#include "plan/beam.hpp"
 #include "plan/effects.hpp"
 
 namespace dolp {
@@ -79,15 +79,15 @@ Range slope_density(Distribution distribution, const EntriesExtent& extent, doub
 Range beam_range(const Surface& surface, const BeamAngles& angles, const EntriesExtent& extent,
                  const std::vector<FacetOptics>& indices) {
   if (!has_facet(angles)) return {};
-  const kernel::GeometryNode g = beam_geometry(angles.theta_i_deg, angles.theta_r_deg, angles.delta_phi_deg).node;
+  const BeamGeometry g = beam_geometry(angles.theta_i_deg, angles.theta_r_deg, angles.delta_phi_deg);
   const double sec2 = 1.0 + g.slope * g.slope;
   Range masking{1.0, 1.0};
   if (surface.masking == Masking::kIntegral) masking.least = 0.5;
   if (surface.masking == Masking::kVCavity)
-    masking.least = masking.most = std::min(1.0, 2.0 * std::min(g.c_i, g.c_r) / (std::sqrt(sec2) * g.cos_beta));
+    masking.least = masking.most = std::min(1.0, 2.0 * std::min(g.cos_i, g.cos_r) / (std::sqrt(sec2) * g.cos_beta));
   if (surface.masking == Masking::kSmith)
-    masking.least = 1.0 / (1.0 + most_lambda(surface.distribution, extent.roughest, {g.c_i, g.s_i}) +
-                           most_lambda(surface.distribution, extent.roughest, {g.c_r, g.s_r}));
+    masking.least = 1.0 / (1.0 + most_lambda(surface.distribution, extent.roughest, {g.cos_i, g.sin_i}) +
+                           most_lambda(surface.distribution, extent.roughest, {g.cos_r, g.sin_r}));
   const Range density = slope_density(surface.distribution, extent, g.slope);
   const Range reflected = reflectance(indices, g.cos_beta);
   const double jacobian = 0.25 * sec2 * sec2;

@@ -17,6 +17,7 @@ struct Work {
   double kernel_s = 0.0;     ///< time of the kernels, from timestamps of the device or from a clock on the CPU
   double sums_s = 0.0;       ///< host time to sum over slopes, interpolate, and add up responses (response_basis.hpp)
   double curves_s = 0.0;     ///< host time to compute tables of reflectances (plan/reflectance_curve.hpp)
+  double beams_s = 0.0;      ///< host time to compute beams
   double transfer_s = 0.0;   ///< host time to make the other inputs of the kernels and to read their results
   std::uint64_t dispatches = 0;
   std::uint64_t interpolated = 0;         ///< entries with moments from interpolation or from responses
@@ -27,6 +28,7 @@ struct Work {
     kernel_s += other.kernel_s;
     sums_s += other.sums_s;
     curves_s += other.curves_s;
+    beams_s += other.beams_s;
     transfer_s += other.transfer_s;
     dispatches += other.dispatches;
     interpolated += other.interpolated;
@@ -47,7 +49,9 @@ struct EvaluationReport : Work {
 
 /// The part of a call's time that no other time in the reports of the evaluator, before and after the call, covers.
 inline double transfer_time(const EvaluationReport& before, const EvaluationReport& after, double call_s) {
-  const auto covered = [](const EvaluationReport& r) { return r.kernel_s + r.sums_s + r.curves_s + r.setup_s; };
+  const auto covered = [](const EvaluationReport& r) {
+    return r.kernel_s + r.sums_s + r.curves_s + r.beams_s + r.setup_s;
+  };
   return std::max(call_s - (covered(after) - covered(before)), 0.0);
 }
 
@@ -57,14 +61,12 @@ inline void note_precision(std::string& used, bool in_double) {
   if (used != name) used = "float and double";
 }
 
-/// Computes moments or Mueller matrices, in the order of the request's entries and with the request's precision.
+/// Computes moments, with the request's precision, or Mueller matrices, in the order of the request's entries.
 class ModelEvaluator {
  public:
   virtual ~ModelEvaluator() = default;
   virtual std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) = 0;
   virtual std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) = 0;
-  /// Announces a later call of `scatter`. The evaluator may prepare for it in parallel with other calls.
-  virtual void prepare(const ScatteringRequest& /*request*/) {}
   /// Integrates for a polarised diffuse part.
   virtual TransmissionIntegral transmission() const { return transmission_integral; }
   virtual bool has_double() const { return true; }

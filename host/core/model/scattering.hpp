@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -33,12 +34,15 @@ struct ScatteringEntry {
   std::uint32_t index = 0;
 };
 
+/// Relative error of a ScatteringMatrix with single scattering, rounding included (tests MuellerKernel.*).
+constexpr double kScatteringError = 1e-11;
+
 /// Domain: zeniths in [0, 90] degrees, but not both 90; sigma > 0; cauchy needs q > 1, and q > 3/2 with smith masking.
 struct ScatteringRequest {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
   Scattering scattering = Scattering::kSingle;  ///< kMultiple: the sum over all bounces, only with v-cavity
-  Precision precision = Precision::kAuto;       ///< kAuto means float
+  double accuracy = kScatteringError;           ///< relative error allowed to the sum over all bounces
   std::vector<BeamAngles> angles;
   std::vector<SlopeShape> shapes;
   std::vector<FacetOptics> optics;
@@ -61,8 +65,11 @@ struct Scattered {
   double error = 0.0;  ///< bound of the absolute error of i, q, u and v
 };
 
-/// Bounds of the error of a ScatteringMatrix, with rounding, as a share of its first element (tests MuellerAccuracy.*).
-constexpr double kScatteringErrorFloat = 1e-5;
-constexpr double kScatteringErrorDouble = 1e-11;
+/// The accuracy of a request for a run with a tolerance: the error of a beam is at most a tenth of the tolerance.
+inline double scattering_accuracy(Scattering scattering, double tolerance) {
+  constexpr double kLeastAccuracy = 1e-5;  // however large the tolerance
+  if (scattering == Scattering::kSingle) return kScatteringError;
+  return std::clamp(0.1 * tolerance, kScatteringError, kLeastAccuracy);
+}
 
 }  // namespace dolp

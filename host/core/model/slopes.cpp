@@ -4,11 +4,14 @@
 #include <boost/math/policies/policy.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
+#include <numbers>
 
 namespace dolp {
 namespace {
 
 constexpr double kLargestExponent = 500.0;  // limit of the exponent in power_law_reach, so that exp does not overflow
+
+double log1p_square(double x) { return x > 1e8 ? 2.0 * std::log(x) : std::log1p(x * x); }
 
 }  // namespace
 
@@ -22,6 +25,14 @@ double steeper_share(Distribution distribution, const SlopeShape& shape, double 
   if (shape.sigma == 0.0) return 0.0;
   const double u = slope / slope_width(shape);
   return distribution == Distribution::kGaussian ? std::exp(-u * u) : std::exp((1.0 - shape.q) * std::log1p(u * u));
+}
+
+double log_density(Distribution distribution, const SlopeShape& shape, double slope) {
+  const double m = slope_width(shape);
+  const double front = 2.0 * log1p_square(slope) - std::log(4.0 * std::numbers::pi) - 2.0 * std::log(m);
+  const double u = slope / m;
+  if (distribution == Distribution::kGaussian) return front - u * u;
+  return front + std::log(shape.q - 1.0) - shape.q * log1p_square(u);
 }
 
 double power_law_reach(double share, double exponent) {

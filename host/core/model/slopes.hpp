@@ -23,6 +23,10 @@ double wind_of_sigma(double sigma);
 /// Domain: slope >= 0. With sigma = 0 no facet is steeper.
 double steeper_share(Distribution distribution, const SlopeShape& shape, double slope);
 
+/// ln(D / 4) at a slope. D is the density of the facet normals in 1/sr, and the pBRDF contains D / 4.
+/// Domain: sigma > 0; the cauchy distribution needs q > 1.
+double log_density(Distribution distribution, const SlopeShape& shape, double slope);
+
 /// The slope u, in units of m, beyond which the power law (1 + u^2)^-exponent is less than `share`.
 /// Domain: share in (0, 1], exponent > 0. The result is finite even for a tiny exponent.
 double power_law_reach(double share, double exponent);

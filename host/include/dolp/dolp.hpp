@@ -226,8 +226,9 @@ class DOLP_EXPORT Evaluator {
   /// Computes results for a CSV of points. Writes a CSV: columns of the points, then results. "-" is stdin or stdout.
   Report write_points(const Scene& scene, const std::filesystem::path& points, const std::filesystem::path& path,
                       const RunOptions& options = {});
-  /// Computes Mueller matrices at points. The error of each element is at most 1e-5 m00 in single precision and 1e-11
-  /// m00 in double, where m00 is the first element. All 16 elements are NaN where the model has no finite value.
+  /// Computes Mueller matrices at points, without a device. The error of each element is at most 1e-11 m00, where m00
+  /// is the first element; with surface.scattering = "multiple", at most 1e-5 m00 and a tenth of the tolerance. All 16
+  /// elements are NaN where the model has no finite value.
   std::vector<MuellerMatrix> mueller(const Scene& scene, const std::vector<Column>& points,
                                      const RunOptions& options = {});
   /// Computes Mueller matrices for the pairs of directions in a CSV. Writes a CSV, as write_points does.

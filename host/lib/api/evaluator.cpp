@@ -147,7 +147,7 @@ std::vector<MuellerMatrix> Evaluator::mueller(const Scene& scene, const std::vec
   return impl().exclusively(scene, of_call, [&](const SceneValues& values, const RunOptions& options) {
     const auto geometries = mueller_points(values, points_of_columns(points, PointsKind::kGeometries));
     report_start(options.progress, geometries.size());
-    return evaluate_mueller(values, geometries, *impl_->begin(values), options.progress);
+    return evaluate_mueller(values, geometries, *impl_->beam_evaluator(), options.progress);
   });
 }
 

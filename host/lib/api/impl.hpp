@@ -66,6 +66,10 @@ struct Evaluator::Impl {
     }
     return evaluator.get();
   }
+  /// Returns a new evaluator for beams, which need no device.
+  std::unique_ptr<ModelEvaluator> beam_evaluator() const {
+    return make_evaluator({.evaluator = options.evaluator == "vulkan" ? "cpu" : options.evaluator}, false);
+  }
   EvaluatorMaker maker(const SceneValues& scene) {
     return [this, &scene] { return begin(scene); };
   }

@@ -80,11 +80,6 @@ void add_request(PlannedRun& planned, const MomentsRequest& request, const Devic
   if (data.needs_masking_table()) add_pipeline(planned, "masking_table", request.precision);
 }
 
-void add_request(PlannedRun& planned, const ScatteringRequest& request, const Device& device) {
-  add_dispatches(planned, count_dispatches(request, device));
-  add_pipeline(planned, "mueller", request.precision);
-}
-
 PlannedRun planned_run(const SceneValues& scene, const std::string& device, EffectPlan plan) {
   PlannedRun planned;
   planned.scene = scene;
@@ -95,8 +90,7 @@ PlannedRun planned_run(const SceneValues& scene, const std::string& device, Effe
   planned.effects = effects_of(scene, entries, planned.plan);
   planned.influences = add_influences(planned.effects, scene, entries, planned.plan);
   planned.run = predict_run(scene, entries, planned.plan, limits.has_double,
-                            {[&](const MomentsRequest& request) { add_request(planned, request, limits); },
-                             [&](const ScatteringRequest& request) { add_request(planned, request, limits); }});
+                            [&](const MomentsRequest& request) { add_request(planned, request, limits); });
   if (planned.dispatches.row_width > 1) {
     // The prediction counts the nodes of each entry. A device uses the same nodes for a row, that is, for entries that
     // differ only in q: as many nodes as the most demanding entry needs.

@@ -62,8 +62,9 @@ void add_work(ReportBuilder& report, const EvaluationReport& e, std::size_t entr
 void add_times(ReportBuilder& report, const RunOutcome& run) {
   const EvaluationReport& e = run.evaluation;
   const RunSummary& summary = run.summary;
-  const double named_s = e.setup_s + e.kernel_s + e.sums_s + e.curves_s + e.transfer_s + summary.response_basis_s +
-                         summary.radiometry_s + summary.check_s + run.spectral_rule_s + run.estimates_s + run.file_s;
+  const double named_s = e.setup_s + e.kernel_s + e.sums_s + e.curves_s + e.beams_s + e.transfer_s +
+                         summary.response_basis_s + summary.radiometry_s + summary.check_s + run.spectral_rule_s +
+                         run.estimates_s + run.file_s;
   report.row_if(e.evaluator != "vulkan", "of that", "{:.3f} s in sums of the host", e.sums_s);
   report.row("", "{:.3f} s in the spectral rule, {:.3f} s in the response basis, {:.3f} s in reflectance curves",
              key("spectral_rule_s", run.spectral_rule_s), key("response_basis_s", summary.response_basis_s),
@@ -177,6 +178,7 @@ void add_evaluation(ReportBuilder& report, const EvaluationReport& e, double wal
                 key("devices_lost", e.devices_lost));
   report.row("time", "{:.3f} s in all, {:.3f} s in kernels, {} dispatches", key("wall_s", wall_s),
              key("kernel_s", e.kernel_s), key("dispatches", e.dispatches));
+  report.row_if(e.beams_s > 0.0, "", "{:.3f} s in beams, which the host computes", key("beams_s", e.beams_s));
   report.values({{"evaluator", e.evaluator}});
   report.row_if(e.evaluator == "vulkan", "of that",
                 "{:.3f} s to start the driver, {:.3f} s to make kernels, {:.3f} s in sums of the host",

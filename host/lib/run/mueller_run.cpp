@@ -39,12 +39,12 @@ BeamAngles used_angles(const Surface& surface, const BeamAngles& angles) {
           zenith_before_limit_deg(surface.masking, angles.theta_r_deg), angles.delta_phi_deg};
 }
 
-ScatteringRequest request_for(const SceneValues& scene, std::span<const MuellerPoint> points, Precision precision) {
+ScatteringRequest request_for(const SceneValues& scene, std::span<const MuellerPoint> points) {
   ScatteringRequest request;
   request.distribution = scene.surface.distribution;
   request.masking = scene.surface.masking;
   request.scattering = scene.surface.scattering;
-  request.precision = precision;
+  request.accuracy = mueller_error(scene);
   for (const MuellerPoint& point : points) {
     if (!needs_evaluator(scene.surface, point)) continue;
     const auto position = static_cast<std::uint32_t>(request.entries.size());
@@ -70,17 +70,16 @@ void add_diffuse(MuellerMatrix& f, const Surface& surface, const MuellerPoint& p
   f[5] += scale * out.q * in.q;
 }
 
-/// True if specular.error exceeds the usual bound, because bounces that contribute were not computed.
-bool is_inaccurate(const ScatteringMatrix& specular, Precision precision) {
+/// True if specular.error exceeds `accuracy`, because bounces that contribute were not computed.
+bool is_inaccurate(const ScatteringMatrix& specular, double accuracy) {
   constexpr double kRounding = 1e-3;  // relative rounding error of specular.error, which is a sum
-  const double accuracy = precision == Precision::kFloat ? kScatteringErrorFloat : kScatteringErrorDouble;
   return specular.error > (1.0 + kRounding) * accuracy * specular.m[0];
 }
 
 MuellerMatrix elements(const Surface& surface, const MuellerPoint& point, const ScatteringMatrix* specular,
-                       Precision precision) {
+                       double accuracy) {
   MuellerMatrix f{};
-  if (is_undefined(surface, point) || (specular != nullptr && is_inaccurate(*specular, precision))) {
+  if (is_undefined(surface, point) || (specular != nullptr && is_inaccurate(*specular, accuracy))) {
     f.fill(std::numeric_limits<double>::quiet_NaN());
     return f;
   }
@@ -95,6 +94,10 @@ MuellerMatrix elements(const Surface& surface, const MuellerPoint& point, const 
 }
 
 }  // namespace
+
+double mueller_error(const SceneValues& scene) {
+  return scattering_accuracy(scene.surface.scattering, scene.accuracy.tolerance);
+}
 
 std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points& points) {
   check_surface(scene, points);
@@ -133,14 +136,8 @@ std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points&
   return result;
 }
 
-Precision mueller_precision(const Accuracy& accuracy, bool has_double) {
-  if (accuracy.precision != Precision::kAuto) return accuracy.precision;
-  return accuracy.tolerance < kScatteringErrorFloat && has_double ? Precision::kDouble : Precision::kFloat;
-}
-
 std::vector<MuellerMatrix> evaluate_mueller(const SceneValues& scene, const std::vector<MuellerPoint>& points,
                                             ModelEvaluator& evaluator, const Progress& progress) {
-  const Precision precision = mueller_precision(scene.accuracy, evaluator.has_double());
   std::vector<MuellerMatrix> results;
   results.reserve(points.size());
   for (std::size_t first = 0; first < points.size(); first += kGeometriesAtOnce) {
@@ -148,12 +145,11 @@ std::vector<MuellerMatrix> evaluate_mueller(const SceneValues& scene, const std:
     const Progress block_progress = [&](std::size_t done, std::size_t total) {
       return !progress || progress(first + block.size() * done / total, points.size());
     };
-    const std::vector<ScatteringMatrix> specular =
-        evaluator.scatter(request_for(scene, block, precision), block_progress);
+    const std::vector<ScatteringMatrix> specular = evaluator.scatter(request_for(scene, block), block_progress);
     auto next = specular.begin();
     for (const MuellerPoint& point : block) {
       const bool is_evaluated = needs_evaluator(scene.surface, point);
-      results.push_back(elements(scene.surface, point, is_evaluated ? &*next++ : nullptr, precision));
+      results.push_back(elements(scene.surface, point, is_evaluated ? &*next++ : nullptr, mueller_error(scene)));
     }
   }
   return results;

@@ -20,12 +20,12 @@ struct MuellerPoint {
 /// coating, or if it has a band and a material that depends on the wavelength while the points lack column n or k.
 std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points& points);
 
-/// The precision for a run. kAuto becomes float if float meets the tolerance or double is missing, otherwise double.
-Precision mueller_precision(const Accuracy& accuracy, bool has_double);
+/// Bound of the error of each element of a matrix, relative to its first element.
+double mueller_error(const SceneValues& scene);
 
-/// The Mueller matrix of the pBRDF at each point: the specular part times k_s, plus the diffuse part. Accuracy: the
-/// error of each element is at most kScatteringErrorFloat or kScatteringErrorDouble times the first element. All 16
-/// elements are NaN where the pBRDF has no finite value, and where more bounces contribute than are computed.
+/// The Mueller matrix of the pBRDF at each point: the specular part times k_s, plus the diffuse part. Accuracy:
+/// mueller_error(). All 16 elements are NaN where the pBRDF has no finite value, and where more bounces contribute than
+/// are computed.
 std::vector<MuellerMatrix> evaluate_mueller(const SceneValues& scene, const std::vector<MuellerPoint>& points,
                                             ModelEvaluator& evaluator, const Progress& progress);
 

@@ -138,7 +138,8 @@ PartRequests::PartRequests(const SceneValues& scene, const SpectralIndices& samp
   moments_.masking = beams_.masking = scene.surface.masking;
   moments_.scattering = beams_.scattering = plan.kept.further_bounces ? scene.surface.scattering : Scattering::kSingle;
   moments_.wants_direct = plan.needs_direct;
-  moments_.precision = beams_.precision = level.precision;
+  moments_.precision = level.precision;
+  beams_.accuracy = scattering_accuracy(scene.surface.scattering, level.tolerance);
   moments_.tolerance = level.tolerance;
   moments_.scene_tolerance = scene.accuracy.tolerance;
   moments_.has_extra_splits = level.is_check;

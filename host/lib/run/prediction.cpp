@@ -46,7 +46,7 @@ struct Count {
     (is_first ? first : again) += entries;
     (is_first ? first_evaluations : again_evaluations) += evaluations;
     if (is_first) --first_requests;
-    spent_s += after.kernel_s - before.kernel_s;
+    spent_s += (after.kernel_s + after.beams_s) - (before.kernel_s + before.beams_s);
   }
 };
 
@@ -222,11 +222,10 @@ RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries,
       largest_step = std::max(largest_step, response_bytes(step));
       for (const MomentsRequest* request : step.kernel_requests()) {
         run.counts_directions |= entries.is_grid() && (step.saves_work() || has_slope_samples(*request));
-        visit.moments(*request);
+        visit(*request);
       }
     }
     run.beams += beams;
-    if (beams > 0) visit.beams(first.requests.beams());
     // Table columns (values and status) take memory twice, because the previous part is still being written.
     const std::size_t columns = part.size() * (kQuantityCount * sizeof(double) + sizeof(std::uint32_t));
     largest = std::max(largest, part.size() * sizeof(PointResult) + columns + columns_before +

@@ -53,11 +53,8 @@ struct RunPrediction {
   double host_bytes = 0.0;  ///< host memory for the largest part of the run and for table columns still being written
 };
 
-/// Functions that predict_run() calls with each request of the first level.
-struct RequestVisitor {
-  std::function<void(const MomentsRequest&)> moments;
-  std::function<void(const ScatteringRequest&)> beams;
-};
+/// predict_run() calls it with each request for moments of the first level.
+using RequestVisitor = std::function<void(const MomentsRequest&)>;
 
 /// Predicts the work of a run from a sample that the CPU computes: at most kCountedEntries entries, or at most
 /// kCountedDirections directions if their entries share work. The sample is smaller if it would take more than

@@ -177,7 +177,6 @@ EvaluatorResults run_requests(const RunContext& context, const PartRequests& req
   const std::size_t total = moments + beams;
   if (total == 0) return {};
   EvaluatorResults evaluated;
-  if (beams > 0 && moments > 0) context.evaluator->prepare(requests.beams());
   if (moments > 0) {
     evaluated.moments = planned_moments(plan, *context.evaluator, part_of(progress, 0, total), context.summary.work);
   }
@@ -217,12 +216,11 @@ bool is_better(const PointResult& a, const PointResult& b) {
                                       std::max(b[Quantity::kErrorEstimate], b[Quantity::kRhoErrorEstimate]);
 }
 
-/// True if `level` can make the entry more accurate. It always can if the entry has moments. A beam (a value of the
-/// pBRDF) is computed without a tolerance, so only another precision can make it more accurate.
-bool would_improve(const RunContext& context, const RefinementLevel& level, const RefinementLevel& last,
-                   const SceneEntry& entry) {
+/// True if a tighter level makes the entry more accurate: if it has moments, or a beam that sums several bounces.
+bool would_improve(const RunContext& context, const SceneEntry& entry) {
+  const bool is_multiple = context.scene.surface.scattering == Scattering::kMultiple;
   return wants_moments(context.scene, entry, context.plan) ||
-         (wants_beam(context.scene, entry, context.plan) && level.precision != last.precision);
+         (is_multiple && wants_beam(context.scene, entry, context.plan));
 }
 
 using EntriesByLevel = std::map<RefinementLevel, std::vector<std::size_t>>;
@@ -250,7 +248,7 @@ void queue_refinement(const RunContext& context, const SceneEntries& part, const
   std::vector<std::pair<RefinementLevel, std::size_t>> missed;
   for (std::size_t j = 0; j < members.size(); ++j) {
     const auto next = next_level(last, results[j], context.scene.accuracy, context.evaluator->has_double());
-    if (next && would_improve(context, *next, last, part[members[j]])) missed.emplace_back(*next, members[j]);
+    if (next && would_improve(context, part[members[j]])) missed.emplace_back(*next, members[j]);
   }
   if (last.may_interpolate && missed.size() * kWholeDirectionMissRatio > members.size()) {
     const auto middle = missed.begin() + static_cast<std::ptrdiff_t>(missed.size() / 2);
@@ -334,7 +332,7 @@ std::vector<PointResult> recompute_for_check(const RunContext& context, const Sc
   summary.check_s += seconds_since(start) - (evaluated.setup_s - evaluated_before.setup_s);
   summary.response_basis_s = before.response_basis_s;
   summary.radiometry_s = before.radiometry_s;
-  for (double Work::*const time : {&Work::kernel_s, &Work::sums_s, &Work::curves_s, &Work::transfer_s})
+  for (double Work::*const time : {&Work::kernel_s, &Work::sums_s, &Work::curves_s, &Work::beams_s, &Work::transfer_s})
     summary.work.*time = before.work.*time - (evaluated.*time - evaluated_before.*time);
   return results;
 }

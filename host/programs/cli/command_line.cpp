@@ -36,7 +36,7 @@ constexpr CommandRow kCommands[] = {
      "  dolp eval scene.toml --points - -o - --set emission.bracket=true < points.csv"},
     {"mueller", run_mueller, "4 x 4 Mueller pBRDF [1/sr] at scattered geometries",
      "dolp mueller scene.toml --points geometries.csv -o matrices.csv\n"
-     "  dolp mueller scene.toml --points geometries.csv -o - --precision double"},
+     "  dolp mueller scene.toml --points geometries.csv -o -"},
     {"plan", run_plan, "what a table would compute and leave out, why, and what it would cost",
      "dolp plan scene.toml\n  dolp plan scene.toml --tolerance 1e-6 --json"},
     {"verify", run_verify, "recompute entries of a table, or examine a device",

@@ -11,10 +11,11 @@
 #include <vector>
 
 #include <dolp/status.hpp>
+#include "beams/further_bounces.hpp"
+#include "beams/scattering.hpp"
 #include "calibrate/random_entries.hpp"
 #include "model/angles.hpp"
 #include "mueller_support.hpp"
-#include "plan/beam.hpp"
 #include "properties_support.hpp"
 #include "reference/reference_evaluator.hpp"
 #include "rough_metal.hpp"
@@ -218,7 +219,8 @@ int most_bounces_toward_the_mirror(Distribution distribution, const OpticalConst
     ScatteringRequest request = bounces_of({{angles, {0.3, 2.02}, index}});
     request.distribution = distribution;
     ScatteringMatrix f;
-    most = std::max(most, add_further_bounces(f, request, request.entries.front(), kScatteringErrorFloat));
+    request.accuracy = 1e-5;
+    most = std::max(most, add_further_bounces(f, request, request.entries.front()));
   }
   return most;
 }

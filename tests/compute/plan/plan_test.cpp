@@ -12,7 +12,6 @@
 #include "base/numbers.hpp"
 #include "model/angles.hpp"
 #include "model/smooth_surface.hpp"
-#include "plan/beam.hpp"
 #include "plan/breakpoints.hpp"
 #include "plan/constants.hpp"
 #include "plan/kernel_data.hpp"
@@ -330,21 +329,6 @@ TEST(SkyTable, CellsOfAFunctionWithACorner_KeepTheirBoundBesideIt) {
   }
   EXPECT_EQ(table.word(), 7U << DOLP_SKY_START_SHIFT | 1U << DOLP_SKY_CORNERS_SHIFT | table.log2_cells);
   EXPECT_EQ(SkyTable{}.word(), 0U);
-}
-
-// The normal of the facet halves the angle between omega_i and omega_r, because a facet is a mirror.
-TEST(BeamGeometry, BeamsInOnePlane_HaveTheFacetBetweenThem) {
-  for (const auto& [theta_i_deg, theta_r_deg, delta_phi_deg, slope_deg, beta_deg] :
-       std::vector<std::array<double, 5>>{{40, 40, 180, 0, 40},
-                                          {40, 40, 0, 40, 0},
-                                          {0, 60, 180, 30, 30},
-                                          {20, 60, 180, 20, 40},
-                                          {20, 60, 0, 40, 20}}) {
-    const BeamGeometry geometry = beam_geometry(theta_i_deg, theta_r_deg, delta_phi_deg);
-    EXPECT_NEAR(geometry.node.slope, tan_deg(slope_deg), 1e-15) << theta_i_deg << " " << theta_r_deg;
-    EXPECT_NEAR(geometry.node.cos_beta, cos_sin_deg(beta_deg).cos, 1e-15) << theta_i_deg << " " << theta_r_deg;
-    EXPECT_NEAR(geometry.sin2_beta, std::pow(cos_sin_deg(beta_deg).sin, 2.0), 1e-15) << theta_i_deg;
-  }
 }
 
 }  // namespace

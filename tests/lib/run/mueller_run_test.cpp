@@ -53,7 +53,7 @@ TEST(MuellerRun, SpecularAndDiffuse_AreAddedAsInEquation15) {
   const double diffuse = 0.2 / std::numbers::pi * std::pow(cosines, -0.4);
   for (std::size_t i = 0; i < 16; ++i) {
     const double expected = 0.7 * specular[i / 4][i % 4] + (i == 0 ? diffuse : 0.0);
-    EXPECT_NEAR(f[i], expected, kScatteringErrorDouble * specular[0][0] + 1e-15) << i;
+    EXPECT_NEAR(f[i], expected, kScatteringError * specular[0][0] + 1e-15) << i;
   }
 }
 
@@ -95,7 +95,7 @@ TEST(MuellerRun, Mirror_HasTheDiffusePartButInItsSpecularDirection) {
 }
 
 // With equal zeniths, light may bounce any number of times in a groove. An almost perfect conductor absorbs so little
-// that more than kMostBouncesOfBeam bounces contribute. With zeniths of 40 and 43 degrees, the number of bounces is
+// that more than 1,000 bounces contribute. With zeniths of 40 and 43 degrees, the number of bounces is
 // limited. With a paint, absorption makes the later bounces negligible.
 TEST(MuellerRun, MoreBouncesThanAreFollowed_AreNan) {
   SceneValues scene = scene_with(Masking::kVCavity);
@@ -120,13 +120,14 @@ TEST(MuellerRun, WithoutASpecularPart_OnlyTheDiffuseIsLeft) {
   EXPECT_EQ(elements(scene, {40.0, 40.0, 180.0}, 0.0), expected);
 }
 
-TEST(MuellerRun, AutoPrecision_IsFloatWhereItMeetsTheTolerance) {
-  EXPECT_EQ(mueller_precision({1e-4, Precision::kAuto}, true), Precision::kFloat);
-  EXPECT_EQ(mueller_precision({1e-5, Precision::kAuto}, true), Precision::kFloat);
-  EXPECT_EQ(mueller_precision({9e-6, Precision::kAuto}, true), Precision::kDouble);
-  EXPECT_EQ(mueller_precision({9e-6, Precision::kAuto}, false), Precision::kFloat);
-  EXPECT_EQ(mueller_precision({1e-9, Precision::kFloat}, true), Precision::kFloat);
-  EXPECT_EQ(mueller_precision({1e-4, Precision::kDouble}, true), Precision::kDouble);
+TEST(MuellerRun, Error_IsATenthOfTheToleranceWithAllBounces) {
+  SceneValues scene = scene_with(Masking::kVCavity);
+  EXPECT_EQ(mueller_error(scene), kScatteringError);
+  scene.surface.scattering = Scattering::kMultiple;
+  for (const auto& [tolerance, error] : {std::pair{1e-2, 1e-5}, {1e-6, 1e-7}, {1e-12, kScatteringError}}) {
+    scene.accuracy.tolerance = tolerance;
+    EXPECT_DOUBLE_EQ(mueller_error(scene), error);
+  }
 }
 
 std::string message_of(const SceneValues& scene, const std::string& csv) {

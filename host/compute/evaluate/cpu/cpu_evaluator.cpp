@@ -10,9 +10,9 @@
 #include "base/parallel_ranges.hpp"
 #include "base/processor.hpp"
 #include "base/stopwatch.hpp"
+#include "beams/scattering.hpp"
 #include "evaluate/kernel/cpu_kernel.hpp"
 #include "evaluate/kernel/slope_samples.hpp"
-#include "plan/beam.hpp"
 
 namespace dolp {
 namespace {
@@ -112,16 +112,9 @@ std::vector<Moments> CpuEvaluator::evaluate(const MomentsRequest& request, const
 
 std::vector<ScatteringMatrix> CpuEvaluator::scatter(const ScatteringRequest& request, const Progress& progress) {
   const Clock::time_point start = Clock::now();
-  const BeamPlan plan(request);
-  const bool is_double = request.precision == Precision::kDouble;
-  const std::unique_ptr<CpuKernel> kernel = make_kernel(plan.data(), is_double);
-  std::vector<ScatteringMatrix> matrices(request.entries.size());
-  const auto compute_beam = [&](std::size_t i) {
-    const Beam beam = plan(request.entries[i]);
-    matrices[i] = plan.matrix(kernel->mueller(beam.node), beam, request.entries[i], unit_roundoff_of(is_double));
-  };
-  parallel_for(matrices.size(), compute_beam, progress);
-  note(is_double, seconds_since(start));
+  std::vector<ScatteringMatrix> matrices = scattering_matrices(request, progress);
+  note(true, 0.0);
+  report_.beams_s += seconds_since(start);
   return matrices;
 }
 

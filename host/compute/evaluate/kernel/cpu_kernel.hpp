@@ -22,10 +22,6 @@ class CpuKernel {
 
   /// Returns the sums over the azimuths of the facets with one slope. Writes the sums of the columns to `columns`.
   virtual kernel::AzimuthNode azimuths(const kernel::SlopeNode& slope, std::span<double> columns) = 0;
-
-  /// Returns the pBRDF (in 1/sr, with specular factor k_s = 1) times cos(theta_i) cos(theta_r) / 2^Beam::power. The
-  /// division by a power of two prevents overflow and underflow of a float.
-  virtual kernel::MuellerNode mueller(const kernel::BeamNode& beam) = 0;
 };
 
 std::unique_ptr<CpuKernel> make_cpu_kernel_float(const KernelData& data);

@@ -137,11 +137,6 @@ class SourceKernel final : public CpuKernel {
     return convert_reals<double, kernel::AzimuthNode, real>(result.node);
   }
 
-  kernel::MuellerNode mueller(const kernel::BeamNode& beam) override {
-    const auto node = source_.mueller(convert_reals<real, KernelSource::BeamNode, double>(beam));
-    return convert_reals<double, kernel::MuellerNode, real>(node);
-  }
-
  private:
   static uint table_at(std::size_t position) { return static_cast<uint>(position * KernelSource::kMaskingNodes); }
   uint table(std::uint32_t shape) const {

@@ -34,7 +34,6 @@ std::span<const std::uint32_t> module_of(const KernelVariant& variant, bool floa
          {moments_sky_rows_float, moments_sky_rows_double},
          {moments_responses_rows_float, moments_responses_rows_double}}}}};
   if (variant.entry == EntryPoint::kMaskingTable) return float64 ? masking_table_double : masking_table_float;
-  if (variant.entry == EntryPoint::kMueller) return float64 ? mueller_double : mueller_float;
   const std::size_t columns = variant.columns == 0 ? 0 : variant.column_kind == DOLP_COLUMNS_SKY ? 1 : 2;
   const std::size_t kind = variant.entry == EntryPoint::kSlopes ? 0 : variant.width == kRowWidth ? 2 : 1;
   return modules[kind][columns][float64 ? 1 : 0];

@@ -18,7 +18,7 @@ static_assert(kStorageCount == DOLP_BINDING_RULE_NODES &&
               kTexelCount == DOLP_BINDING_MASKING_NODES + 1 - kStorageCount);
 constexpr std::uint32_t kPushConstantCount = 4;
 
-enum class EntryPoint { kMoments, kSlopes, kMaskingTable, kMueller };
+enum class EntryPoint { kMoments, kSlopes, kMaskingTable };
 
 struct KernelVariant {
   EntryPoint entry = EntryPoint::kMoments;

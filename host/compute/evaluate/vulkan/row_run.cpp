@@ -12,10 +12,10 @@ using TaskWords = std::array<std::uint32_t, 4>;
 
 constexpr std::size_t kRowsAtOnce = 512;
 
-class RowRun final : public Run<Moments> {
+class RowRun final : public TiledRun {
  public:
   RowRun(const KernelContext& context, const MomentsRequest& request, const VulkanOptions& options)
-      : Run(context, request.precision),
+      : TiledRun(context, request.precision),
         request_(request),
         tiles_(request, context.description, options),
         data_(tiles_.data),
@@ -165,8 +165,8 @@ class RowRun final : public Run<Moments> {
 
 }  // namespace
 
-std::unique_ptr<Run<Moments>> row_run(const KernelContext& context, const MomentsRequest& request,
-                                      const VulkanOptions& options) {
+std::unique_ptr<TiledRun> row_run(const KernelContext& context, const MomentsRequest& request,
+                                  const VulkanOptions& options) {
   return std::make_unique<RowRun>(context, request, options);
 }
 

@@ -9,10 +9,10 @@
 namespace dolp::vulkan {
 namespace {
 
-class SlopeRun final : public Run<Moments> {
+class SlopeRun final : public TiledRun {
  public:
   SlopeRun(const KernelContext& context, const MomentsRequest& request, const VulkanOptions& options)
-      : Run(context, request.precision),
+      : TiledRun(context, request.precision),
         request_(request),
         tiles_(request, context.description, options),
         data_(tiles_.data),
@@ -93,8 +93,8 @@ class SlopeRun final : public Run<Moments> {
 
 }  // namespace
 
-std::unique_ptr<Run<Moments>> slope_run(const KernelContext& context, const MomentsRequest& request,
-                                        const VulkanOptions& options) {
+std::unique_ptr<TiledRun> slope_run(const KernelContext& context, const MomentsRequest& request,
+                                    const VulkanOptions& options) {
   return std::make_unique<SlopeRun>(context, request, options);
 }
 

@@ -31,6 +31,8 @@ class TiledRun {
   virtual ~TiledRun() = default;
   /// Creates the pipelines before the computation, so that the time for them is measured separately.
   virtual void create_pipelines() { context_.kernels.pipeline(variant_); }
+  /// Returns one result per entry of the request, or nothing if `progress` returned false. Errors: DeviceError.
+  virtual std::optional<std::vector<Moments>> compute(const Progress& progress) = 0;
   const Work& cost() const { return cost_; }
 
  protected:
@@ -66,23 +68,9 @@ class TiledRun {
   Work cost_;
 };
 
-template <class Result>
-class Run : public TiledRun {
- public:
-  /// Returns one result per entry of the request, or nothing if `progress` returned false. Errors: DeviceError.
-  virtual std::optional<std::vector<Result>> compute(const Progress& progress) = 0;
-
- protected:
-  using TiledRun::TiledRun;
-};
-
-std::unique_ptr<Run<Moments>> row_run(const KernelContext& context, const MomentsRequest& request,
-                                      const VulkanOptions& options);
-std::unique_ptr<Run<Moments>> slope_run(const KernelContext& context, const MomentsRequest& request,
-                                        const VulkanOptions& options);
-std::unique_ptr<Run<ScatteringMatrix>> scattering_run(const KernelContext& context, const ScatteringRequest& request,
-                                                      const VulkanOptions& options);
-
-KernelVariant mueller_variant(const ScatteringRequest& request);
+std::unique_ptr<TiledRun> row_run(const KernelContext& context, const MomentsRequest& request,
+                                  const VulkanOptions& options);
+std::unique_ptr<TiledRun> slope_run(const KernelContext& context, const MomentsRequest& request,
+                                    const VulkanOptions& options);
 
 }  // namespace dolp::vulkan

@@ -156,19 +156,6 @@ DispatchCount SlopeTiles::count() const {
   return count;
 }
 
-BeamTiles::BeamTiles(const ScatteringRequest& request, const dolp::Device& device, const VulkanOptions& options)
-    : packing(packing_of(request.precision)),
-      plan(request),
-      costs{.invocation_bytes = packing.node_bytes<kernel::BeamNode>() + packing.node_bytes<kernel::MuellerNode>()},
-      entries(request.entries.size()),
-      beams(sizes_on(device, costs, std::min<std::uint64_t>(options.max_tile_invocations, entries)).invocations) {}
-
-DispatchCount BeamTiles::count() const {
-  return {.tile_invocations = beams,
-          .dispatches = tiles_in(entries, beams),
-          .device_bytes = beams * costs.invocation_bytes + rule_bytes(packing, plan.data())};
-}
-
 std::uint32_t Renumbering::operator()(std::uint32_t member) {
   std::uint32_t& number = number_[member];
   if (number == kUnused) {
@@ -192,11 +179,6 @@ vulkan::DispatchCount count_dispatches(const MomentsRequest& request, const dolp
   const VulkanOptions options = for_device({}, device, request.precision);
   if (has_slope_samples(request)) return vulkan::SlopeTiles(request, device, options, Tables::kCounted).count();
   return vulkan::RowTiles(request, device, options, Tables::kCounted).count();
-}
-
-vulkan::DispatchCount count_dispatches(const ScatteringRequest& request, const dolp::Device& device) {
-  if (request.entries.empty()) return {};
-  return vulkan::BeamTiles(request, device, for_device({}, device, request.precision)).count();
 }
 
 dolp::Device least_device() {

@@ -11,14 +11,13 @@
 #include "evaluate/kernel/slope_samples.hpp"
 #include "evaluate/vulkan/packing.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
-#include "plan/beam.hpp"
 #include "plan/rows.hpp"
 
 namespace dolp::vulkan {
 
 using MaskingNode = std::array<double, 4>;
 
-/// Memory that a tile needs per shape and per invocation. An invocation computes a beam, a slope or a piece of a row.
+/// Memory that a tile needs per shape and per invocation. An invocation computes a slope or a piece of a row.
 struct TileCosts {
   std::uint64_t invocation_bytes = 0;  ///< bytes in all buffers that grow with the invocations of a tile
   std::uint64_t shape_bytes = 1;   ///< bytes of a shape's node and masking table; 1 without tables, as it is a divisor
@@ -92,18 +91,6 @@ struct SlopeTiles {
   std::uint32_t slopes = 0;  ///< slopes per dispatch: a multiple of kLockstep, so that no lockstep group is divided
 };
 
-/// The dispatches of a request for pBRDFs, which need no masking tables.
-struct BeamTiles {
-  BeamTiles(const ScatteringRequest& request, const dolp::Device& device, const VulkanOptions& options);
-  DispatchCount count() const;
-
-  Packing packing;
-  BeamPlan plan;
-  TileCosts costs;
-  std::size_t entries = 0;
-  std::uint32_t beams = 0;  ///< beams per dispatch
-};
-
 /// Numbers the items of a list in the order of their first use. So a tile uploads only the items that it needs.
 class Renumbering {
  public:
@@ -122,7 +109,6 @@ class Renumbering {
 namespace dolp {
 
 vulkan::DispatchCount count_dispatches(const MomentsRequest& request, const dolp::Device& device);
-vulkan::DispatchCount count_dispatches(const ScatteringRequest& request, const dolp::Device& device);
 
 /// A device with the limits that every Vulkan device guarantees, for plans without a device. Its memory is a guess.
 dolp::Device least_device();

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <future>
 #include <optional>
 #include <utility>
 
 #include "base/interrupt.hpp"
 #include "base/stopwatch.hpp"
+#include "beams/scattering.hpp"
 #include "device/context.hpp"
 #include "device/result.hpp"
 #include "evaluate/kernel/slope_samples.hpp"
@@ -31,22 +31,6 @@ void check_entries(const MomentsRequest& request) {
   if (!request.wanted.empty() && request.wanted.size() != size) {
     throw InputError("the mask of a request for " + std::to_string(size) + " entries has " +
                      std::to_string(request.wanted.size()));
-  }
-}
-
-std::size_t count_of(const MomentsRequest& request) { return request.wanted_count(); }
-std::size_t count_of(const ScatteringRequest& request) { return request.entries.size(); }
-
-void check_entries(const ScatteringRequest& request) {
-  for (std::size_t i = 0; i < request.entries.size(); ++i) {
-    const ScatteringEntry& entry = request.entries[i];
-    if (entry.angles >= request.angles.size() || entry.shape >= request.shapes.size() ||
-        entry.index >= request.optics.size()) {
-      throw InputError("entry " + std::to_string(i) + " of the request is outside its lists of " +
-                       std::to_string(request.angles.size()) + " pairs of beams, " +
-                       std::to_string(request.shapes.size()) + " shapes and " + std::to_string(request.optics.size()) +
-                       " indices");
-    }
   }
 }
 
@@ -83,19 +67,19 @@ class VulkanEvaluator::Impl {
   std::vector<Moments> compute(const MomentsRequest& request, const Progress& progress, EvaluationReport& report) {
     run_.reset();
     const auto make_run = has_slope_samples(request) ? vulkan::slope_run : vulkan::row_run;
-    return results_of(make_run(context_for(request.precision), request, options_for(request.precision)),
-                      request.precision, progress, report);
-  }
-  std::vector<ScatteringMatrix> compute(const ScatteringRequest& request, const Progress& progress,
-                                        EvaluationReport& report) {
+    run_ = make_run(context_for(request.precision), request, options_for(request.precision));
+    const Clock::time_point start = Clock::now();
+    run_->create_pipelines();
+    const double pipelines_s = seconds_since(start);
+    report.setup_s += pipelines_s;
+    report.pipelines_s += pipelines_s;
+    std::optional<std::vector<Moments>> moments = run_->compute(progress);
+    report += run_->cost();
+    note_precision(report.precision, request.precision == Precision::kDouble);
     run_.reset();
-    return results_of(vulkan::scattering_run(context_for(request.precision), request, options_for(request.precision)),
-                      request.precision, progress, report);
-  }
-  void prepare(const ScatteringRequest& request) {
-    vulkan::Kernels& kernels = kernels_for(request.precision);
-    prepared_ = std::async(std::launch::async,
-                           [&kernels, variant = vulkan::mueller_variant(request)] { kernels.pipeline(variant); });
+    if (!moments) throw Cancelled();
+    context_.check_validation();
+    return std::move(*moments);
   }
 
  private:
@@ -110,26 +94,6 @@ class VulkanEvaluator::Impl {
 
   VulkanOptions options_for(Precision requested) const { return for_device(options_, description(), requested); }
 
-  template <class Result>
-  std::vector<Result> results_of(std::unique_ptr<vulkan::Run<Result>> made, Precision requested,
-                                 const Progress& progress, EvaluationReport& report) {
-    vulkan::Run<Result>& run = *made;
-    run_ = std::move(made);
-    const Clock::time_point start = Clock::now();
-    if (prepared_.valid()) prepared_.wait();
-    run.create_pipelines();
-    const double pipelines_s = seconds_since(start);
-    report.setup_s += pipelines_s;
-    report.pipelines_s += pipelines_s;
-    std::optional<std::vector<Result>> results = run.compute(progress);
-    report += run.cost();
-    note_precision(report.precision, requested == Precision::kDouble);
-    run_.reset();
-    if (!results) throw Cancelled();
-    context_.check_validation();
-    return std::move(*results);
-  }
-
   vulkan::Kernels& kernels_for(Precision requested) {
     const bool float64 = requested == Precision::kDouble;
     if (float64 && !description().has_double) {
@@ -143,7 +107,6 @@ class VulkanEvaluator::Impl {
   VulkanOptions options_;
   vulkan::Context context_;
   std::optional<vulkan::Kernels> float_kernels_, double_kernels_;
-  std::future<void> prepared_;  ///< the task of prepare(); its destructor waits for the end of the task
   vulkan::CommandStream stream_;
   std::unique_ptr<vulkan::TiledRun> run_;  ///< a member, because its buffers must still exist after a timeout
 };
@@ -168,11 +131,10 @@ void VulkanEvaluator::note_setup(double seconds) {
 
 VulkanEvaluator::~VulkanEvaluator() = default;
 
-template <class Result, class Request>
-std::vector<Result> VulkanEvaluator::compute(const Request& request, const Progress& progress) {
+std::vector<Moments> VulkanEvaluator::evaluate(const MomentsRequest& request, const Progress& progress) {
   if (!impl_) throw DeviceError("the Vulkan device was given up after work that did not finish in time");
   check_entries(request);
-  if (count_of(request) == 0) return {};
+  if (request.wanted_count() == 0) return std::vector<Moments>(request.size());
   for (bool is_new_device = false;;) {
     try {
       return impl_->compute(request, progress, report_);
@@ -192,18 +154,12 @@ std::vector<Result> VulkanEvaluator::compute(const Request& request, const Progr
   }
 }
 
-std::vector<Moments> VulkanEvaluator::evaluate(const MomentsRequest& request, const Progress& progress) {
-  std::vector<Moments> moments = compute<Moments>(request, progress);
-  moments.resize(request.size());  // if no entry is wanted, compute() returns an empty vector
-  return moments;
-}
-
-void VulkanEvaluator::prepare(const ScatteringRequest& request) {
-  if (impl_ && !request.entries.empty()) impl_->prepare(request);
-}
-
 std::vector<ScatteringMatrix> VulkanEvaluator::scatter(const ScatteringRequest& request, const Progress& progress) {
-  return compute<ScatteringMatrix>(request, progress);
+  const Clock::time_point start = Clock::now();
+  std::vector<ScatteringMatrix> matrices = scattering_matrices(request, progress);
+  note_precision(report_.precision, true);
+  report_.beams_s += seconds_since(start);
+  return matrices;
 }
 
 bool VulkanEvaluator::has_double() const { return impl_ && impl_->description().has_double; }

@@ -40,9 +40,7 @@ class VulkanEvaluator : public ModelEvaluator {
   /// - Cancelled if `progress`, called after each tile, returns false.
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
 
-  /// Creates the pipeline for `request` in the background. If this fails, `scatter` tries again and throws the error.
-  void prepare(const ScatteringRequest& request) override;
-
+  /// Computes on the host: see beams/scattering.hpp.
   std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override;
   bool has_double() const override;
 
@@ -55,8 +53,6 @@ class VulkanEvaluator : public ModelEvaluator {
  private:
   class Impl;
   void note_setup(double seconds);
-  template <class Result, class Request>
-  std::vector<Result> compute(const Request& request, const Progress& progress);
 
   std::unique_ptr<Impl> impl_;
   EvaluationReport report_;

@@ -28,7 +28,7 @@ class ReferenceEvaluator final : public ModelEvaluator {
  public:
   explicit ReferenceEvaluator(ReferenceOptions options = {}) : options_(options) {}
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
-  /// Computes pBRDFs with explicit vectors (reference/mueller.hpp). Accuracy: kScatteringErrorDouble.
+  /// Computes pBRDFs with explicit vectors (reference/mueller.hpp). Accuracy: kScatteringError.
   std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override;
   TransmissionIntegral transmission() const override;
   bool computes_each_entry() const override { return true; }

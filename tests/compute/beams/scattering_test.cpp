@@ -1,6 +1,6 @@
-// The Mueller pBRDF of the device and the CPU in float and double, compared with a computation from explicit vectors in
-// quadruple precision. Tests in tests/reference show that the matrices of this computation are reciprocal and
-// realisable. The environment variable DOLP_PROPERTY_DRAWS sets the number of points per model.
+// The Mueller pBRDF, compared with a computation from explicit vectors in quadruple precision. Tests in tests/reference
+// show that the matrices of this computation are reciprocal and realisable. The environment variable
+// DOLP_PROPERTY_DRAWS sets the number of points per model.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -9,8 +9,9 @@
 #include <numbers>
 #include <vector>
 
+#include "beams/beam_geometry.hpp"
+#include "beams/scattering.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
-#include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "model/angles.hpp"
 #include "mueller_support.hpp"
 #include "properties_support.hpp"
@@ -23,42 +24,40 @@ using Matrix = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 
 constexpr std::uint64_t kSeed = 20260110;
 
+double tan_deg(double angle_deg) { return std::tan(angle_deg * std::numbers::pi / 180.0); }
+
 const std::size_t kPoints = draws_wanted(400);
 
 // Matrices with a smaller m00 are not compared. The reference computes m00 from a slope density that may be 1e22 times
 // smaller than m00. Near the smallest positive double, this density would have few digits.
 constexpr double kSmallest = 1e-280;
 
-class MuellerKernel : public testing::TestWithParam<KernelAndModel> {
+class ScatteringOf : public testing::TestWithParam<Model> {
  protected:
-  Kernel kernel() const { return std::get<0>(GetParam()); }
-  RandomPoints random() const { return {kSeed, std::get<1>(GetParam()).masking}; }
-  double tolerance() const { return is_double(kernel()) ? kScatteringErrorDouble : kScatteringErrorFloat; }
-
-  std::vector<Matrix> scatter(ModelEvaluator& evaluator, const std::vector<ScatteringPoint>& points) const {
-    const Model model = std::get<1>(GetParam());
-    std::vector<Matrix> matrices;
-    for (const ScatteringMatrix& f : evaluator.scatter(request_of(model.distribution, model.masking, points), {})) {
-      matrices.emplace_back(Eigen::Map<const Matrix>(f.m.data()));
-    }
-    return matrices;
+  RandomPoints random() const { return {kSeed, GetParam().masking}; }
+  ScatteringRequest request(const std::vector<ScatteringPoint>& points) const {
+    return request_of(GetParam().distribution, GetParam().masking, points);
   }
   std::vector<Matrix> scatter(const std::vector<ScatteringPoint>& points) const {
-    return scatter(*make_evaluator(kernel()), points);
+    return matrices(scattering_matrices(request(points), {}));
+  }
+  static std::vector<Matrix> matrices(const std::vector<ScatteringMatrix>& list) {
+    std::vector<Matrix> matrices;
+    for (const ScatteringMatrix& f : list) matrices.emplace_back(Eigen::Map<const Matrix>(f.m.data()));
+    return matrices;
   }
 };
 
-TEST_P(MuellerKernel, AllElements_AgreeWithExplicitVectors) {
+TEST_P(ScatteringOf, AllElements_AgreeWithExplicitVectors) {
   const std::vector<ScatteringPoint> points = random().draw(kPoints);
-  const std::vector<Matrix> matrices = scatter(points);
-  ReferenceEvaluator reference_evaluator;
-  const std::vector<Matrix> references = scatter(reference_evaluator, points);
+  const std::vector<Matrix> computed = scatter(points);
+  const std::vector<Matrix> references = matrices(ReferenceEvaluator().scatter(request(points), {}));
   double worst = 0.0;
   std::size_t where = 0, compared = 0;
   for (std::size_t i = 0; i < kPoints; ++i) {
     const double m00 = references[i](0, 0);
     if (m00 < kSmallest) continue;
-    const double error = (matrices[i] - references[i]).cwiseAbs().maxCoeff() / m00;
+    const double error = (computed[i] - references[i]).cwiseAbs().maxCoeff() / m00;
     ++compared;
     if (error <= worst) continue;
     worst = error;
@@ -66,12 +65,12 @@ TEST_P(MuellerKernel, AllElements_AgreeWithExplicitVectors) {
   }
   std::printf("worst error over m00 of %zu: %.1e at %s\n", compared, worst, text_of(points[where]).c_str());
   EXPECT_GT(compared, kPoints / 3);
-  EXPECT_LE(worst, tolerance()) << text_of(points[where]);
+  EXPECT_LE(worst, kScatteringError) << text_of(points[where]);
 }
 
 // Mirror symmetry relates the pBRDF f at the azimuths dphi and -dphi: f(-dphi) = T f(dphi) T, T = diag(1, 1, -1, -1).
-// Results of a kernel obey this relation bit for bit.
-TEST_P(MuellerKernel, OppositeAzimuth_TurnsTheSignsOfUAndV) {
+// The results obey this relation bit for bit.
+TEST_P(ScatteringOf, OppositeAzimuth_TurnsTheSignsOfUAndV) {
   const Matrix mirror = Eigen::Vector4d(1.0, 1.0, -1.0, -1.0).asDiagonal();
   std::vector<ScatteringPoint> points = random().draw(kPoints);
   const std::vector<Matrix> f = scatter(points);
@@ -80,16 +79,21 @@ TEST_P(MuellerKernel, OppositeAzimuth_TurnsTheSignsOfUAndV) {
   for (std::size_t i = 0; i < kPoints; ++i) EXPECT_EQ(f[i], mirror * opposite[i] * mirror) << text_of(points[i]);
 }
 
-INSTANTIATE_TEST_SUITE_P(Mueller, MuellerKernel,
-                         testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kModels)),
-                         kernel_and_model_name);
+// Beams are computed in groups. A group must not change the beams in it.
+TEST_P(ScatteringOf, OtherBeams_ChangeNoBit) {
+  const std::vector<ScatteringPoint> points = random().draw(150);
+  const std::vector<Matrix> together = scatter(points);
+  for (std::size_t i = 0; i < points.size(); i += 7) EXPECT_EQ(scatter({points[i]}).front(), together[i]);
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, ScatteringOf, testing::ValuesIn(kModels),
+                         [](const auto& test) { return name_of(test.param); });
 
 // ---- Limits and extremes -------------------------------------------------------------------------------------------
 
 Matrix plain_mueller(const BeamAngles& angles, const OpticalConstants& index = {1.5, 0.2}) {
-  FixedPrecision evaluator(Precision::kDouble);
   const ScatteringPoint point{angles, {0.3, 2.0}, index};
-  const ScatteringMatrix f = evaluator.scatter(request_of(Distribution::kCauchy, Masking::kNone, {point}), {}).front();
+  const auto f = scattering_matrices(request_of(Distribution::kCauchy, Masking::kNone, {point}), {}).front();
   return Matrix(Eigen::Map<const Matrix>(f.m.data()));
 }
 
@@ -101,9 +105,9 @@ TEST(MuellerLimits, NormalIncidence_TurnsWithTheAzimuthOfTheView) {
       EXPECT_LE((plain_mueller(near) - at).cwiseAbs().maxCoeff(), 1e-9 * at(0, 0)) << azimuth_deg;  // 2e-8 rad
     }
     const double cosine = std::cos(2.0 * azimuth_deg * std::numbers::pi / 180.0);
-    EXPECT_NEAR(at(1, 1) / at(0, 0), cosine, kScatteringErrorDouble);
-    EXPECT_NEAR(at(2, 2) / at(0, 0), -cosine, kScatteringErrorDouble);
-    EXPECT_NEAR(at(3, 3) / at(0, 0), -1.0, kScatteringErrorDouble);  // r_p = -r_s
+    EXPECT_NEAR(at(1, 1) / at(0, 0), cosine, kScatteringError);
+    EXPECT_NEAR(at(2, 2) / at(0, 0), -cosine, kScatteringError);
+    EXPECT_NEAR(at(3, 3) / at(0, 0), -1.0, kScatteringError);  // r_p = -r_s
   }
 }
 
@@ -128,16 +132,14 @@ TEST(MuellerLimits, CriticalAngle_AgreesWithExplicitVectors) {
   }
   const ScatteringRequest request = request_of(Distribution::kCauchy, Masking::kNone, points);
   const auto references = ReferenceEvaluator().scatter(request, {});
-  for (const Precision precision : {Precision::kFloat, Precision::kDouble}) {
-    const auto f = FixedPrecision(precision).scatter(request, {});
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      for (std::size_t j = 0; j < 16; ++j) EXPECT_NEAR(f[i].m[j], references[i].m[j], f[i].error) << text_of(points[i]);
-    }
+  const auto f = scattering_matrices(request, {});
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t j = 0; j < 16; ++j) EXPECT_NEAR(f[i].m[j], references[i].m[j], f[i].error) << text_of(points[i]);
   }
 }
 
-// The ends of the allowed ranges of sigma, q, index and angles, in all combinations. Float and double must agree.
-TEST(MuellerLimits, CornersOfTheDomain_AreFiniteAndTheSameInBothPrecisions) {
+// The ends of the allowed ranges of sigma, q, index and angles, in all combinations.
+TEST(MuellerLimits, CornersOfTheDomain_AreFiniteAndAgreeWithExplicitVectors) {
   std::vector<ScatteringPoint> points;
   for (const double sigma : {1e-20, 1e-9, 1e-3, 0.3, 10.0}) {
     for (const double q : {1.000001, 1.6, 30.0, 1e4}) {
@@ -154,25 +156,32 @@ TEST(MuellerLimits, CornersOfTheDomain_AreFiniteAndTheSameInBothPrecisions) {
       }
     }
   }
-  FixedPrecision in_float(Precision::kFloat), in_double(Precision::kDouble);
   for (const Masking masking : {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith}) {
     for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
       std::vector<ScatteringPoint> own = points;
       const bool needs_mean = masking == Masking::kSmith && distribution == Distribution::kCauchy;
       if (needs_mean) std::erase_if(own, [](const ScatteringPoint& p) { return p.shape.q <= 1.5; });
-      const std::vector<ScatteringMatrix> f = in_float.scatter(request_of(distribution, masking, own), {});
-      const std::vector<ScatteringMatrix> g = in_double.scatter(request_of(distribution, masking, own), {});
+      const ScatteringRequest request = request_of(distribution, masking, own);
+      const std::vector<ScatteringMatrix> f = scattering_matrices(request, {});
+      const std::vector<ScatteringMatrix> references = ReferenceEvaluator().scatter(request, {});
       for (std::size_t i = 0; i < own.size(); ++i) {
+        // A vacuum reflects nothing, and the reference only rounds. Its masking `integral` ends at slopes of 1e17,
+        // which are frequent if q is nearly 1.
+        const bool is_comparable =
+            references[i].m[0] > kSmallest && own[i].index.n != 1.0 && own[i].shape.sigma > 1e-15;
         for (std::size_t j = 0; j < 16; ++j) {
-          EXPECT_TRUE(std::isfinite(g[i].m[j])) << text_of(own[i]);
-          EXPECT_NEAR(f[i].m[j], g[i].m[j], f[i].error + g[i].error) << static_cast<int>(masking) << text_of(own[i]);
+          EXPECT_TRUE(std::isfinite(f[i].m[j])) << text_of(own[i]);
+          if (is_comparable) {
+            EXPECT_NEAR(f[i].m[j], references[i].m[j], f[i].error + references[i].error)
+                << name_of(masking) << " " << text_of(own[i]);
+          }
         }
       }
     }
   }
 }
 
-// The kernel for moments must agree with the kernel for pBRDFs: moments are integrals of the pBRDF's first row.
+// Moments are integrals of the pBRDF's first row. A kernel computes them by other formulas.
 TEST(Mueller, HemisphericalSum_GivesTheMoments) {
   constexpr int kZeniths = 400;
   constexpr int kAzimuths = 400;
@@ -186,15 +195,15 @@ TEST(Mueller, HemisphericalSum_GivesTheMoments) {
       points.back().angles = {50.0, 90.0 * (zenith + 0.5) / kZeniths, 180.0 * (azimuth + 0.5) / kAzimuths};
     }
   }
-  FixedPrecision evaluator(Precision::kDouble);
-  const auto f = evaluator.scatter(request_of(Distribution::kCauchy, Masking::kNone, points), {});
+  const auto f = scattering_matrices(request_of(Distribution::kCauchy, Masking::kNone, points), {});
   MomentsRequest request;
+  request.precision = Precision::kDouble;
   request.masking = Masking::kNone;
   request.theta_deg = {50.0};
   request.sigma = {surface.shape.sigma};
   request.q = {surface.shape.q};
   request.optics = {surface.index};
-  const Moments moments = evaluator.evaluate(request, {}).front();
+  const Moments moments = CpuEvaluator().evaluate(request, {}).front();
   double r_i = 0.0;
   double r_q = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -207,47 +216,26 @@ TEST(Mueller, HemisphericalSum_GivesTheMoments) {
   EXPECT_NEAR(r_q, moments.r_q, kMidpointError * moments.r_i);
 }
 
-// ---- The device's tiles --------------------------------------------------------------------------------------------
-
-TEST(MuellerOnTheDevice, TilesAndStaging_ChangeNoBit) {
-  const std::vector<ScatteringPoint> points = RandomPoints(kSeed, Masking::kIntegral).draw(300);
-  const ScatteringRequest request = request_of(Distribution::kCauchy, Masking::kIntegral, points);
-  VulkanOptions options;
-  options.validation = ValidationMode::kOn;
-  VulkanEvaluator whole(options);
-  options.max_tile_invocations = 7;
-  options.staged_uploads = true;
-  VulkanEvaluator tiled(options);
-  const auto a = whole.scatter(request, {});
-  const auto b = tiled.scatter(request, {});
-  for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(a[i].m, b[i].m) << text_of(points[i]);
-  EXPECT_EQ(whole.report().dispatches, 1U);
-  EXPECT_EQ(tiled.report().dispatches, 43U);
-  EXPECT_EQ(tiled.report().precision, "float");
-}
-
-// Moments and pBRDFs share a descriptor set. A request for one must not change the results of the other.
-TEST(MuellerOnTheDevice, MomentsBetween_ChangeNothing) {
-  const std::vector<ScatteringPoint> points = RandomPoints(kSeed, Masking::kIntegral).draw(100);
-  const ScatteringRequest request = request_of(Distribution::kCauchy, Masking::kIntegral, points);
-  MomentsRequest moments;
-  moments.append({30.0, {0.3, 2.0}, {1.5, 0.0}});
-  VulkanOptions options;
-  options.validation = ValidationMode::kOn;
-  VulkanEvaluator evaluator(options);
-  const auto before = evaluator.scatter(request, {});
-  evaluator.evaluate(moments, {});
-  const auto after = evaluator.scatter(request, {});
-  for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(before[i].m, after[i].m);
-}
-
-TEST(MuellerOnTheDevice, ProgressThatSaysNo_Cancels) {
+TEST(Mueller, ProgressThatSaysNo_Cancels) {
   const std::vector<ScatteringPoint> points = RandomPoints(kSeed, Masking::kNone).draw(10);
-  VulkanEvaluator evaluator({});
-  EXPECT_THROW(evaluator.scatter(request_of(Distribution::kCauchy, Masking::kNone, points),
-                                 [](std::size_t, std::size_t) { return false; }),
-               Cancelled);
-  EXPECT_TRUE(evaluator.scatter({}, {}).empty());
+  const ScatteringRequest request = request_of(Distribution::kCauchy, Masking::kNone, points);
+  EXPECT_THROW(scattering_matrices(request, [](std::size_t, std::size_t) { return false; }), Cancelled);
+  EXPECT_TRUE(scattering_matrices({}, {}).empty());
+}
+
+// The normal of the facet halves the angle between omega_i and omega_r, because a facet is a mirror.
+TEST(BeamGeometry, BeamsInOnePlane_HaveTheFacetBetweenThem) {
+  for (const auto& [theta_i_deg, theta_r_deg, delta_phi_deg, slope_deg, beta_deg] :
+       std::vector<std::array<double, 5>>{{40, 40, 180, 0, 40},
+                                          {40, 40, 0, 40, 0},
+                                          {0, 60, 180, 30, 30},
+                                          {20, 60, 180, 20, 40},
+                                          {20, 60, 0, 40, 20}}) {
+    const BeamGeometry geometry = beam_geometry(theta_i_deg, theta_r_deg, delta_phi_deg);
+    EXPECT_NEAR(geometry.slope, tan_deg(slope_deg), 1e-15) << theta_i_deg << " " << theta_r_deg;
+    EXPECT_NEAR(geometry.cos_beta, cos_sin_deg(beta_deg).cos, 1e-15) << theta_i_deg << " " << theta_r_deg;
+    EXPECT_NEAR(geometry.sin2_beta, std::pow(cos_sin_deg(beta_deg).sin, 2.0), 1e-15) << theta_i_deg;
+  }
 }
 
 }  // namespace

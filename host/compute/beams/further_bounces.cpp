@@ -1,3 +1,5 @@
+#include "beams/further_bounces.hpp"
+
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -7,14 +9,18 @@
 #include <numbers>
 
 #include "model/angles.hpp"
-#include "plan/beam.hpp"
-#include "plan/constants.hpp"
+#include "model/slopes.hpp"
 
 namespace dolp {
 namespace {
 
 using std::numbers::pi;
 using Complex = std::complex<double>;
+
+// The work grows as the square of this number.
+constexpr int kMostBouncesOfBeam = 1000;
+constexpr double kNegligibleBounces = 0.01;  // share of the wanted accuracy that the omitted bounces may take
+constexpr double kSlowestFall = 0.1;         // smallest divisor 2q - 3 in beyond_last()
 
 struct Across {
   double a = 0.0;                                  ///< length of the incidence omega_i, projected across the groove
@@ -122,9 +128,9 @@ double beyond_last(const ScatteringRequest& request, const SlopeShape& shape, in
   return is_cauchy ? bounces / std::clamp(2.0 * shape.q - 3.0, kSlowestFall, 1.0) : bounces;
 }
 
-/// Sums the light after 2, 3, ... bounces, up to the relative error `accuracy`. `first` is m00 of the first bounce.
+/// Sums the light after 2, 3, ... bounces. `first` is m00 of the first bounce.
 FurtherBeams further_beams(const Across& at, const ScatteringRequest& request, const ScatteringEntry& entry, double h,
-                           double first, double accuracy) {
+                           double first) {
   const SlopeShape& shape = request.shapes[entry.shape];
   const Facet facet(request.optics[entry.index].index);
   const double least_gamma = 0.49 * std::abs(std::abs(at.psi_i) - std::abs(at.psi_r));
@@ -144,7 +150,8 @@ FurtherBeams further_beams(const Across& at, const ScatteringRequest& request, c
     beams.sum += more;
     beams.bounces += k;
     beyond[parity] = more(0, 0) * beyond_last(request, shape, k);
-    if (std::max(beyond[0], beyond[1]) < kNegligibleBounces * accuracy * (first + beams.sum(0, 0))) return beams;
+    if (std::max(beyond[0], beyond[1]) < kNegligibleBounces * request.accuracy * (first + beams.sum(0, 0)))
+      return beams;
   }
   beams.unfollowed = std::max(beyond[0], beyond[1]);
   return beams;
@@ -152,8 +159,7 @@ FurtherBeams further_beams(const Across& at, const ScatteringRequest& request, c
 
 }  // namespace
 
-int add_further_bounces(ScatteringMatrix& f, const ScatteringRequest& request, const ScatteringEntry& entry,
-                        double accuracy) {
+int add_further_bounces(ScatteringMatrix& f, const ScatteringRequest& request, const ScatteringEntry& entry) {
   const BeamAngles& angles = request.angles[entry.angles];
   const CosSin i = cos_sin_deg(angles.theta_i_deg);
   const CosSin r = cos_sin_deg(angles.theta_r_deg);
@@ -183,9 +189,9 @@ int add_further_bounces(ScatteringMatrix& f, const ScatteringRequest& request, c
     at.psi_i = std::atan2(i.sin * at.from.x(), i.cos);
     at.psi_r = std::atan2(r.sin * at.to.x(), r.cos);
     at.along = i.sin * at.from.y();
-    const FurtherBeams beams = further_beams(at, request, entry, h, f.m[0], accuracy);
+    const FurtherBeams beams = further_beams(at, request, entry, h, f.m[0]);
     for (Eigen::Index j = 0; j < 16; ++j) f.m[static_cast<std::size_t>(j)] += beams.sum(j / 4, j % 4);
-    f.error += accuracy * beams.sum(0, 0) + beams.unfollowed;
+    f.error += request.accuracy * beams.sum(0, 0) + beams.unfollowed;
     bounces += beams.bounces;
   }
   return bounces;

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "model/angles.hpp"
+
+namespace dolp {
+
+/// The facet that reflects one beam into the other, and the frames of the beams.
+struct BeamGeometry {
+  double cos_i = 1.0;
+  double sin_i = 0.0;
+  double cos_r = 1.0;
+  double sin_r = 0.0;
+  double slope = 0.0;     ///< tan(alpha) of the facet
+  double cos_beta = 1.0;  ///< angle of incidence on the facet
+  double sin2_beta = 0.0;
+  // eta_i and eta_r are the angles from the s vector of each beam to the s vector of the facet. A positive angle turns
+  // s toward p. The angles have the sign of sin(delta_phi), and are 0 in the retro direction.
+  double cos_2eta_i = 1.0;
+  double sin_2eta_i = 0.0;
+  double cos_2eta_r = 1.0;
+  double sin_2eta_r = 0.0;
+};
+
+/// The mirror direction has delta_phi = 180 degrees. If theta_i is 0, the plane of incidence has azimuth 0. If theta_r
+/// is 0, the plane of reflection has azimuth delta_phi. Domain: zeniths from 0 to 90 degrees, but not both 90.
+BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_phi_deg);
+
+/// Cosine and sine of the zenith of the direction nearer to the horizon.
+CosSin lower_direction(const BeamGeometry& beam);
+
+}  // namespace dolp

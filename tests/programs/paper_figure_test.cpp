@@ -157,19 +157,6 @@ TEST_F(PaperFigure, Figure7_HasTheCurvesThatTheModelsReadmeStates) {
   expect_differences(report);
 }
 
-TEST_F(PaperFigure, Figures5And6_HaveTheCurvesOfOneSampleEach) {
-  for (const auto& [number, sample] : {std::pair("5", "steel"), std::pair("6", "aluminium")}) {
-    const json report = numbers_and_picture(number);
-    ASSERT_EQ(report["curves"].size(), 8U);
-    for (const json& curve : report["curves"]) EXPECT_EQ(curve["sample"], sample);
-    for (const Peak& peak : kPeaks) {
-      if (peak.sample != sample) continue;
-      const json curve = curve_of(report, sample, peak.reading, "bistatic", peak.distribution);
-      EXPECT_NEAR(curve["peak"]["dolp_percent"], peak.dolp_percent, kPointTolerance);
-    }
-  }
-}
-
 TEST_F(PaperFigure, Table_DefaultEvaluator_PrintsAttenuation) {
   const Outcome outcome = figure({"4", "--table"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;

@@ -23,8 +23,6 @@ const std::vector<std::string> kBeamAlone = {"--set", "surroundings.temperature_
 // Relative error of the predicted number of evaluations. The number of quadrature nodes of an integral is a
 // rounded real number. A device computes it in float and may so get another integer than the CPU.
 constexpr double kOrderRounding = 0.05;
-// Relative error of the predicted number of evaluations if `dolp plan` counts the evaluations of only 256 entries.
-constexpr double kSampling = 0.1;
 
 std::vector<std::string> names_in(const json& rows) {
   std::vector<std::string> names;
@@ -138,42 +136,6 @@ TEST_F(Plan, Eval_QuantitiesNotNeeded_AreNan) {
   for (const double rho : all.at("rho_i")) EXPECT_GT(rho, 0.0);
 }
 
-TEST_F(Plan, WhatTheResultDoesNotNeed_IsNotComputed_AndTheAnswerIsThatOfEverything) {
-  struct Case {
-    std::vector<std::string> options;
-    std::vector<std::string> dropped;
-    bool gives_rho, gives_albedo;
-  };
-  for (const Case& of :
-       std::vector<Case>{{kIsothermal, {"specular"}, false, false},
-                         {{"--set", "surface.specular=0", "--set", "surface.diffuse=0.2"}, {}, true, false},
-                         {{"--set", "geometry.mode=bistatic", "--set", "spectrum.wavelength_um=0.55", "--set",
-                           "source.irradiance=1800"},
-                          {"emission", "surroundings"},
-                          false,
-                          false},
-                         {kBeamAlone, {}, false, false},
-                         {{"--set", "emission.model=fresnel", "--set", "surroundings=none"}, {}, false, false}}) {
-    const json report = table(of.options);
-    EXPECT_EQ(report["evaluations"], 0.0);
-    for (const std::string& name : of.dropped) EXPECT_TRUE(has(report["effects"]["dropped"], name)) << name;
-    const TableValues few = read_table(at("t.nc"));
-    EXPECT_EQ(few.has(Quantity::kRhoI), of.gives_rho) << of.options[1];
-    EXPECT_EQ(few.has(Quantity::kAlbedo), of.gives_albedo) << of.options[1];
-    EXPECT_EQ(table(joined(of.options, {"--keep-all"}))["effects"]["dropped"].size(), 0U);
-    const TableValues all = read_table(at("t.nc"));
-    for (const Quantity quantity : kAllQuantities) {
-      // a file has dolp_low and dolp_high only with emission.bracket
-      const bool is_of_bracket = std::string(description_of(quantity).name).starts_with("dolp_");
-      EXPECT_EQ(all[quantity].size(), is_of_bracket ? 0U : all.size()) << description_of(quantity).name;
-    }
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      EXPECT_NEAR(few[Quantity::kDolp][i], all[Quantity::kDolp][i],
-                  few[Quantity::kErrorEstimate][i] + all[Quantity::kErrorEstimate][i]);
-    }
-  }
-}
-
 TEST_F(Plan, BeamAlone_IsComputedInDouble) {
   for (const char* tolerance : {"1e-3", "1e-8"}) {
     const json report = this->table(joined(kBeamAlone, {"--tolerance", tolerance}));
@@ -238,17 +200,6 @@ TEST_F(Plan, Device_PredictsEvaluationsAndDispatches) {
     EXPECT_NEAR(predicted["evaluations"], evaluations, kOrderRounding * evaluations);
     EXPECT_EQ(predicted["first_attempt"]["dispatches"], spent["dispatches"]);
   }
-}
-
-TEST_F(Plan, ManyEntries_PredictionFromSomeIsNearly) {
-  const std::vector<std::string> grid = {"--set", "grid.theta_deg={from=0,to=85,count=30}",
-                                         "--set", "grid.sigma={from=0.05,to=1,count=16}",
-                                         "--set", "surface.masking=none"};
-  const json predicted = plan(grid);
-  const json spent = table(joined(grid, {"--evaluator", "cpu"}));
-  EXPECT_FALSE(predicted["first_attempt"]["is_exact"]);
-  const double evaluations = spent["evaluations"];
-  EXPECT_NEAR(predicted["evaluations"], evaluations, 2.0 * kSampling * evaluations);
 }
 
 // A plan counts the work of a run in a small part of it: in the sample and in the forecast of lookups. Each may take

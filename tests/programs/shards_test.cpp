@@ -69,23 +69,6 @@ class Shards : public CommandLine {
   }
 };
 
-TEST_F(Shards, MergedAgain_AreTheTableOfOneRun_WithEveryMasking) {
-  for (const std::string masking : {"none", "v-cavity", "integral", "smith"}) {
-    const std::vector<std::string> set = {"--set", "surface.masking=" + masking};
-    ASSERT_EQ(dolp(joined({"table", "grid.toml", "-o", "one.nc"}, set)).status, 0);
-    const std::size_t count = masking == "integral" ? 3 : 2;
-    for (std::size_t i = 1; i <= count; ++i) {
-      const Outcome made = dolp(joined(
-          {"table", "grid.toml", "-o", "t.nc", "--shard", std::to_string(i) + "/" + std::to_string(count)}, set));
-      ASSERT_EQ(made.status, 0) << made.err;
-    }
-    const Outcome merged = dolp(joined(joined({"merge"}, shard_names(count)), {"-o", "merged.nc"}));
-    ASSERT_EQ(merged.status, 0) << merged.err;
-    expect_same("one.nc", "merged.nc");
-    for (const std::string& name : shard_names(count)) fs::remove(at(name));
-  }
-}
-
 // There are 14 shards but only 7 zeniths. So the shards also divide the axis of the two wavelengths.
 TEST_F(Shards, OfSeveralAxes_MergeIntoTheTableAndItsCsv) {
   ASSERT_EQ(dolp({"table", "grid.toml", "-o", "one.csv"}).status, 0);
@@ -259,9 +242,11 @@ TEST_F(Edited, VariableOfOneShardMissing_IsNamed) {
   }
 }
 
-TEST_F(Edited, AttributesOfOneShardMissing_AreNamed) {
+TEST_F(Edited, AttributesOfOneShardMissing_AreNamed_AndOthersMayBeAdded) {
   ASSERT_EQ(shard(1).status, 0);
   ASSERT_EQ(shard(2).status, 0);
+  edit("t.1-of-2.nc", "table.note = 'seen'; table.createVariable('mine', 'f8', ('theta',))[:] = 2.0");
+  EXPECT_EQ(merge().status, 0);
   edit("t.1-of-2.nc", "table.shard = '1/99999999999999'");
   expect_refused(merge(), "cannot be cut into 99999999999999 parts");
   edit("t.1-of-2.nc", "table.shard = '1/2'; table.delncattr('identity')");

@@ -36,24 +36,10 @@ class Axes(PackageCase):
         self.assert_same(dolp.table(self.scene, **axes).drop_vars(["material", "band"]), xr.load_dataset(path))
         self.assertEqual(float(dolp.lookup(xr.load_dataset(path), material="quartz", band_um="8-9", theta_deg=40).dolp),
                          float(dolp.lookup(path, material="quartz", band_um="8-9", theta_deg=40).dolp))
-        table.to_netcdf(path)
-        again = xr.load_dataset(path)
-        for source in (table, again, table.isel(material=[2, 1]), table.sel(material="PET")):
-            found = dolp.lookup(source, material="pet", band_um="10-12", temperature_K=300, theta_deg=40)
-            entry = table.sel(material="PET", band="10-12", temperature=300, theta=40).squeeze()
-            self.assertLessEqual(float(abs(found.dolp - entry.dolp)), float(found.error_estimate + entry.error_estimate))
         found = dolp.lookup(table, material=["PET", "quartz"], band_um="8-9", temperature_K=310, theta_deg=40)
         self.assertEqual(found.material.values.tolist(), ["PET", "SiO2 amorphous quartz"])
         with self.assertRaisesRegex(dolp.InputError, "material = 'lead': must be one of gold"):
             dolp.lookup(table, material="lead", band_um="8-9", temperature_K=310, theta_deg=40)
-
-    def test_points_take_names_and_temperatures(self):
-        scene = self.scene.with_({"grid.material": MATERIALS})
-        found = dolp.evaluate(scene, material=["PET", "gold"], temperature_K=[280, 320], theta_deg=50, evaluator="cpu")
-        for i, (name, kelvin) in enumerate((("PET", 280), ("gold (Ordal)", 320))):
-            alone = self.scene.with_({"surface.material": name, "emission.temperature_K": kelvin})
-            right = dolp.evaluate(alone, theta_deg=50, evaluator="cpu")
-            self.assertLessEqual(abs(float(found.dolp[i] - right.dolp)), float(found.error_estimate[i] + right.error_estimate))
 
     def test_a_key_is_looked_up_between_its_values(self):
         key = "surroundings.temperature_K"

@@ -13,7 +13,6 @@ import unittest
 import warnings
 
 import numpy as np
-import xarray as xr
 
 import dolp
 from package_case import TEXT, PackageCase
@@ -95,10 +94,7 @@ class Calls(PackageCase):
         masked = np.ma.masked_array([10.0, 20.0], [False, True])
         for kind, message, call in (
                 (TypeError, "scene: must be a dolp.Scene, not str", lambda: dolp.table("scene.toml")),
-                (TypeError, "scene: must be a dolp.Scene, not str", lambda: dolp.write_table("scene.toml", "t.nc")),
-                (TypeError, "scene: must be a dolp.Scene, not str", lambda: dolp.evaluate("scene.toml", theta_deg=1)),
                 (TypeError, "scene: must be a dolp.Scene, not NoneType", lambda: dolp.mueller(None, theta_i_deg=1)),
-                (TypeError, "scene: must be a dolp.Scene, not dict", lambda: dolp.plan({})),
                 (TypeError, "scene: must be a dolp.Scene, not PosixPath", lambda: dolp.fit(self.folder, {}, {})),
                 (TypeError, "overrides: must be a dictionary", lambda: dolp.Scene(self.scene, ["surface.n", 1])),
                 (TypeError, "overrides: must be a dictionary", lambda: self.scene.with_("surface.n=1")),
@@ -112,11 +108,7 @@ class Calls(PackageCase):
                 (TypeError, "a key of a scene must be a str, not list", lambda: self.scene.without(["surface.k"])),
                 (TypeError, "material: must be a str, not NoneType", lambda: dolp.material(None)),
                 (TypeError, "evaluator: must be a str, not list", lambda: dolp.evaluate(self.scene, theta_deg=3, evaluator=["cpu"])),
-                (TypeError, "device: must be a str, not NoneType", lambda: dolp.plan(self.scene, device=None)),
-                (TypeError, "loss: must be a str, not NoneType", lambda: self.fit_points(loss=None)),
                 (TypeError, "keep_all: must be True or False, not 'yes'", lambda: dolp.table(self.scene, keep_all="yes")),
-                (TypeError, "keep_all: must be True or False, not 1", lambda: dolp.evaluate(self.scene, theta_deg=3, keep_all=1)),
-                (TypeError, "resume: must be True or False", lambda: dolp.write_table(self.scene, self.folder / "t.nc", resume="no")),
                 (dolp.InputError, r"theta_deg: must be a number or a list, not an array of shape \(2, 1\)",
                  lambda: dolp.table(self.scene, theta_deg=[[1], [2]])),
                 (dolp.InputError, "grid.theta_deg: must be a number or a list", lambda: self.scene.with_({"grid.theta_deg": [[1], [2]]})),
@@ -128,14 +120,12 @@ class Calls(PackageCase):
                 (TypeError, "starts: must be a whole number, not str", lambda: self.fit_points(starts="many")),
                 (dolp.InputError, "seed = -1: must be a whole number", lambda: self.fit_points(seed=-1)),
                 (dolp.InputError, "loss = square: must be one of squares", lambda: self.fit_points(loss="square")),
-                (TypeError, "3: a key of a scene must be a str", lambda: self.scene[3]),
                 (TypeError, "3: a key of a scene must be a str", lambda: self.scene.with_({3: 1})),
                 (TypeError, "compare: must be a dictionary", lambda: self.fit_points(compare=["a"])),
                 (TypeError, "surface.masking: must be a list", lambda: self.fit_points(compare={"surface.masking": 1})),
                 (dolp.InputError, "surface.masking: is compared without a value",
                  lambda: self.fit_points(compare={"surface.masking": []})),
                 (dolp.InputError, "the nearest is surface.sigma", lambda: self.scene["surface.sgma"]),
-                (dolp.InputError, "the nearest is surface.sigma", lambda: self.scene["sigma"]),
                 (dolp.InputError, "roughness is none of .*; did you mean sigma?", lambda: dolp.evaluate(self.scene, roughness=0.1)),
                 (dolp.InputError, "angle is none of .*; did you mean theta_deg?", lambda: dolp.table(self.scene, angle=30)),
                 (dolp.InputError, "emission: is an empty dictionary; None removes a table", lambda: self.scene.with_({"emission": {}})),
@@ -165,8 +155,6 @@ class Calls(PackageCase):
                     lambda: dolp.fit(self.scene, "n" * 300, {"surface.n": (1, 2)}),
                     lambda: self.scene.with_({"surface.material_file": "n" * 300}))),
                 (dolp.InputError, "cannot be read: Is a directory", lambda: dolp.fit(self.scene, self.folder, {"surface.n": (1, 2)})),
-                (dolp.InputError, "did you mean theta_deg", lambda: dolp.evaluate(self.scene, theta=3)),
-                (dolp.InputError, "did you mean theta_deg", lambda: dolp.table(self.scene, theta=3)),
                 (dolp.InputError, r'axes: tolerance is .*scene.with_\({"accuracy.tolerance": ...}\)',
                  lambda: dolp.table(self.scene, tolerance=1e-3)),
                 (dolp.InputError, r'points: masking is .*scene.with_\({"surface.masking": ...}\)',
@@ -175,9 +163,6 @@ class Calls(PackageCase):
                 (dolp.InputError, "is the text of a scene; write Scene", lambda: dolp.Scene("[surface]\nn = 1.5")),
                 (dolp.InputError, "did you mean wavelength_um", lambda: dolp.lookup(table, wavelength=3)),
                 (dolp.InputError, "theta_deg: .* no numbers but datetime64", lambda: dolp.evaluate(self.scene, theta_deg=dates)),
-                (dolp.InputError, "theta_deg: .* no numbers but datetime64",
-                 lambda: dolp.evaluate(self.scene, theta_deg=xr.DataArray(dates, dims="day"))),
-                (dolp.InputError, "theta_deg: .* no numbers but datetime64", lambda: dolp.table(self.scene, theta_deg=dates)),
                 (dolp.InputError, "surface.n: .* no numbers but datetime64", lambda: self.scene.with_({"surface.n": dates})),
                 (dolp.InputError, "theta_deg: is a masked array", lambda: dolp.evaluate(self.scene, theta_deg=masked)),
                 (dolp.InputError, "dolp: is a masked array",
@@ -195,8 +180,7 @@ class Calls(PackageCase):
                     lambda: dolp.table(self.scene, evaluator="\ud800"), lambda: dolp.write_table(self.scene, "\ud800.nc"),
                     lambda: self.fit_points(compare={"surface.masking": ["\ud800"]}),
                     lambda: dolp.fit(self.scene, {"theta_deg": [1], "\ud800": [1]}, {"surface.n": (1, 2)}))),
-                (dolp.InputError, "path = .*: no path holds a zero byte", lambda: dolp.write_table(self.scene, "a\0.nc")),
-                (dolp.InputError, "theta_deg: .* no numbers", lambda: dolp.evaluate(self.scene, theta_deg="thirty"))):
+                (dolp.InputError, "path = .*: no path holds a zero byte", lambda: dolp.write_table(self.scene, "a\0.nc"))):
             with self.assertRaisesRegex(kind, message) as caught:
                 call()
             self.assertNotIn("\n", str(caught.exception))
@@ -208,28 +192,20 @@ class Calls(PackageCase):
         return dolp.fit(self.scene, {"theta_deg": [20, 40, 60], "dolp": [0.01, 0.03, 0.06]}, {"surface.n": (1.1, 3)},
                         evaluator="cpu", **options)
 
-    def test_errors_bear_the_name_of_the_package(self):
-        for error in (dolp.InputError, dolp.DeviceError, dolp.IoError):
+    def test_errors_are_one_line_and_bear_the_name_of_the_package(self):
+        for error, call in ((dolp.InputError, lambda: dolp.Scene()),
+                            (dolp.InputError, lambda: dolp.Scene(self.scene, {"surface.sigma": -1})),
+                            (dolp.InputError, lambda: dolp.evaluate(self.scene, theta_deg=np.nan)),
+                            (dolp.InputError, lambda: dolp.table(self.scene, theta_deg=[])),
+                            (dolp.InputError, lambda: dolp.lookup(self.folder / "scene.toml", theta_deg=3)),
+                            (dolp.DeviceError, lambda: dolp.evaluate(self.scene, theta_deg=3, device="no such device")),
+                            (dolp.IoError, lambda: dolp.write_table(self.scene, self.folder / "none" / "t.nc"))):
             self.assertEqual(error.__module__, "dolp")
             self.assertTrue(error.__doc__)
-
-    def test_errors_are_one_line(self):
-        for call in (lambda: dolp.Scene(self.folder / "none.toml"), lambda: dolp.Scene(),
-                     lambda: dolp.Scene(self.scene, {"surface.sigma": -1}), lambda: dolp.Scene(self.scene, {"a": 1}),
-                     lambda: dolp.evaluate(self.scene, theta_deg=95), lambda: dolp.evaluate(self.scene, zenith=3),
-                     lambda: dolp.evaluate(self.scene, theta_deg=np.nan), lambda: dolp.table(self.scene, theta_deg=[]),
-                     lambda: dolp.lookup(self.folder / "scene.toml", theta_deg=3),
-                     lambda: dolp.fit(self.scene, {"theta_deg": [1]}, {"surface.n": (1, 2)}),
-                     lambda: dolp.fit(self.scene, {"theta_deg": [1], "dolp": [0.1]}, {"surface.colour": (1, 2)}),
-                     lambda: dolp.evaluate(self.scene, theta_deg=3, evaluator="abacus")):
-            with self.assertRaises(ValueError) as caught:
+            with self.assertRaises(error) as caught:
                 call()
-            self.assertIsInstance(caught.exception, dolp.InputError)
             self.assertNotIn("\n", str(caught.exception))
-        with self.assertRaises(dolp.DeviceError):
-            dolp.evaluate(self.scene, theta_deg=3, device="no such device")
-        with self.assertRaises(dolp.IoError):
-            dolp.write_table(self.scene, self.folder / "none" / "t.nc")
+        self.assertTrue(issubclass(dolp.InputError, ValueError))
 
     def test_scenes_and_plans_read_well(self):
         self.assertIn("painted plate", repr(self.scene))

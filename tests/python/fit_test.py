@@ -92,7 +92,7 @@ class Fit(PackageCase):
             self.assertEqual(["light of further bounces can move the model by" in str(one.message) for one in caught],
                              [True] if quality == "doubtful" else [])
 
-    def test_a_fit_keeps_the_order_of_its_numbers_and_refuses_what_does_not_fit(self):
+    def test_a_fit_keeps_the_order_of_its_numbers(self):
         theta = np.arange(10, 61, 10.0)
         data = {"theta_deg": theta, "q_over_i": dolp.evaluate(self.scene, theta_deg=theta, sigma=0.2, q=3).q_over_i.values,
                 "uncertainty": 1e-3}
@@ -100,11 +100,6 @@ class Fit(PackageCase):
         found = dolp.fit(self.scene, data, vary, starts=4, evaluator="cpu")
         self.assertEqual(list(found.params), list(vary))
         self.assertAlmostEqual(found.params["surface.n"], 1.5, delta=1e-3)
-        for wrong, message in ((lambda: dolp.fit(self.scene, {**data, "q_over_i": [0.1]}, vary), "different lengths"),
-                               (lambda: dolp.fit(self.scene, data, vary, compare={"surface.masking": ["smith", "foo"]}),
-                                "surface.masking = foo: must be one of")):
-            with self.assertRaisesRegex(dolp.InputError, message):
-                wrong()
 
 
 if __name__ == "__main__":

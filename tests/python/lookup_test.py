@@ -57,18 +57,6 @@ class Lookup(PackageCase):
         with self.assertRaisesRegex(dolp.InputError, "scene_hash.*the scene was changed"):
             dolp.Scene(table.assign_attrs(scene=table.attrs["scene"] + "\n"))
 
-    def test_data_of_files_come_from_the_table(self):
-        glass = self.folder / "glass.csv"
-        glass.write_text("wavelength_um,n,k\n8,1.5,0.1\n12,1.9,0.3\n")
-        scene = self.scene.with_({"surface.n": None, "surface.k": None, "surface.material_file": "glass.csv"})
-        table = dolp.table(scene, wavelength_um=[8, 9, 12], theta_deg=[0, 60], sigma=0.2, q=3, evaluator="cpu")
-        exact = dolp.evaluate(scene, theta_deg=50, sigma=0.2, q=3, wavelength_um=[8.5, 11], evaluator="cpu")
-        glass.unlink()
-        copy = pickle.loads(pickle.dumps(dolp.Scene(table)))
-        for found in (dolp.lookup(table, theta_deg=50, wavelength_um=[8.5, 11]),
-                      dolp.evaluate(copy, theta_deg=50, sigma=0.2, q=3, wavelength_um=[8.5, 11])):
-            np.testing.assert_array_equal(found.dolp, exact.dolp)
-
     def test_only_axes_are_dimensions(self):
         water = self.scene.with_({"surface.n": None, "surface.k": None, "surface.material": "water", "source.preset": "sun"})
         axes = {"theta_deg": [0, 40, 60, 80], "sigma": 0.2, "q": 3, "evaluator": "cpu"}
@@ -93,17 +81,6 @@ class Lookup(PackageCase):
         self.assertEqual(set(band.sizes), {"theta", "sigma", "q"})
         several = dolp.table(self.scene, **axes, **{"source.irradiance": [1, 2]})
         np.testing.assert_array_equal(several.irradiance, [1, 2])
-
-    def test_tables_of_dolp_0_2_are_read(self):
-        water = self.scene.with_({"surface.material": "water"})
-        table = dolp.table(water, theta_deg=np.linspace(0, 80, 9), wavelength_um=[8, 9, 10], sigma=0.2, q=3, evaluator="cpu")
-        old = table.drop_vars(["index_n", "index_k"])
-        for name in ("index_n", "index_k"):
-            old[name] = (f"{name}_wavelength", table[name].values)
-            old = old.assign_coords({f"{name}_wavelength": table.wavelength.values})
-        del old.attrs["spectral_data"]
-        self.assertEqual(float(dolp.lookup(old, theta_deg=33, wavelength_um=8.5).dolp),
-                         float(dolp.lookup(table, theta_deg=33, wavelength_um=8.5).dolp))
 
     def test_a_table_of_a_scene_with_removed_keys_is_read(self):
         water = {"surface.n": None, "surface.k": None, "surface.material": "water", "surroundings.temperature_K": None,

@@ -13,7 +13,6 @@
 #include <numbers>
 #include <vector>
 
-#include "reference/adaptive.hpp"
 #include "reference/fresnel.hpp"
 #include "reference/groove_beam.hpp"
 #include "reference/mueller.hpp"
@@ -145,54 +144,6 @@ TEST(GrooveBeam, Fluxes_MatchCountedRays) {
           EXPECT_NEAR(shares[k], counted[k], kTolerance) << alpha_deg << " " << theta_deg << " " << phi_deg << " " << k;
         }
       }
-    }
-  }
-}
-
-TEST(ReferenceGrooves, FirstBounceAlone_IsSingleScatteringAndDirectEmission) {
-  constexpr double kPlainTolerance = 1e-6;
-  for (const Point& point :
-       {Point{kGaussian, 60.0, {0.4, 2.0}, {1.6, 0.4}}, Point{kGaussian, 80.0, {0.7, 2.0}, kMetal}}) {
-    const double m = std::numbers::sqrt2 * point.shape.sigma;
-    const reference::Goal goal{.relative = kPlainTolerance};
-    const auto own = [](const reference::Values<2>& value) { return value; };
-    const auto over_slopes = [&](double u) {  // the slope is m u; u has the probability density 2 u exp(-u^2)
-      const auto at_chi = [&](double chi) -> reference::Values<2> {
-        const reference::GrooveLight light = reference::light_in_groove(m * u, std::sin(chi), std::cos(chi),
-                                                                        zenith_from_deg(point.theta_deg), point.index);
-        return {light.once_reflected, light.once_absorbed};
-      };
-      auto row = reference::integrate<2>(at_chi, reference::Breaks(0.0, 0.5 * pi), goal, own).value;
-      for (double& value : row) value *= 2.0 * u * std::exp(-u * u) * 2.0 / pi;
-      return row;
-    };
-    const auto once = reference::integrate<2>(over_slopes, reference::Breaks(0.0, 5.0), goal, own).value;
-    const Moments single = moments(point, Scattering::kSingle);
-    EXPECT_NEAR(once[0], single.r_i, 10.0 * kPlainTolerance * single.r_i);
-    EXPECT_NEAR(once[1], single.direct_i, 10.0 * kPlainTolerance * single.direct_i);
-  }
-}
-
-TEST(ReferenceGrooves, LimitsOfTheMaterial) {
-  constexpr double kRounding = 1e-12;
-  const Moments vacuum = all_bounces({kCauchy, 60.0, {0.3, 2.0}, {1.0, 0.0}});
-  EXPECT_EQ(vacuum.r_i, 0.0);
-  EXPECT_EQ(vacuum.r_q, 0.0);
-  EXPECT_NEAR(vacuum.deficit, 0.5, kRounding);
-  // A mirror absorbs almost nothing. At normal incidence its absorptance is 4e-12. The largest absorptance is 2e-6, for
-  // p polarisation at 1e-6 rad from grazing incidence. A ray meets few facets at such angles.
-  const Moments mirror = all_bounces({kGaussian, 60.0, {0.3, 2.0}, {1.0, 1e6}}, {.relative_tolerance = 1e-6});
-  EXPECT_NEAR(mirror.r_i, 0.5, 1e-5);
-}
-
-TEST(ReferenceGrooves, SmoothSurface_IsFresnels) {
-  constexpr double kSigma = 1e-3;
-  constexpr double kTolerance = 2e-4;  // rough and mirror differ by about the mean of t^2 for slopes t < 1: 2.4e-5
-  for (const OpticalConstants index : {kPaint, kMetal}) {
-    for (const double theta_deg : {0.0, 60.0}) {
-      const Moments mirror = all_bounces({kCauchy, theta_deg, {0.0, 2.0}, index});
-      const Moments rough = all_bounces({kCauchy, theta_deg, {kSigma, 2.0}, index}, {.relative_tolerance = 1e-6});
-      for (const MomentMember& m : kMomentMembers) EXPECT_NEAR(rough.*m.value, mirror.*m.value, kTolerance);
     }
   }
 }

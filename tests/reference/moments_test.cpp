@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "model/choices.hpp"
-#include "reference/adaptive.hpp"
 #include "reference/mueller.hpp"
 
 namespace dolp {
@@ -53,35 +52,6 @@ Reflectances fresnel_reflectances(OpticalConstants constants, double theta_deg) 
   const std::complex<double> sin_t = std::sin(theta_deg * kRadPerDeg) / n;
   const std::complex<double> cos_t = std::sqrt(1.0 - sin_t * sin_t);
   return {std::norm((cos_i - n * cos_t) / (cos_i + n * cos_t)), std::norm((n * cos_i - cos_t) / (n * cos_i + cos_t))};
-}
-
-TEST(Adaptive, KronrodPanel_Polynomials_AreExactUpToTheOrdersOfBothRules) {
-  // Gauss's rule with 10 points is exact up to degree 19, Kronrod's rule with 11 more points up to degree 31.
-  constexpr double kRounding = 1e-15;
-  for (int degree = 0; degree <= 30; degree += 2) {
-    const auto panel =
-        reference::kronrod_panel<1>([&](double x) { return reference::Values<1>{std::pow(x, degree)}; }, -1.0, 1.0);
-    EXPECT_NEAR(panel.value[0], 2.0 / (degree + 1), 4.0 * kRounding) << degree;
-    const bool is_gauss_exact = panel.error[0] < 4.0 * kRounding;
-    EXPECT_EQ(is_gauss_exact, degree <= 18) << degree;
-  }
-}
-
-TEST(Adaptive, Integrate_BendsAtBreakPoints_StaysWithinItsError) {
-  constexpr double kTolerance = 1e-12;
-  reference::Breaks breaks(0.0, 1.0);
-  breaks.add(0.3);
-  const auto integrand = [](double x) {
-    return reference::Values<2>{std::sqrt(std::abs(x - 0.3)), std::pow(std::abs(x - 0.3), 1.5)};
-  };
-  const auto result = reference::integrate<2>(integrand, breaks, {.relative = kTolerance},
-                                              [](const reference::Values<2>& value) { return value; });
-  const double half = (std::pow(0.3, 1.5) + std::pow(0.7, 1.5)) / 1.5;
-  const double three_halves = (std::pow(0.3, 2.5) + std::pow(0.7, 2.5)) / 2.5;
-  EXPECT_NEAR(result.value[0], half, kTolerance);
-  EXPECT_NEAR(result.value[1], three_halves, kTolerance);
-  EXPECT_LE(std::abs(result.value[0] - half), result.error[0]);
-  EXPECT_LE(std::abs(result.value[1] - three_halves), result.error[1]);
 }
 
 TEST(ReferenceMoments, Mirror_IsFresnelToRounding) {
@@ -130,16 +100,6 @@ TEST(ReferenceMoments, GrazingWithHeavyTails_DivergesBelowThreeHalves) {
     EXPECT_NEAR(near / far, 2.0, 100.0 * kDistance);
   }
   EXPECT_EQ(moments(Distribution::kCauchy, Masking::kVCavity, 90.0, {0.3, 1.2}, kSteel).r_i, 0.0);
-}
-
-TEST(ReferenceMoments, Deficit_IsTheAbsorbedPartOfASmoothMetal) {
-  // For sigma = 1e-3 the deficit is the light that the smooth metal absorbs, about 1.2 % of cos(theta).
-  constexpr double kRelative = 1e-3;
-  const OpticalConstants metal{27.0, 90.0};
-  const Moments rough = moments(Distribution::kGaussian, Masking::kSmith, 30.0, {1e-3, 2.0}, metal);
-  const Moments mirror = moments(Distribution::kGaussian, Masking::kSmith, 30.0, {0.0, 2.0}, metal);
-  EXPECT_NEAR(rough.deficit, mirror.deficit, kRelative * mirror.deficit);
-  EXPECT_NEAR(rough.deficit, std::cos(30.0 * kRadPerDeg) - rough.r_i, rough.deficit_error + rough.r_i_error);
 }
 
 Surface surface_of(Distribution distribution, Masking masking, double sigma, double q) {
@@ -249,15 +209,6 @@ TEST(ReferenceEvaluator, SeveralEntries_KeepTheOrderOfTheRequest) {
   EXPECT_EQ(evaluator.report().precision, "double");
   EXPECT_FALSE(evaluator.report().device.empty());
   EXPECT_GT(evaluator.report().evaluations, 0.0);
-}
-
-TEST(ReferenceEvaluator, ProgressReturnsFalse_ThrowsCancelled) {
-  MomentsRequest request;
-  request.theta_deg.assign(8, 10.0);
-  request.optics = {kSteel};
-  request.sigma = {0.2};
-  request.q = {2.0};
-  EXPECT_THROW(ReferenceEvaluator().evaluate(request, [](std::size_t, std::size_t) { return false; }), Cancelled);
 }
 
 TEST(ReferenceEvaluator, OutsideTheDomain_ThrowsInputError) {

@@ -1,11 +1,10 @@
-// Single functions of compute/plan/: cosines, loops, Gauss nodes, kernel rows, refinement levels, tables.
+// Single functions of compute/plan/: cosines, loops, breakpoints, refinement levels, tables, geometry of beams.
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 #include <dolp/status.hpp>
 #include <numbers>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -17,10 +16,6 @@
 #include "plan/kernel_data.hpp"
 #include "plan/refinement.hpp"
 #include "plan/reflectance_curve.hpp"
-#include "plan/rows.hpp"
-#include "plan/rule.hpp"
-#include "plan/shape_plan.hpp"
-#include "plan/sky_table.hpp"
 
 namespace dolp {
 namespace {
@@ -33,16 +28,6 @@ TEST(CosSinDeg, MultiplesOf90_AreExact) {
   for (const auto& [angle_deg, cosine, sine] : exact) {
     EXPECT_EQ(cos_sin_deg(angle_deg).cos, cosine) << angle_deg;
     EXPECT_EQ(cos_sin_deg(angle_deg).sin, sine) << angle_deg;
-  }
-}
-
-TEST(CosSinDeg, OtherAngles_AgreeWithTheLibrary) {
-  // Pi times the rounding error of angle_deg / 180, plus the rounding error of the result.
-  constexpr double kTolerance = 5e-16;
-  for (double angle_deg = -90.0; angle_deg <= 360.0; angle_deg += 0.37) {
-    const long double angle = angle_deg * std::numbers::pi_v<long double> / 180.0L;
-    EXPECT_NEAR(cos_sin_deg(angle_deg).cos, static_cast<double>(std::cos(angle)), kTolerance) << angle_deg;
-    EXPECT_NEAR(cos_sin_deg(angle_deg).sin, static_cast<double>(std::sin(angle)), kTolerance) << angle_deg;
   }
 }
 
@@ -79,20 +64,7 @@ TEST(Loops, HardDirectionsAndIndicesAtEveryTolerance_StayBelowTheDriversLimit) {
   EXPECT_LT(DOLP_MASKING_NODES(DOLP_MASKING_CELL_BITS_DOUBLE) * (1.0 + kTableOrderAtMost), kDriverLimit);
 }
 
-// The integrands are Chebyshev polynomials. Their maximum is 1, so the error of a too low order is far above rounding.
-TEST(GaussLegendre, Orders_IntegratePolynomialsOfDegree2nMinus1AndNoMore) {
-  for (const int order : {1, 2, 3, 7, 20, DOLP_MAX_ORDER}) {
-    for (int degree = 0; degree <= 2 * order; degree += 2) {
-      double sum = 0.0;
-      for (const auto& [x, weight] : gauss_legendre(order)) sum += weight * std::cos(degree * std::acos(x));
-      const double error = std::abs(sum - 2.0 / (1.0 - static_cast<double>(degree) * degree));
-      const double rounding = 1e-15 * (2.0 + 0.2 * degree);
-      EXPECT_EQ(error <= rounding, degree < 2 * order) << order << " " << degree;
-    }
-  }
-}
-
-// ---- Slopes and rows -----------------------------------------------------------------------------------------------
+// ---- Slopes --------------------------------------------------------------------------------------------------------
 
 double tan_deg(double angle_deg) { return std::tan(angle_deg * std::numbers::pi / 180.0); }
 
@@ -128,66 +100,7 @@ TEST(Breakpoints, Directions_AreAtTheAnglesWhereLinesMeet) {
   }
 }
 
-// Groove with the slope angle alpha, in degrees: a vertical ray leaves after 90 / (90 - alpha) bounces.
-TEST(SlopeWithBounces, Bounces_FollowFromTheAngleOfTheGroove) {
-  EXPECT_NEAR(slope_with_bounces(2.0), 1.0, 1e-15);
-  EXPECT_NEAR(slope_with_bounces(3.0), tan_deg(60.0), 1e-14);
-  EXPECT_NEAR(slope_with_bounces(9.0), tan_deg(80.0), 1e-13);
-}
-
-TEST(Rows, WantedEntriesOfAGrid_AreEachInOneRowOfShapesAlike) {
-  MomentsRequest request{.masking = Masking::kSmith,
-                         .theta_deg = {10.0, 70.0},
-                         .optics = {{1.5, 0.0}, {0.8, 0.0}},
-                         .sigma = {0.1, 0.3},
-                         .q = {8.0, 3.0, 2.5, 2.0, 1.75, 40.0, 2.2, 2.1}};
-  for (std::size_t i = 0; i < request.size(); ++i) request.wanted.push_back(i % 3 == 0 ? 1 : 0);
-  const KernelData data = kernel_data(request);
-  const Rows rows = rows_of(request, data);
-  EXPECT_EQ(rows.width, kRowWidth);
-  std::multiset<std::size_t> found;
-  for (const Row& row : rows.rows) {
-    const Chunk& chunk = rows.chunks[row.chunk];
-    std::uint32_t used = 0;
-    for (std::uint32_t i = chunk.first; i < chunk.first + chunk.count; ++i) {
-      EXPECT_LE(rows.shapes[i].q_minus_1, kMostRowSpread * rows.shapes[chunk.first].q_minus_1);
-      const std::size_t entry = data.entry_of(row.direction, row.index, rows.shape_of[i]);
-      if (request.is_wanted(entry)) found.insert(entry), ++used;
-    }
-    EXPECT_EQ(row.used, used);
-  }
-  EXPECT_EQ(found.size(), request.wanted_count());
-  EXPECT_EQ(std::set<std::size_t>(found.begin(), found.end()).size(), found.size());
-  const std::vector<RowPiece> pieces = pieces_of(rows, data, 0, static_cast<std::uint32_t>(rows.rows.size()));
-  std::size_t expected = 0;
-  for (const Row& row : rows.rows)
-    expected += piece_count(data, rows.theta_of(data, row), rows.shapes[rows.chunks[row.chunk].first]);
-  EXPECT_EQ(pieces.size(), expected);
-  request.q.resize(2);
-  request.wanted.clear();
-  EXPECT_EQ(rows_of(request, kernel_data(request)).width, 1U);  // rows with 4 places would hold 2 entries each
-}
-
-// ---- Orders and levels ---------------------------------------------------------------------------------------------
-
-TEST(Rule, DigitsAndShapes_DecideOrdersAndLines) {
-  EXPECT_DOUBLE_EQ(rule_digits({.margin_digits = 2.0}, 1e-3), 6.25);  // (3 + 2) / kCoarseShare
-  EXPECT_EQ(largest_order(4.0), 64);
-  EXPECT_EQ(largest_order(10.0), 80);
-  EXPECT_EQ(largest_order(99.0), DOLP_MAX_ORDER);
-  EXPECT_EQ(split_bounces(0.5), 1);
-  EXPECT_EQ(split_bounces(5.0), 2);
-  EXPECT_EQ(split_bounces(99.0), DOLP_MOST_SPLITS);
-  const auto gaussian_line = [](double sigma, double digits) {
-    return needs_line(Distribution::kGaussian, Masking::kIntegral, {sigma, 2.0}, digits, 1e-4);
-  };
-  EXPECT_TRUE(gaussian_line(0.61, 7.0) && !gaussian_line(0.59, 7.0));
-  EXPECT_TRUE(gaussian_line(0.31, 9.0) && !gaussian_line(0.29, 9.0));
-  EXPECT_FALSE(needs_line(Distribution::kCauchy, Masking::kNone, {1.0, 1.6}, 7.0, 1e-4));
-  // With integer q, Smith's masking is a smooth function of theta, so it has no cusp.
-  EXPECT_LT(cusp_digits(Distribution::kCauchy, Masking::kSmith, {0.3, 3.0}, 7.0), -100.0);
-  EXPECT_GT(cusp_digits(Distribution::kCauchy, Masking::kSmith, {0.3, 2.5}, 7.0), -10.0);
-}
+// ---- Refinement levels ---------------------------------------------------------------------------------------------
 
 TEST(Refinement, Levels_TightenByHalfDecadesAndTurnToDouble) {
   constexpr Precision kFloat = Precision::kFloat, kDouble = Precision::kDouble;
@@ -224,47 +137,7 @@ TEST(Refinement, Levels_TightenByHalfDecadesAndTurnToDouble) {
   }
 }
 
-TEST(ShapePlan, Nodes_SpanTheAxesAndTheirWeightsSumToOne) {
-  MomentsRequest request{.masking = Masking::kIntegral, .theta_deg = {0.0, 89.95, 60.0}, .optics = {{1.5, 0.0}}};
-  EXPECT_EQ(split_grazing_directions(request), (std::vector<std::vector<std::size_t>>{{0, 2}, {1}}));
-  request.masking = Masking::kVCavity;
-  EXPECT_EQ(split_grazing_directions(request), (std::vector<std::vector<std::size_t>>{{0, 1, 2}}));
-  for (double i = 0.0; i < 64.0; ++i) request.sigma.push_back(0.05 + 0.01 * i), request.q.push_back(1.75 + 0.05 * i);
-  const auto plan = shape_plan(request);
-  ASSERT_TRUE(plan);
-  EXPECT_EQ(plan->sigma.nodes.front(), request.sigma.back());
-  EXPECT_EQ(plan->q.nodes.back(), request.q.front());
-  for (const ShapeAxis* axis : {&plan->sigma, &plan->q}) {
-    EXPECT_LT(axis->nodes.size(), 64U);
-    EXPECT_LT((axis->cardinal.rowwise().sum().array() - 1.0).abs().maxCoeff(), 1e-13);
-  }
-  request.wanted.assign(request.size(), 1);
-  request.wanted.back() = 0;  // now the last direction lacks an entry
-  EXPECT_FALSE(shape_plan(request));
-}
-
 // ---- Tables --------------------------------------------------------------------------------------------------------
-
-TEST(ReflectanceCurve, CubicsOfAFilm_KeepTheirBound) {
-  FacetOptics optics(1.5, 0.0);
-  optics.films = {{{2.2, 0.01}, 0.8}};
-  const ReflectanceCurve curve = reflectance_curve(optics, 1e-4);
-  ASSERT_EQ(curve.nodes.size(), curve.cells * DOLP_CURVE_NODES);
-  EXPECT_LT(curve.error, 1e-4);
-  for (double v = 0.0005; v < 1.0; v += 0.0031) {
-    const double position = v * static_cast<double>(curve.cells);
-    const auto cell = static_cast<std::size_t>(position);
-    const double x = position - static_cast<double>(cell);
-    const auto read = [&](std::size_t part) {
-      const auto* node = &curve.nodes[cell * DOLP_CURVE_NODES + 2 * part];
-      return node[0][0] + x * (node[0][1] + x * (node[1][0] + x * node[1][1]));
-    };
-    const SmoothAbsorptance absorbed = smooth_absorptance(optics, v * v);
-    EXPECT_NEAR(read(0), 1.0 - absorbed.s, curve.error) << v;
-    EXPECT_NEAR(read(1), absorbed.s, curve.error) << v;
-    EXPECT_NEAR(read(2) * (1.0 - std::pow(v, 4.0)), absorbed.split * (1.0 - std::pow(v, 4.0)), curve.error) << v;
-  }
-}
 
 // Straight lines between rows have kinks at the rows, which are in different cells.
 TEST(ReflectanceCurve, MeasuredRows_AreReadWithTheirKinks) {
@@ -307,28 +180,6 @@ TEST(KernelData, SceneTolerance_LimitsTheTablesOfTighterLevels) {
   EXPECT_GT(kernel_data(request).indices[0].curve_cells, cells);
   request.scene_tolerance = 1e-4;  // tables have a tenth of it
   EXPECT_EQ(kernel_data(request).indices[0].curve_cells, cells);
-}
-
-TEST(SkyTable, CellsOfAFunctionWithACorner_KeepTheirBoundBesideIt) {
-  const SkyNodes sky_nodes({0.0, 50.0, 90.0});
-  Eigen::VectorXd values(static_cast<Eigen::Index>(sky_nodes.zenith_deg().size()));
-  for (Eigen::Index i = 0; i < values.size(); ++i)
-    values[i] = 0.2 + std::abs(sky_nodes.zenith_deg()[static_cast<std::size_t>(i)] - 50.0) / 90.0;
-  const SkyBasis basis(sky_nodes, {values}, 1e-9);
-  std::vector<std::array<double, 2>> nodes(7);
-  const SkyTable table = append_sky(basis, {1e-4, 1e-4}, true, nodes);
-  EXPECT_EQ(table.start, 7U);
-  EXPECT_EQ(table.corners_deg, std::vector<double>{50.0});
-  const std::size_t cells = std::size_t{1} << table.log2_cells;
-  ASSERT_EQ(nodes.size(), 7 + cells + 1);
-  EXPECT_NEAR(nodes.back()[0], std::cos(50.0 * std::numbers::pi / 180.0), 1e-15);
-  for (double zenith_deg = 1.0; zenith_deg < 90.0; zenith_deg += 1.7) {
-    const double position = std::sqrt(1.0 - cos_sin_deg(zenith_deg).cos) * static_cast<double>(cells);
-    const auto& [start, rise] = nodes[7 + static_cast<std::size_t>(position)];
-    EXPECT_NEAR(start + (position - std::floor(position)) * rise, basis.at(zenith_deg)[0], table.error[0] + 1e-12);
-  }
-  EXPECT_EQ(table.word(), 7U << DOLP_SKY_START_SHIFT | 1U << DOLP_SKY_CORNERS_SHIFT | table.log2_cells);
-  EXPECT_EQ(SkyTable{}.word(), 0U);
 }
 
 }  // namespace

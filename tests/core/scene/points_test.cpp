@@ -149,11 +149,6 @@ TEST(PointsError_MissingAngle, IsNamed) {
       error_of("theta_deg\n1\n", PointsKind::kGeometries).starts_with("p.csv:1: column \"theta_deg\" is unknown"));
 }
 
-TEST(PointsError_FileThatCannotBeRead, IsAnInputError) {
-  const std::string message = error_text([&] { read_points("absent.csv", PointsKind::kDirections); });
-  EXPECT_EQ(message, "absent.csv: cannot be read: No such file or directory");
-}
-
 TEST(Points_RandomNumbers, ArriveBitForBit) {
   constexpr std::uint64_t kSeed = 46;
   constexpr std::size_t kRows = 10000;

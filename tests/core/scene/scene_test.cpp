@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <iterator>
 
 #include "base/text.hpp"
@@ -192,60 +193,22 @@ TEST(Scene_EveryKey, IsDescribed) {
   }
 }
 
-TEST(Scene_EveryKey, CanBeSetByAnOverride) {
-  const TemporaryFile index("index.csv", "wavelength_um,n,k\n10,2,0\n11,2,0\n");
-  const TemporaryFile light("light.csv", "10,1\n11,2\n");
-  const TemporaryFile reflectance("reflectance.csv", "beta_deg,r_s,r_p\n0,0.1,0.1\n90,1,1\n");
+TEST(Scene_EveryKey, CanBeSetByAnOverride_AndBeWrittenInTheFile) {
+  const TemporaryFolder folder;
+  const auto put = [&](const char* name, const char* text) { std::ofstream(folder.path() / name) << text; };
+  put("index.csv", "wavelength_um,n,k\n10,2,0\n11,2,0\n");
+  put("light.csv", "10,1\n11,2\n");
+  put("reflectance.csv", "beta_deg,r_s,r_p\n0,0.1,0.1\n90,1,1\n");
+  const std::string path = folder.path() / "s.toml";
   for (const KeyCase& row : key_cases()) {
-    const std::string key = row.key;
-    std::vector<std::string> overrides = companions_of(key);
-    if (key.ends_with("material_file")) {
-      overrides.push_back(key + "=" + index.path());
-    } else if (key == "surface.reflectance_file") {
-      overrides.push_back(key + "=" + reflectance.path());
-    } else if (key == "source.file") {
-      overrides.push_back(key + "=" + light.path());
-    } else {
-      overrides.push_back(key + "=" + row.value);
-    }
-    const SceneValues scene = parse(kMinimal, overrides);
-    EXPECT_TRUE(row.arrived(scene)) << key;
-    EXPECT_EQ(scene.settings, settings_from_text(overrides)) << key;
-  }
-}
-
-TEST(Scene_EveryKey, CanBeWrittenInTheFile) {
-  const TemporaryFile index("index.csv", "wavelength_um,n,k\n10,2,0\n11,2,0\n");
-  const TemporaryFile light("light.csv", "10,1\n11,2\n");
-  const TemporaryFile reflectance("reflectance.csv", "beta_deg,r_s,r_p\n0,0.1,0.1\n90,1,1\n");
-  for (const KeyCase& row : key_cases()) {
-    const std::string key = row.key;
-    // Each line has the full name of its key and needs no [table] heading above it. So the test can leave out any line.
-    std::string text = "accuracy.tolerance = 1e-5\n";
-    if (key == "accuracy.tolerance") text.clear();
-    const bool gives_optics =
-        key == "surface.n" || key.find("material") != std::string::npos || key == "surface.reflectance_file";
-    if (!gives_optics || is_of_layer(key)) text += "surface.n = 1.5\n";
-    if (is_wind(key)) text += "surface.distribution = \"gaussian\"\n";
-    if (key != "surface.sigma" && !is_wind(key)) text += "surface.sigma = 0.3\n";
-    if (key != "emission.temperature_K") text += "emission.temperature_K = 300\n";
-    if (key == "surroundings.vapour_cm" || key == "surroundings.air_temperature_K")
-      text += "surroundings.profile = \"clear-sky\"\n";
-    if (!key.starts_with("spectrum") && key != "grid.band_um") text += "spectrum.wavelength_um = 10.6\n";
-    if (key == "source.scale") text += "source.irradiance = 1\n";
-    if (is_of_layer(key)) {
-      const std::string name = key.substr(key.rfind('.') + 1);
-      const std::string beside = name == "k" || name == "thickness_um" ? "n = 1.5, " : "";
-      const std::string thickness = name == "thickness_um" ? "" : ", thickness_um = 1";
-      text += "surface.coating = [{ " + beside + name + " = " + row.value + thickness + " }]\n";
-    } else {
-      text += key + " = " + row.value + "\n";
-    }
-    const std::string& file = key == "source.file"                ? light.path()
-                              : key == "surface.reflectance_file" ? reflectance.path()
-                                                                  : index.path();
-    const std::string folder = std::filesystem::path(file).parent_path();
-    EXPECT_TRUE(row.arrived(parse_scene(text, folder + "/s.toml", {}))) << text;
+    SCOPED_TRACE(row.key);
+    std::vector<std::string> overrides = companions_of(row.key);
+    overrides.push_back(std::string(row.key) + "=" + row.value);
+    const SceneValues scene = parse_scene(kMinimal, path, settings_from_text(overrides, "--set"));
+    EXPECT_TRUE(row.arrived(scene));
+    EXPECT_EQ(scene.settings, settings_from_text(overrides));
+    const std::string text = scene_toml(scene, folder.path());
+    EXPECT_TRUE(row.arrived(parse_scene(text, path, {}))) << text;
   }
 }
 
@@ -264,11 +227,16 @@ TEST(Scene_EveryNumber, AcceptsItsClosedEndsAndRefusesItsOpenOnes) {
 }
 
 TEST(Scene_EveryNumber, RefusesWhatIsOutOfRangeNotFiniteOrNoNumber) {
+  const std::string kBeyondDoubles = "9007199254740993";  // 2^53 + 1, which no double holds
+  EXPECT_EQ(parse(kMinimal + "[source]\nirradiance = " + kBeyondDoubles).source->irradiance, 9007199254740993.0);
   for (const Key& key : listed_keys()) {
     if (key.type != Key::Type::kNumber && key.type != Key::Type::kAxis) continue;
     std::vector<std::string> values = {"nan", "inf", "-inf", "true", "many", "2020-01-01", ""};
     if (std::isfinite(key.range.min)) values.push_back(format_number(key.range.min - 1.0));
-    if (std::isfinite(key.range.max)) values.push_back(format_number(key.range.max * 2.0 + 1.0));
+    if (std::isfinite(key.range.max)) {
+      values.push_back(format_number(key.range.max * 2.0 + 1.0));
+      values.push_back(kBeyondDoubles);
+    }
     for (const std::string& value : values) {
       const std::string argument = key.key + "=" + value;
       std::vector<std::string> overrides = is_of_layer(key.key) ? companions_of(key.key) : std::vector<std::string>{};
@@ -278,19 +246,6 @@ TEST(Scene_EveryNumber, RefusesWhatIsOutOfRangeNotFiniteOrNoNumber) {
       EXPECT_TRUE(contains(error, key.range.text())) << error;
     }
   }
-}
-
-TEST(Scene_EveryNumber, TakesIntegersThatNoDoubleHolds) {
-  const std::string integer = "9007199254740993";  // 2^53 + 1
-  for (const Key& key : listed_keys()) {
-    if (key.type != Key::Type::kNumber && key.type != Key::Type::kAxis) continue;
-    if (std::isinf(key.range.max)) continue;
-    std::vector<std::string> overrides = is_of_layer(key.key) ? companions_of(key.key) : std::vector<std::string>{};
-    overrides.push_back(key.key + "=" + integer);
-    const std::string error = error_of(kMinimal, overrides);
-    EXPECT_TRUE(contains(error, "out of range")) << error;
-  }
-  EXPECT_EQ(parse(kMinimal + "[source]\nirradiance = " + integer).source->irradiance, 9007199254740993.0);
 }
 
 TEST(Scene_EveryWord, NamesTheAllowedWords) {
@@ -315,39 +270,19 @@ TEST(SceneScattering, WhatTheModelHas_Arrives) {
   EXPECT_TRUE(direct.emission->has_bracket);
 }
 
-TEST(SceneScattering, WhatTheModelLacks_NamesTheKeys) {
-  struct Case {
-    std::vector<std::string> overrides;
-    const char* expected;
-  };
-  for (const Case& c : std::vector<Case>{
-           {{"surface.masking=smith", "surface.scattering=multiple"}, "masking = \"v-cavity\""},
-           {{"surface.masking=none", "emission.model=direct"}, "\"smith\" or \"v-cavity\""},
-           {{"surface.masking=integral", "emission.bracket=true"}, "\"smith\" or \"v-cavity\""},
-           {{"surface.masking=v-cavity", "surface.scattering=multiple", "emission.bracket=true"},
-            "surface.scattering=multiple: needs emission.bracket = false"},
-           {{"surface.masking=v-cavity", "surface.scattering=multiple", "emission.model=direct"},
-            "surface.scattering=multiple: needs emission.model = \"moments\" or \"fresnel\""},
-           {{"surface.masking=v-cavity", "emission.model=fresnel", "emission.bracket=true"},
-            "\"moments\" or \"direct\""},
-           {{"surface.masking=v-cavity", "geometry.mode=bistatic", "emission.bracket=true"}, "hemispherical"},
-           {{"emission.bracket=yes"}, "true or false"}}) {
-    const std::string error = error_of(kMinimal, c.overrides);
-    EXPECT_TRUE(contains(error, c.expected)) << error;
-  }
-}
-
 // ---- Axes ----------------------------------------------------------------------------------------------------------
 
-TEST(SceneAxis_Linear, IsExactForWholeDegreesAndDescends) {
-  const SceneValues scene = parse(kMinimal + "[grid]\ntheta_deg = { from = 80, to = 10, count = 8 }\n");
-  EXPECT_EQ(scene.grid[Axis::kTheta], (std::vector<double>{80, 70, 60, 50, 40, 30, 20, 10}));
-}
-
-TEST(SceneAxis_List, IsSortedUnlessItAscendsOrDescends) {
-  for (const auto& [list, values] : {std::pair("[30, 0, 60]", std::vector<double>{0, 30, 60}),
-                                     std::pair("[60, 30, 0]", std::vector<double>{60, 30, 0})}) {
-    EXPECT_EQ(parse(kMinimal + "[grid]\ntheta_deg = " + list + "\n").grid[Axis::kTheta], values) << list;
+TEST(SceneAxis_InEachForm, HasItsValues) {
+  const std::string grid = "[grid]\ntheta_deg = ";
+  for (const auto& [text, values] :
+       {std::pair(grid + "{ from = 80, to = 10, count = 8 }", std::vector<double>{80, 70, 60, 50, 40, 30, 20, 10}),
+        {grid + "[30, 0, 60]", {0, 30, 60}},  // a list is sorted unless it ascends or descends
+        {grid + "[60, 30, 0]", {60, 30, 0}},
+        {grid + "30", {30}},
+        {grid + "[30]", {30}},
+        {grid + "{ from = 30, to = 30, count = 1 }", {30}},
+        {"[grid.theta_deg]\nfrom = 2\nto = 4\ncount = 3", {2, 3, 4}}}) {
+    EXPECT_EQ(parse(kMinimal + text).grid[Axis::kTheta], values) << text;
   }
 }
 
@@ -359,18 +294,6 @@ TEST(SceneAxis_Log, HasExactEndsAndEqualRatios) {
   EXPECT_EQ(scene.grid[Axis::kSigma][0], 0.01);
   EXPECT_NEAR(scene.grid[Axis::kSigma][1], 0.1, 0.1 * kTwoPowers);
   EXPECT_EQ(scene.grid[Axis::kSigma][2], 1.0);
-}
-
-TEST(SceneAxis_OnePoint, IsANumberAListOrARule) {
-  for (const char* axis : {"30", "[30]", "{ from = 30, to = 30, count = 1 }"}) {
-    const SceneValues scene = parse(kMinimal + "[grid]\ntheta_deg = " + axis + "\n");
-    EXPECT_EQ(scene.grid[Axis::kTheta], std::vector<double>{30.0}) << axis;
-  }
-}
-
-TEST(SceneAxis_OfItsOwnTable, IsRead) {
-  const SceneValues scene = parse(kMinimal + "[grid.q]\nfrom = 2\nto = 4\ncount = 3\n", {"grid.q.count=2"});
-  EXPECT_EQ(scene.grid[Axis::kQ], (std::vector<double>{2.0, 4.0}));
 }
 
 TEST(SceneGrid_SigmaWithoutSurfaceSigma, GivesTheSurfaceItsFirstValue) {

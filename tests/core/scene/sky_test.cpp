@@ -1,4 +1,4 @@
-// Sky profiles: files, built-in skies, and the functions of the zenith that represent them.
+// Sky profiles: files, built-in skies, and interpolation over the zenith.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -50,19 +50,12 @@ TEST(SkyProfile, BadFile_IsOneLineThatNamesFileLineAndWhatIsAllowed) {
                 "sky.csv:5: zenith_deg = 50: is in line 3 too"},
            Case{"zenith_deg,temperature_K\n0,200\n95,250\n",
                 "sky.csv:3: zenith_deg = 95: out of range; must be a number in [0, 90]"},
-           Case{"zenith_deg,temperature_K\n0,cold\n90,250\n",
-                "sky.csv:2: temperature_K = cold: not a number; must be a number in [0, 1e4]"},
-           Case{"zenith_deg,temperature_K\n0\n90,250\n",
-                "sky.csv:2: temperature_K: the value is missing; must be a number in [0, 1e4]"},
            Case{"zenith_deg,radiance\n0,-1\n90,1\n",
                 "sky.csv:2: radiance = -1: out of range; must be a number in [0, inf)"},
            Case{"wavelength_um,zenith_deg,radiance\n8,0,1\n8,90,1\n9,0,1\n",
                 "sky.csv:4: zenith_deg = 0: must be 90 in one row"},
            Case{"wavelength_um,zenith_deg,radiance\n8,0,1\n8,90,1\n9,0,1\n9,30,1\n9,90,1\n",
                 "sky.csv:5: zenith_deg = 30: each wavelength must have the same angles, and the first has 90"},
-           Case{"zenith_deg;radiance\n0;1,5\n90;1\n",
-                "sky.csv:2: radiance = 1,5: not a number; must be a number in [0, inf); numbers must have a decimal "
-                "point"},
        }) {
     EXPECT_EQ(refusal_of(text), message);
   }
@@ -159,30 +152,6 @@ TEST(BuiltInSky, MoreVapourThanTheAirHolds_IsRefused) {
   EXPECT_THROW(parse(kMinimal + "[surroundings]\ntemperature_K = 240\nvapour_cm = 1\n"), InputError);
 }
 
-TEST(SkyBasis, FewFunctions_StandForAllWavelengths) {
-  SceneValues scene = parse(kMinimal + "[surroundings]\nprofile = \"clear-sky\"\n");
-  std::vector<double> wavelengths;
-  for (double um = 3.0; um <= 14.0; um += 0.5) wavelengths.push_back(um);
-  std::vector<SpectralRule> rules;
-  for (const double um : wavelengths) rules.push_back(spectral_rule(at_wavelength(scene, um)));
-  std::vector<const SpectralRule*> all;
-  for (const SpectralRule& rule : rules) all.push_back(&rule);
-  const std::shared_ptr<const SkyBasis> basis = sky_basis(scene, all);
-  ASSERT_TRUE(basis);
-  EXPECT_LE(basis->size(), 3U);  // the air has three emittances
-  SkySampler sampler(*scene.surroundings->profile);
-  for (const double um : {3.3, 7.7, 13.1}) {
-    const Eigen::VectorXd exitances = sampler.at(um);
-    const Eigen::VectorXd sky = (exitances.array() - sampler.mean(exitances)).matrix();
-    const SkyWeights weights = basis->weights_of(sky);
-    for (const double zenith_deg : {0.0, 41.0, 77.7, 89.3, 90.0}) {
-      const double exact =
-          std::numbers::pi * sky_radiance(*scene.surroundings->profile, um, zenith_deg) - sampler.mean(exitances);
-      EXPECT_NEAR(basis->at(zenith_deg).dot(weights.of), exact, weights.error + 1e-9 * sky.cwiseAbs().maxCoeff());
-    }
-  }
-}
-
 TEST(SceneReader, Profile_TakesThePlaceOfATemperature) {
   const std::string sky = kMinimal + "[surroundings]\n";
   EXPECT_TRUE(parse(sky + "profile = \"overcast\"\n").surroundings->profile);
@@ -216,16 +185,6 @@ TEST(SkyNodes, ErrorOfWideTemperatureRanges_HoldsBetweenTheNodes) {
                 nodes.error(values) + 1e-14 * values.maxCoeff())
           << cold_K << " K, " << wavelength_um << " um, " << zenith_deg;
   }
-}
-
-TEST(SkyProfile, WideTemperatureRange_IsDividedWhereItDoubles) {
-  SkyProfile profile;
-  profile.zenith_deg = {0.0, 90.0};
-  profile.values = {30.0, 300.0};
-  const std::vector<double> expected = {0.0, 2.5, 15.0, 40.0, 60.0, 85.0, 90.0};
-  const std::vector<double> ends_deg = profile.ends_deg();
-  ASSERT_EQ(ends_deg.size(), expected.size());
-  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(ends_deg[i], expected[i], 1e-12);
 }
 
 }  // namespace

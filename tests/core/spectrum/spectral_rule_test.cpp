@@ -28,19 +28,6 @@ TEST(Planck, FiftyDigitValues_Agree) {
   }
 }
 
-TEST(Planck, WholeDomain_IsFiniteAndGrowsWithTemperature) {
-  for (double wavelength_um = 0.3; wavelength_um <= 1000.0; wavelength_um *= 1.1) {
-    double previous = planck_radiance(wavelength_um, 0.0);
-    EXPECT_EQ(previous, 0.0);
-    for (double temperature_K = 1.0; temperature_K <= 6000.0; temperature_K *= 1.2) {
-      const double radiance = planck_radiance(wavelength_um, temperature_K);
-      ASSERT_TRUE(std::isfinite(radiance)) << wavelength_um << " um, " << temperature_K << " K";
-      ASSERT_GE(radiance, previous) << wavelength_um << " um, " << temperature_K << " K";
-      previous = radiance;
-    }
-  }
-}
-
 TEST(SmoothAbsorptance, FiftyDigitValues_Agree) {
   // About ten roundings without cancellation: a complex product, square root and quotient.
   constexpr double kTolerance = 20.0 * kEpsilon;
@@ -54,15 +41,6 @@ TEST(SmoothAbsorptance, FiftyDigitValues_Agree) {
 }
 
 // ---- Spectral rule --------------------------------------------------------------------------------------------------
-
-TEST(SpectralRule, SingleWavelength_IsOneSampleOfPlanckFactors) {
-  const SpectralRule rule = spectral_rule(night_scene());
-  ASSERT_EQ(rule.samples.size(), 1u);
-  EXPECT_EQ(rule.samples[0].emitted, std::numbers::pi * planck_radiance(10.6, 290.0));
-  EXPECT_EQ(rule.samples[0].surroundings, std::numbers::pi * planck_radiance(10.6, 240.0));
-  EXPECT_EQ(rule.samples[0].width, 1.0);
-  EXPECT_EQ(rule.relative_error, 0.0);
-}
 
 TEST(SpectralRule, ConstantIndexBands_IntegratePlanckToRounding) {
   // The case of 1 K over the widest band is the hardest. There the exponent in Planck's law varies most, and only the

@@ -54,57 +54,6 @@ TEST_F(TableFiles, NetcdfRoundTrip_AbsentVariables_StayAbsent) {
   expect_same(read_table(at("t.nc")), table);
 }
 
-std::string text_attribute(int file, int variable, const char* name) {
-  std::size_t length = 0;
-  if (nc_inq_attlen(file, variable, name, &length) != NC_NOERR) return "(absent)";
-  std::string text(length, '\0');
-  nc_get_att_text(file, variable, name, text.data());
-  return text;
-}
-
-TEST_F(TableFiles, Netcdf_Metadata_FollowsCf) {
-  write_table(sample_table(3, 2, 2), at("t.nc"));
-  int file = 0;
-  ASSERT_EQ(nc_open(at("t.nc").c_str(), NC_NOWRITE, &file), NC_NOERR);
-  int format = 0;
-  EXPECT_EQ(nc_inq_format(file, &format), NC_NOERR);
-  EXPECT_EQ(format, NC_FORMAT_64BIT_OFFSET);
-  EXPECT_EQ(text_attribute(file, NC_GLOBAL, "Conventions"), "CF-1.8");
-  const auto variable = [&](const char* name) {
-    int id = -1;
-    EXPECT_EQ(nc_inq_varid(file, name, &id), NC_NOERR) << name;
-    return id;
-  };
-  EXPECT_EQ(text_attribute(file, variable("theta"), "units"), "degree");
-  EXPECT_EQ(text_attribute(file, variable("sigma"), "units"), "1");
-  EXPECT_EQ(text_attribute(file, variable("q"), "units"), "1");
-  EXPECT_EQ(text_attribute(file, variable("stokes_i"), "units"), "W m-2 um-1");
-  for (const QuantityDescription& described : kQuantities) {
-    EXPECT_EQ(text_attribute(file, variable(described.name), "long_name"), described.long_name);
-    double fill = 0.0;
-    EXPECT_EQ(nc_get_att_double(file, variable(described.name), "_FillValue", &fill), NC_NOERR);
-    EXPECT_TRUE(std::isnan(fill));
-    const std::string ancillary = described.ancillary;
-    EXPECT_EQ(text_attribute(file, variable(described.name), "ancillary_variables"),
-              ancillary.empty() ? "(absent)" : ancillary);
-    std::array<int, 3> dimensions{};
-    EXPECT_EQ(nc_inq_vardimid(file, variable(described.name), dimensions.data()), NC_NOERR);
-    // compares names, because two axes have equal lengths
-    const std::array<const char*, 3> axes = {"theta", "sigma", "q"};
-    for (std::size_t i = 0; i < axes.size(); ++i) {
-      std::array<char, NC_MAX_NAME + 1> name{};
-      EXPECT_EQ(nc_inq_dimname(file, dimensions[i], name.data()), NC_NOERR);
-      EXPECT_STREQ(name.data(), axes[i]) << described.name;
-    }
-  }
-  const std::string meanings = text_attribute(file, variable("status"), "flag_meanings");
-  EXPECT_EQ(std::count(meanings.begin(), meanings.end(), ' '), 5);
-  std::array<int, 6> masks{};
-  EXPECT_EQ(nc_get_att_int(file, variable("status"), "flag_masks", masks.data()), NC_NOERR);
-  EXPECT_EQ(masks, (std::array<int, 6>{1, 2, 4, 8, 16, 32}));
-  EXPECT_EQ(nc_close(file), NC_NOERR);
-}
-
 TableValues labelled_table() {
   TableValues table = sample_table(2, 1, 1);
   table.axes[Axis::kMaterial] = {0.0, 1.0};
@@ -116,19 +65,15 @@ TableValues labelled_table() {
   return table;
 }
 
-TEST_F(TableFiles, NetcdfRoundTrip_Labels_AreLettersAndNumbers) {
+TEST_F(TableFiles, NetcdfRoundTrip_Labels_AreKept_AndBandsAreNumbersToo) {
   const TableValues table = labelled_table();
   write_table(table, at("t.nc"));
   const TableValues read = read_table(at("t.nc"));
   expect_same(read, table);
   EXPECT_EQ(read.labels, table.labels);
-  int file = 0, names = 0, low = 0;
+  int file = 0, low = 0;
   ASSERT_EQ(nc_open(at("t.nc").c_str(), NC_NOWRITE, &file), NC_NOERR);
-  std::array<char, 24> letters{};
   std::array<double, 3> low_um{};
-  ASSERT_EQ(nc_inq_varid(file, "material_name", &names), NC_NOERR);
-  EXPECT_EQ(nc_get_var_text(file, names, letters.data()), NC_NOERR);
-  EXPECT_EQ(std::string(letters.data(), letters.size()), std::string("gold (Ordal)\u00e9mail\0\0\0\0\0\0", 24));
   ASSERT_EQ(nc_inq_varid(file, "band_low", &low), NC_NOERR);
   EXPECT_EQ(nc_get_var_double(file, low, low_um.data()), NC_NOERR);
   EXPECT_EQ(low_um, (std::array<double, 3>{8.0, 3.5, 1e-4}));
@@ -187,18 +132,6 @@ TEST_F(TableFiles, Netcdf_VariableAbove4GiB_IsOf64BitData) {
   EXPECT_EQ(reader.sums_of(reader.read({last, part.counts()}), {last, part.counts()}), sums);
 }
 
-TEST_F(TableFiles, ReadTable_WhatIsNoTable_IsRefusedByName) {
-  EXPECT_THROW(read_table(at("missing.nc")), InputError);
-  put(at("text.nc"), "theta,sigma,q\n");
-  EXPECT_THROW(read_table(at("text.nc")), InputError);
-  int file = 0;
-  ASSERT_EQ(nc_create(at("other.nc").c_str(), NC_NETCDF4, &file), NC_NOERR);
-  ASSERT_EQ(nc_close(file), NC_NOERR);
-  const std::string message = error_text([&] { read_table(at("other.nc")); });
-  EXPECT_EQ(message.find(at("other.nc").string()), 0u) << message;
-  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-}
-
 /// A file without values. Its axes have the given lengths. Its variable dolp has only the first `axes` axes.
 struct BareFile {
   BareFile(const fs::path& path, const std::array<std::size_t, 3>& lengths, int axes = 3) {
@@ -242,28 +175,6 @@ TEST_F(TableFiles, ReadTable_SizesThatNoTableHas_AreRefusedByName) {
     const std::string message = error_text([&] { read_table(at("claim.nc")); });
     EXPECT_NE(message.find(claim.message), std::string::npos) << message;
   }
-}
-
-TEST_F(TableFiles, Netcdf_OtherWriter_CanAppend) {
-  const TableValues table = sample_table(3, 2, 2);
-  write_table(table, at("t.nc"));
-  int file = 0;
-  ASSERT_EQ(nc_open(at("t.nc").c_str(), NC_WRITE, &file), NC_NOERR);
-  const std::string note = "seen";
-  int variable = 0;
-  std::array<int, 3> dimensions{};
-  const std::vector<double> twice(table.size(), 2.0);
-  EXPECT_EQ(nc_redef(file), NC_NOERR);
-  EXPECT_EQ(nc_put_att_text(file, NC_GLOBAL, "note", note.size(), note.data()), NC_NOERR);
-  EXPECT_EQ(nc_inq_varid(file, "dolp", &variable), NC_NOERR);
-  EXPECT_EQ(nc_inq_vardimid(file, variable, dimensions.data()), NC_NOERR);
-  EXPECT_EQ(nc_def_var(file, "mine", NC_DOUBLE, 3, dimensions.data(), &variable), NC_NOERR);
-  EXPECT_EQ(nc_enddef(file), NC_NOERR);
-  EXPECT_EQ(nc_put_var_double(file, variable, twice.data()), NC_NOERR);
-  EXPECT_EQ(nc_close(file), NC_NOERR);
-  TableValues expected = table;
-  expected.attributes.push_back({"note", note});
-  expect_same(read_table(at("t.nc")), expected);
 }
 
 TEST_F(TableFiles, Netcdf_LongTexts_AreKept) {

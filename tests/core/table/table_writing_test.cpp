@@ -42,32 +42,7 @@ class Limit {
   rlimit before_{};
 };
 
-/// Limits the size of files, so that writing fails as on a full disk.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)), limit_(RLIMIT_FSIZE, bytes) {}
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-  ~FullDisk() { std::signal(SIGXFSZ, handler_); }
-
- private:
-  void (*handler_)(int);
-  Limit limit_;
-};
 // ---- Paths that cannot be written -----------------------------------------------------------------------------------
-
-TEST_F(TableFiles, CheckOutputPath_WrongPaths_AreRefusedBeforeAnyWork) {
-  EXPECT_THROW(check_output_path(at("t.txt")), InputError);
-  EXPECT_THROW(check_output_path(at("t")), InputError);
-  EXPECT_THROW(check_output_path(at("no/folder/t.nc")), IoError);
-  fs::create_directory(at("folder.nc"));
-  EXPECT_THROW(check_output_path(at("folder.nc")), IoError);
-  EXPECT_NO_THROW(check_output_path(at("t.nc")));
-  EXPECT_NO_THROW(check_output_path("-"));
-  const std::string message = error_text([&] { check_output_path("t.h5"); });
-  EXPECT_EQ(message, "t.h5: the name of a table must end in .nc, .csv or .npy");
-  EXPECT_EQ(names(), std::vector<std::string>{"folder.nc"});
-}
 
 // The length of the table's name is allowed, but names of its temporary files would be too long.
 TEST_F(TableFiles, TableOutput_NameTooLongForAPartialFile_IsRefusedBeforeAnyWork) {
@@ -83,50 +58,7 @@ TEST_F(TableFiles, TableOutput_NameTooLongForAPartialFile_IsRefusedBeforeAnyWork
   }
 }
 
-TEST_F(TableFiles, CheckWritable_ReadOnlyFolder_IsRefused) {
-  fs::create_directory(at("locked"));
-  fs::permissions(at("locked"), fs::perms::owner_read | fs::perms::owner_exec);
-  // Root may write everywhere except in /proc.
-  const fs::path folder = ::geteuid() == 0 ? fs::path("/proc/self") : at("locked");
-  for (const char* name : {"t.nc", "t.csv", "t.npy"}) {
-    EXPECT_THROW(write_table(sample_table(1, 1, 1), folder / name), IoError) << name;
-    EXPECT_FALSE(fs::exists(folder / name));
-  }
-  fs::permissions(at("locked"), fs::perms::owner_all);
-}
-
-TEST_F(TableFiles, WriteText_FullDevice_IsAnErrorAndLeavesTheDevice) {
-  EXPECT_THROW(write_text_atomically("/dev/full", "text"), IoError);
-  EXPECT_TRUE(fs::is_character_file("/dev/full"));
-  fs::create_symlink("/dev/full", at("full.nc"));
-  EXPECT_THROW(write_table(sample_table(1, 1, 1), at("full.nc")), IoError);
-  EXPECT_TRUE(fs::is_character_file("/dev/full"));
-}
-
 // ---- Whole or not there ---------------------------------------------------------------------------------------------
-
-TEST_F(TableFiles, WriteTable_DiskFull_LeavesNothingOrWhatWasThere) {
-  const TableValues table = sample_table(20, 16, 16);
-  for (const char* name : {"t.nc", "t.csv", "t.npy"}) {
-    for (const rlim_t bytes : {rlim_t{0}, rlim_t{4096}, rlim_t{100000}}) {
-      {
-        const FullDisk full(bytes);
-        EXPECT_THROW(write_table(table, at(name)), IoError) << name << " " << bytes;
-      }
-      EXPECT_EQ(names(), std::vector<std::string>{}) << name << " " << bytes;
-      put(at(name), "what was there");
-      {
-        const FullDisk full(bytes);
-        EXPECT_THROW(write_table(table, at(name)), IoError) << name << " " << bytes;
-      }
-      EXPECT_EQ(names(), std::vector<std::string>{name});
-      EXPECT_EQ(read_file(at(name)), "what was there");
-      fs::remove(at(name));
-    }
-  }
-  write_table(table, at("t.nc"));
-  expect_same(read_table(at("t.nc")), table);
-}
 
 TEST_F(TableFiles, WriteTable_NoDescriptorsLeft_IsNoLackOfMemory) {
   const TableValues table = sample_table(1, 1, 1);
@@ -176,7 +108,7 @@ TEST_F(TableFiles, WriteText_Killed_LeavesNothing) {
   ASSERT_GE(writer, 0);
   if (writer == 0) {
     // The signal SIGXFSZ ends the process without calling destructors.
-    const FullDisk full(100'000);
+    const Limit full(RLIMIT_FSIZE, 100'000);
     std::signal(SIGXFSZ, SIG_DFL);
     write_text_atomically(at("t.csv"), std::string(200'000, 'x'));
     ::_exit(0);

@@ -13,23 +13,36 @@ TEST(MeasuredData, Columns_AreReadAndCheckedLineByLine) {
       MeasuredData::from_csv("# a comment\ntheta_deg,dolp,uncertainty,wavelength_um\n30,0.1,0.01,10\n", "f.csv");
   ASSERT_EQ(data.measurements.size(), 1U);
   EXPECT_EQ(data.measurements.front().observable, Observable::kDolp);
+  EXPECT_EQ(data.measurements.front().theta_deg, 30.0);
+  EXPECT_EQ(data.measurements.front().uncertainty, 0.01);
   EXPECT_EQ(data.measurements.front().wavelength_um, 10.0);
   EXPECT_TRUE(data.has_uncertainties);
   EXPECT_EQ(MeasuredData::from_csv("theta_deg,emissivity_s,emissivity_p\n1,0.8,0.9\n", "f").measurements.size(), 2U);
-  const auto message = [](const std::string& text) -> std::string {
-    return error_text([&] { MeasuredData::from_csv(text, "f.csv"); });
-  };
-  EXPECT_TRUE(message("").starts_with("f.csv:1: the file is empty"));
-  EXPECT_TRUE(message("theta_deg,dolp\n").starts_with("f.csv:1: no points"));
-  EXPECT_TRUE(message("theta_deg,dolp,q_over_i\n1,0,0\n").starts_with("f.csv:1: several measured quantities"));
-  EXPECT_TRUE(message("dolp\n1\n").starts_with("f.csv:1: column \"theta_deg\" is missing"));
-  EXPECT_TRUE(message("theta_deg,dolp\n1,12\n").starts_with("f.csv:2: dolp = 12: out of range"));
-  EXPECT_EQ(message("theta_deg,dolp\n1,-0.1\n"),
-            "f.csv:2: dolp = -0.1: must not be negative; a signed Q/I goes in a column q_over_i");
-  EXPECT_TRUE(message("theta_deg,dolp,std\n").starts_with("f.csv:1: column \"std\" is unknown; allowed are theta_deg"));
-  EXPECT_TRUE(
-      message("theta_deg,unc\n").starts_with("f.csv:1: column \"unc\" is unknown; the nearest known is uncert"));
-  EXPECT_TRUE(message("theta_deg,dolp,uncertainty\n1,0.1,0\n").starts_with("f.csv:2: uncertainty = 0: out of range"));
+  for (const auto& [text, message] : {
+           std::pair("", "f.csv:1: the file is empty"),
+           {"# nothing\n", "f.csv:1: the file is empty"},
+           {"theta_deg,dolp\n", "f.csv:1: no points"},
+           {"theta_deg,dolp\n20,nan\n", "f.csv:2: dolp = nan: not a number"},
+           {"theta_deg,dolp\n20\n", "f.csv:2: dolp: the value is missing"},
+           {"theta_deg,dolp\n20,0.1,0.2\n", "f.csv:2: 0.2: one value too many"},
+           {"theta_deg,dolp\n1,12\n", "f.csv:2: dolp = 12: out of range"},
+           {"theta_deg,dolp\n1,-0.1\n",
+            "f.csv:2: dolp = -0.1: must not be negative; a signed Q/I goes in a column q_over_i"},
+           {"theta_deg,dolp,uncertainty\n1,0.1,0\n", "f.csv:2: uncertainty = 0: out of range"},
+           {"dolp\n1\n", "f.csv:1: column \"theta_deg\" is missing"},
+           {"theta_deg,dolp,std\n", "f.csv:1: column \"std\" is unknown; allowed are theta_deg"},
+           {"theta_deg,unc\n", "f.csv:1: column \"unc\" is unknown; the nearest known is uncert"},
+           {"theta_deg,dolp,dolp\n20,0.1,0.1\n", "f.csv:1: column \"dolp\" appears twice"},
+           {"theta_deg,dolp,q_over_i\n1,0,0\n", "f.csv:1: several measured quantities"},
+           {"theta_deg,dolp,emissivity_s\n20,0.1,0.9\n", "f.csv:1: several measured quantities"},
+       }) {
+    const std::string error = error_text([&, csv = text] { MeasuredData::from_csv(csv, "f.csv"); });
+    EXPECT_TRUE(error.starts_with(message)) << error;
+  }
+  EXPECT_NE(error_text([] {
+              MeasuredData::from_csv("theta_deg,theta_i_deg,dolp\n20,20,0.1\n", "f.csv");
+            }).find("give one of them"),
+            std::string::npos);
 }
 
 TEST(MeasuredData, ProbablyInAnotherUnit_IsOneRemark) {

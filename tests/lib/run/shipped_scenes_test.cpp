@@ -4,13 +4,11 @@
 
 #include <fstream>
 #include <map>
-#include <optional>
+
 #include <regex>
 #include <string>
 #include <vector>
 
-#include "plan/effects.hpp"
-#include "run/estimates.hpp"
 #include "scene/scene_reader.hpp"
 #include "scene_run_support.hpp"
 
@@ -107,61 +105,11 @@ TEST(RoughMetalScene, Comment_StatesTheEmissivities) {
   EXPECT_NE(comment_of("rough_metal").find(statement), std::string::npos) << statement;
 }
 
-/// The effect that a comment names, or nothing for "roughness", which is no effect of a plan.
-std::optional<Part> part_of(const std::string& effect) {
-  static const std::map<std::string, Part> kParts = {{"source", Part::kSource},
-                                                     {"surroundings", Part::kSurroundings},
-                                                     {"path", Part::kPathRadiance},
-                                                     {"diffuse", Part::kDiffuse}};
-  const auto found = kParts.find(effect);
-  return found == kParts.end() ? std::nullopt : std::optional(found->second);
-}
-
-// The comment of a scene says by how much an effect changes DOLP. The plan says by how much it changes the vector
-// (Q/I, U/I). DOLP is the length of this vector, so DOLP changes by no more than the vector.
-TEST_P(ShippedScene, Plan_EstimatesTheChangesThatTheCommentStates) {
-  constexpr double kAccuracy = 0.2;  // percentage points: the plan subtracts two values, each with the tolerance 1e-3
-  const auto [name, statement_count] = GetParam();
-  for (const Statement& statement : statements_of(name)) {
-    const SceneValues scene = read_scene(scene_path(name), settings_from_text(statement.overrides));
-    const SceneEntries entry = {{statement.theta_deg, {scene.surface.sigma, scene.surface.q}, {}}};
-    std::vector<Effect> rows = effects_of(scene, entry, keep_everything(scene));
-    add_influences(rows, scene, entry, keep_everything(scene));
-    std::size_t compared = 0;
-    for (const auto& [effect, change] : statement.changes) {
-      if (!part_of(effect)) continue;
-      ++compared;
-      const double influence = 100.0 * std::ranges::find(rows, part_of(effect), &Effect::part)->influence.value();
-      EXPECT_GE(influence, std::abs(std::stod(change)) - kAccuracy) << effect;
-      EXPECT_LE(influence, 200.0) << effect;
-    }
-    EXPECT_GE(compared, 1U) << statement_count;
-  }
-}
-
 INSTANTIATE_TEST_SUITE_P(All, ShippedScene,
                          testing::Values(std::pair{"night_paint", 1U}, std::pair{"overcast", 1U}, std::pair{"far", 1U},
                                          std::pair{"water", 2U}, std::pair{"bare_aluminium", 2U}, std::pair{"day", 1U},
                                          std::pair{"glint", 1U}, std::pair{"mwir_glint", 1U}),
                          [](const auto& test) { return std::string(test.param.first); });
-
-// A Monte Carlo computation with all bounces on a correlated Gaussian surface, 80,000 rays a case. V-grooves are
-// another surface with the same slopes, and the scene states the difference.
-TEST(SeaWind, UpTo70Degrees_HasTheEmissivityOfAGaussianSea) {
-  struct Case {
-    double theta_deg, wind_m_s, emissivity, q_over_i;
-  };
-  constexpr double kEmissivityAccuracy = 0.002;
-  constexpr double kPolarisationAccuracy = 0.001;
-  for (const Case& sea : {Case{60, 5, 0.9640, -0.02673}, Case{60, 10, 0.9653, -0.02426}, Case{60, 15, 0.9674, -0.02194},
-                          Case{70, 5, 0.9161, -0.04398}, Case{70, 10, 0.9277, -0.03801}}) {
-    const PointResult result = result_at("sea_wind", sea.theta_deg, {fmt::format("surface.wind_m_s={}", sea.wind_m_s)});
-    const double emissivity = 0.5 * (result[Quantity::kEmissivityS] + result[Quantity::kEmissivityP]);
-    EXPECT_NEAR(emissivity, sea.emissivity, kEmissivityAccuracy) << sea.theta_deg << " " << sea.wind_m_s;
-    EXPECT_NEAR(result[Quantity::kQOverI], sea.q_over_i, kPolarisationAccuracy) << sea.theta_deg << " " << sea.wind_m_s;
-    EXPECT_EQ(result.status, 0U);
-  }
-}
 
 }  // namespace
 }  // namespace dolp

@@ -53,14 +53,6 @@ TEST_F(BenchProgram, Accuracy_Json_Results_HaveErrorAndTimesForEverySetting) {
   }
 }
 
-TEST_F(BenchProgram, Json_File_IsWrittenBesideTheTable) {
-  const Outcome outcome = bench(split_at("accuracy --quick --case rough --method gauss --json r.json", ' '));
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("rough: "), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.out.find("  gauss                64  "), std::string::npos) << outcome.out;
-  EXPECT_EQ(json::parse(read_file(at("r.json")))["results"].size(), 3U);
-}
-
 TEST_F(BenchProgram, NoVulkanDevice_OtherMethodsRunAndTheReasonIsNamed) {
   const Outcome outcome =
       bench(split_at("accuracy --quick --case easy --method gauss --method vulkan-double --json -", ' '), kNoDriver);
@@ -72,6 +64,22 @@ TEST_F(BenchProgram, NoVulkanDevice_OtherMethodsRunAndTheReasonIsNamed) {
     EXPECT_EQ(row.contains("error"), row["method"] == "gauss") << row.dump();
   }
   EXPECT_TRUE(study["context"]["device"].contains("none"));
+}
+
+TEST_F(BenchProgram, Throughput_Json_GridsHaveTheirRows) {
+  const json result = study_of("throughput --quick --entries 64 --case grids");
+  EXPECT_EQ(result["study"], "throughput");
+  expect_keys(result, {"context", "time_s", "grid", "scene", "results", "warnings"});
+  EXPECT_EQ(result["grid"], "4 x 4 x 4");
+  EXPECT_EQ(result["results"].size(), 4U * 3U * 2U);  // 4 maskings, 3 tolerances, with and without interpolation
+  for (const json& row : result["results"]) {
+    expect_keys(
+        row, {"part", "case", "setting", "entries_per_s", "evaluations_per_s", "stated_error", "raw_kernel_times_s"});
+    EXPECT_EQ(row["entries"], 64);
+    EXPECT_GE(row["time_s"].get<double>(), row["kernel_time_s"].get<double>());
+    EXPECT_NEAR(row["run_s"].get<double>(), 64 * row["time_s"].get<double>(), 1e-3 * row["run_s"].get<double>());
+    EXPECT_LE(row["stated_error"], row["tolerance"]) << row.dump();
+  }
 }
 
 struct BadUsage {

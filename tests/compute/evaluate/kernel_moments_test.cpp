@@ -1,5 +1,5 @@
-// Properties that hold for all scenes: energy is conserved, and a result does not depend on how a request orders and
-// groups its entries. The scenes are drawn at random from the whole range, with fixed seeds.
+// A result does not depend on how a request orders and groups its entries. The entries are drawn at random from the
+// whole range, with fixed seeds.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,41 +26,7 @@ std::uint64_t number_of(const Model& model) {
   return 2 * static_cast<std::uint64_t>(model.masking) + static_cast<std::uint64_t>(model.distribution);
 }
 
-// ---- Moments -------------------------------------------------------------------------------------------------------
-
-constexpr std::size_t kPoints = 80;
-constexpr std::array kTolerances{1e-2, 1e-4};
-
 class KernelProperties : public testing::TestWithParam<KernelAndModel> {};
-
-void expect_energy_is_kept(const Moments& m, const Point& point, Masking masking) {
-  const double cosine = cos_sin_deg(point.theta_deg).cos;
-  EXPECT_GE(m.r_i, -m.r_i_error) << text_of(point);
-  EXPECT_LE(std::abs(m.r_q), m.r_i + m.r_i_error + m.r_q_error) << text_of(point);
-  EXPECT_LE(m.r_i, m.albedo + m.r_i_error + m.albedo_error) << text_of(point);
-  EXPECT_LE(std::abs(m.r_i + m.deficit - cosine), m.r_i_error + m.deficit_error) << text_of(point);
-  if (masking != Masking::kVCavity && masking != Masking::kSmith) return;
-  EXPECT_LE(m.albedo, cosine + m.albedo_error) << text_of(point);
-  EXPECT_LE(m.r_i, cosine + m.r_i_error) << text_of(point);
-  EXPECT_GE(m.deficit, -m.deficit_error) << text_of(point);
-}
-
-TEST_P(KernelProperties, RandomPoints_KeepTheEnergy) {
-  const auto [kernel, model] = GetParam();
-  const std::vector<Point> points = Random(printed_seed(300 + number_of(model))).points(model, kPoints);
-  for (const double tolerance : kTolerances) {
-    const std::vector<Moments> moments = make_evaluator(kernel)->evaluate(request_of(model, points, tolerance), {});
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      for (const auto& [value, error] : kHemisphereMembers) {
-        EXPECT_TRUE(std::isfinite(moments[i].*value)) << text_of(points[i]);
-        EXPECT_GE(moments[i].*error, 0.0) << text_of(points[i]);
-      }
-      expect_energy_is_kept(moments[i], points[i], model.masking);
-    }
-  }
-}
-
-// ---- Layout of a request -------------------------------------------------------------------------------------------
 
 /// A request for a grid of random axes. It wants the moments of only a third of the entries.
 MomentsRequest random_grid(const Model& model, Random& random) {

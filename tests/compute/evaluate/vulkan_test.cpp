@@ -63,30 +63,6 @@ std::string error_of(const VulkanOptions& options) {
   return error_text<DeviceError>([&] { VulkanEvaluator evaluator(options); });
 }
 
-TEST(ListDevices, ThisMachine_HasAUsableDeviceWithItsLimits) {
-  const DeviceList list = list_devices();
-  ASSERT_FALSE(list.devices.empty()) << list.why_empty;
-  EXPECT_TRUE(list.why_empty.empty());
-  const dolp::Device& device = list.devices[choose_device(list.devices, "", false)];
-  std::printf("%s, %s, Vulkan %s\n", device.name.c_str(), device.driver.c_str(), device.api_version.c_str());
-  EXPECT_FALSE(device.driver.empty());
-  // The Vulkan specification guarantees at least these limits.
-  EXPECT_GE(device.max_storage_buffer_bytes, std::uint64_t{1} << 27U);
-  EXPECT_GE(device.max_workgroups, 65'535U);
-  EXPECT_GT(device.memory_bytes, 0U);
-  EXPECT_GE(device.subgroup_size, 1U);
-}
-
-TEST(VulkanDeathTest, NoDriver_IsADeviceErrorAndAnEmptyListWithAReason) {
-  expect_true_in_a_child([] {
-    setenv("VK_DRIVER_FILES", "/nonexistent/driver.json", 1);
-    setenv("VK_ICD_FILENAMES", "/nonexistent/driver.json", 1);
-    const DeviceList list = list_devices();
-    const std::string message = error_of({});
-    return list.devices.empty() && list.why_empty == message && message.starts_with("no Vulkan driver");
-  });
-}
-
 TEST(VulkanDeathTest, ValidationWantedByTheEnvironmentButMissing_IsADeviceError) {
   expect_true_in_a_child([] {
     setenv("DOLP_VALIDATION", "1", 1);
@@ -114,19 +90,6 @@ TEST(VulkanDeathTest, ThreadsRefused_IsAMemoryErrorAndNoWait) {
     const std::string message = error_text<MemoryError>([] { VulkanEvaluator evaluator(VulkanOptions{}); });
     return is_bound && is_set && message.find("too few threads") != std::string::npos;
   });
-}
-
-TEST(VulkanEvaluator, UnknownDevice_ThrowsTheListOfDevices) {
-  VulkanOptions options = validated();
-  options.device = "no such device";
-  const std::string message = error_of(options);
-  EXPECT_NE(message.find(list_devices().devices.at(0).name), std::string::npos) << message;
-}
-
-TEST(VulkanEvaluator, EmptyRequest_ReturnsNothing) {
-  VulkanEvaluator evaluator(validated());
-  EXPECT_TRUE(evaluator.evaluate(MomentsRequest{}, {}).empty());
-  EXPECT_EQ(evaluator.report().dispatches, 0U);
 }
 
 TEST(VulkanEvaluator, ListsThatDoNotFitTheLayout_ThrowInputError) {

@@ -151,18 +151,6 @@ TEST_F(FitTest, Outlier_MovesSquaresMoreThanARobustLoss) {
   }
 }
 
-TEST_F(FitTest, TwoDataSets_ShareParametersAndKeepKeysOfTheirOwn) {
-  MeasuredData warm = measured(0.0);
-  MeasuredData cold = measured(0.0, {"emission.temperature_K=250"});
-  cold.settings = {{"emission.temperature_K", 250.0}};
-  const Model model(parse_scene(kScene, "scene"), {warm, cold}, {number("surface.n", 1.1, 4.0)});
-  const std::optional<FitResult> result = fit::fit(model, evaluator_, {});
-  ASSERT_TRUE(result.has_value());
-  EXPECT_NEAR(result->parameters.front().value, 1.6, 1e-4);
-  EXPECT_LT(result->chi_square, 1e-3);
-  EXPECT_EQ(result->residuals.size(), 40);
-}
-
 TEST_F(FitTest, SameSeed_GivesTheSameDigits) {
   const MeasuredData data = measured(kNoise);
   const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0), number("surface.sigma", 0.02, 1.0)};

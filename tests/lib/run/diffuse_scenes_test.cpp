@@ -118,10 +118,6 @@ TEST(DiffuseScenes, TotalReflectionUnderALayeredSky_HasTheKinkAsAnEndOfThePanels
   }
 }
 
-TEST(DiffuseScenes, FilmsOrMeasuredReflectances_AreRefused) {
-  EXPECT_THROW(scene_with({"surface.coating=[{n=1.4,thickness_um=1}]"}), InputError);
-}
-
 TEST(DiffuseScenes, GridOfIndices_HasTheDiffusePartOfEach) {
   const SceneValues scene = scene_with({"grid.n=[1.3, 2.0, 4.0]", "grid.k=[0, 0.5]"});
   const SceneEntries entries = grid_entries(scene);

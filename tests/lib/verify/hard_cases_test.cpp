@@ -12,13 +12,11 @@
 #include <vector>
 
 #include <dolp/results.hpp>
-#include "error_text.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "properties_support.hpp"
 #include "reference/moments.hpp"
 #include "reference/reference_evaluator.hpp"
 #include "run/scene_run.hpp"
-#include "scene/embedded_data.hpp"
 #include "stored_evaluator.hpp"
 #include "verify/qualification.hpp"
 
@@ -61,19 +59,6 @@ TEST(HardCases, AnotherRefinement_StaysWithinTheErrors) {
     EXPECT_NEAR(m.albedo, c.moments.albedo, m.albedo_error + c.moments.albedo_error) << label(c);
     EXPECT_NEAR(m.deficit, c.moments.deficit, m.deficit_error + c.moments.deficit_error) << label(c);
   }
-}
-
-TEST(StoredCases, BadFile_NamesLineAndColumn) {
-  const std::string header =
-      std::string(embedded_hard_cases_csv()).substr(0, embedded_hard_cases_csv().find("cauchy,"));
-  const std::string good = "cauchy,none,60,0.3,2,1.5,0,1,0,1,0,0,0,0,0,name,origin\n";
-  EXPECT_EQ(parse_stored_cases(header + good, "f").size(), 1U);
-  const auto message = [&](const std::string& text) { return error_text([&] { parse_stored_cases(text, "f"); }); };
-  EXPECT_NE(message(good).find("f:1: the columns must be"), std::string::npos);
-  EXPECT_NE(message("").find("f:1: the columns must be"), std::string::npos);
-  EXPECT_NE(message(header + "cauchy,none,60\n").find("f:3: 3 cells, 17 are expected"), std::string::npos);
-  EXPECT_NE(message(header + "cauchy,none,sixty" + good.substr(14)).find("f:3: theta_deg = sixty"), std::string::npos);
-  EXPECT_NE(message(header + "normal" + good.substr(6)).find("f:3: distribution = normal"), std::string::npos);
 }
 
 // ---- Every evaluator against it ------------------------------------------------------------------------------------
@@ -150,16 +135,6 @@ TEST(Qualify, BiasedEvaluator_IsFoundOutCaseByCase) {
       const bool is_wrong = bias > 1e-6 && stored.moments.r_i > 0.0;
       EXPECT_EQ(!outcome.complaint.empty(), is_wrong) << label(stored) << " " << bias << " " << outcome.complaint;
     }
-  }
-}
-
-TEST(Qualify, OrdinaryCases_MeetTheToleranceInDouble) {
-  CpuEvaluator evaluator;
-  const std::vector<CaseOutcome> outcomes = qualify(ordinary_cases(), evaluator, {1e-4, Precision::kDouble}, {});
-  EXPECT_EQ(outcomes.size(), 56U);
-  for (const CaseOutcome& outcome : outcomes) {
-    EXPECT_EQ(outcome.complaint, "");
-    EXPECT_LE(outcome.rho.error, 1e-4);
   }
 }
 

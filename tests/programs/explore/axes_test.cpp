@@ -41,15 +41,6 @@ TEST(Scale, RangesThatCannotBeDrawn_AreRefused_AndHaveFewTicks) {
   }
 }
 
-TEST(Colours, Diverging_AreBlueWhiteAndRed) {
-  for (const auto& [position, colour] : {std::pair{0.0, IM_COL32(5, 48, 97, 255)},
-                                         {0.5, IM_COL32(247, 247, 247, 255)},
-                                         {1.0, IM_COL32(103, 0, 31, 255)},
-                                         {-1.0, IM_COL32(5, 48, 97, 255)}}) {
-    EXPECT_EQ(diverging(position), colour) << position;
-  }
-}
-
 TEST(ExploreSession, TypedRangeOfTheMap_IsTakenIfTheSceneTakesIt) {
   Session session(paint({"surface.masking=smith"}));
   for (const auto& [name, range, is_refused] : {std::tuple{"theta", Scale{20.0, 70.0}, false},
@@ -176,32 +167,17 @@ TEST_F(Axes, NumbersDoubleClicked_TakeTypedEnds_AndCloseAfterARefusedEndIsTakenB
   EXPECT_TRUE(app_->axis_editor().is_open());
   keys("Escape");
   EXPECT_FALSE(app_->axis_editor().is_open());
+  double_click(below(curves.area()));
+  click(app_->control_area("logarithmic").at(0.1F, 0.5F));
+  EXPECT_EQ(curves.x(), (Scale{0.5, 90.0, true}));
+  click(app_->control_area("logarithmic").at(0.1F, 0.5F));
+  keys("Escape");
   type_ends(below(curves.area()), "20", "70");
   EXPECT_EQ(curves.x(), (Scale{20.0, 70.0}));
   type_ends(below(curves.area()), "", "95");
   EXPECT_EQ(curves.x(), (Scale{20.0, 70.0}));
   type_ends(beside(curves.area()), "1", "4");
   EXPECT_EQ(curves.y(), (Scale{1.0, 4.0}));
-}
-
-TEST_F(Axes, RangeOfTheMap_IsComputedAnew_AndARefusedEndGoesWithTheOther) {
-  double_click(beside(app_->map_view().area()));
-  type("2.5");  // the window refuses this lower end, because it is above the upper end
-  xdotool({"key", "Tab"});
-  frames();
-  EXPECT_NE(session().map().y().scale.from, 2.5);
-  type("3");
-  keys("Return");
-  settle();
-  EXPECT_EQ(session().map().y().scale, (Scale{2.5, 3.0, true}));
-  EXPECT_TRUE(session().map().is_finished());
-}
-
-TEST_F(Axes, LogarithmOfTheZenith_BeginsAtHalfADegree) {
-  double_click(below(app_->curve_view().area()));
-  click(app_->control_area("logarithmic").at(0.1F, 0.5F));
-  EXPECT_TRUE(session().view().is_theta_log);
-  EXPECT_EQ(app_->curve_view().x(), (Scale{0.5, 90.0, true}));
 }
 
 TEST_F(Axes, DragOfASlider_GivesCoarseCurves_AndHoldsZenithsAndColours_WhichCanBeTyped) {

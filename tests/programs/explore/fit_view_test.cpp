@@ -135,24 +135,6 @@ TEST_F(FitWindow, RangeTypedBelowASlider_BoundsTheFit) {
   EXPECT_EQ(number("surface.n"), 1.6);  // upper end of the range, because the true value 1.7 is larger
 }
 
-TEST_F(FitWindow, NearestMinimum_IsChosen_AndAClickVisitsTheLowest) {
-  measure("surface.k=0.22");
-  click_control("vary surface.k");
-  fit();
-  EXPECT_NEAR(*number("surface.k"), 0.22, 0.02);
-  const std::vector<FitMinimum> minima = session().last_fit()->minima;
-  ASSERT_GE(minima.size(), 2U);
-  const double other = minima[1].values[0];
-  session().set("surface.k", 1.02 * other);
-  fit();
-  EXPECT_NEAR(*number("surface.k"), other, 0.01 * other);
-  ASSERT_NE(session().minimum(), 0U);
-  click_control("minimum 1");
-  settle();
-  EXPECT_NEAR(*number("surface.k"), 0.22, 0.02);
-  EXPECT_EQ(session().minimum(), 0U);
-}
-
 TEST_F(FitWindow, CancelClicked_EndsTheFitAndLeavesTheScene) {
   measure("surface.k=0.22");
   for (const char* key : {"surface.n", "surface.k", "surface.sigma", "surface.q"})

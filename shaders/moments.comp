@@ -29,7 +29,7 @@ layout(std430, binding = DOLP_BINDING_MOMENTS) writeonly buffer MomentsOut { Mom
 void main() {
   uint i = gl_GlobalInvocationID.x;
   uvec4 words = tasks[push.first + min(i, push.count - 1u)];
-  Task task = task_of(words.w);
+  Task task = unpack_task(words.w);
   ThetaNode theta;
   theta.c = thetas[words.x].c;
   theta.s = thetas[words.x].s;

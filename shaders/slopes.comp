@@ -28,7 +28,7 @@ void main() {
   ThetaNode theta;
   theta.c = thetas[int(slope_node.theta)].c;
   theta.s = thetas[int(slope_node.theta)].s;
-  SlopeResult result = azimuths_of(rule, theta, indices[int(slope_node.index)], slope_node);
+  SlopeResult result = integrate_azimuths(rule, theta, indices[int(slope_node.index)], slope_node);
   if (i < push.count) {
     azimuths[i] = result.node;
     store_azimuth_columns(result.columns);

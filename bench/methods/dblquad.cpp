@@ -40,8 +40,8 @@ class Dblquad final : public Solver {
 
  private:
   void add(const Entry& entry, double tolerance, Solution& solution) const {
-    const nlohmann::json question = {{"distribution", name_of(entry.distribution)},
-                                     {"masking", name_of(entry.masking)},
+    const nlohmann::json question = {{"distribution", to_name(entry.distribution)},
+                                     {"masking", to_name(entry.masking)},
                                      {"theta_rad", entry.theta_rad},
                                      {"sigma", entry.shape.sigma},
                                      {"q", entry.shape.q},

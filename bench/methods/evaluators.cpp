@@ -21,11 +21,11 @@ class EvaluatorSolver final : public Solver {
     wanted.precision = precision_;
     wanted.may_interpolate = may_interpolate_;
     const EvaluationReport before = evaluator_->report();
-    Work of_host;
-    const std::vector<Moments> moments = planned_moments(MomentsPlan(wanted), *evaluator_, nullptr, of_host);
+    Work host_work;
+    const std::vector<Moments> moments = planned_moments(MomentsPlan(wanted), *evaluator_, nullptr, host_work);
     const EvaluationReport after = evaluator_->report();
     Solution solution;
-    solution.kernel_s = after.kernel_s + after.sums_s + of_host.sums_s - (before.kernel_s + before.sums_s);
+    solution.kernel_s = after.kernel_s + after.sums_s + host_work.sums_s - (before.kernel_s + before.sums_s);
     solution.evaluations = after.evaluations - before.evaluations;
     for (const Moments& entry : moments) {
       solution.answers.push_back({entry.r_i, entry.r_q, std::max(entry.r_i_error, entry.r_q_error) / entry.r_i});

@@ -86,7 +86,7 @@ void add_adaptive(std::vector<Method>& list) {
 Method evaluator(const std::string& name, Precision precision,
                  std::function<std::unique_ptr<Solver>(const SolverOptions&)> make) {
   const bool in_double = precision == Precision::kDouble;
-  const std::string suffix = name_of(precision);
+  const std::string suffix = to_name(precision);
   const bool on_device = name == "vulkan";
   return {.name = name + "-" + suffix,
           .label = (on_device ? "dolp Vulkan " : "dolp CPU kernel ") + suffix,

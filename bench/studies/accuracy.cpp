@@ -96,7 +96,7 @@ void Study::describe() {
     json["cases"].push_back({{"name", one.name},
                              {"what", one.what},
                              {"distribution", "cauchy"},
-                             {"masking", name_of(one.masking)},
+                             {"masking", to_name(one.masking)},
                              {"theta_deg", one.theta_deg},
                              {"sigma", one.shape.sigma},
                              {"q", one.shape.q},

@@ -170,7 +170,7 @@ ordered_json grid_row(Masking masking, const GridRun& run) {
   const double evaluations = run.timed->work().evaluations / static_cast<double>(entries);
   const std::string setting =
       fmt::format("{}, {:g}{}", run.size.text(), run.tolerance, run.may_interpolate ? "" : ", off");
-  ordered_json row = row_start("grids", name_of(masking), setting);
+  ordered_json row = row_start("grids", to_name(masking), setting);
   row["grid"] = {run.size.thetas, run.size.sigmas, run.size.qs};
   row["tolerance"] = run.tolerance;
   row["entries"] = entries;
@@ -306,7 +306,7 @@ void Study::run_materials(Masking masking) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto entries = static_cast<double>(all[i]->entries().size());
     const double time_s = median(all[i]->times_s());
-    ordered_json row = row_start("materials", name_of(masking), material_axes()[i].name);
+    ordered_json row = row_start("materials", to_name(masking), material_axes()[i].name);
     row["grid"] = {size.thetas, size.sigmas, size.qs};
     row["entries"] = all[i]->entries().size();
     row["time_s"] = time_s;

@@ -52,13 +52,13 @@ auto interruptible(const Body& body) {
 
 constexpr const char* kOtherBytes = "surrogateescape";  // Python's way to keep bytes that are not UTF-8 in a str
 
-py::str text_of(const std::string& text) {
+py::str to_str(const std::string& text) {
   PyObject* const decoded = PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), kOtherBytes);
   if (!decoded) throw py::error_already_set();
   return py::reinterpret_steal<py::str>(decoded);
 }
 
-std::string bytes_of(const py::handle& text) {
+std::string to_utf8(const py::handle& text) {
   PyObject* const encoded = PyUnicode_AsEncodedString(text.ptr(), "utf-8", kOtherBytes);
   if (!encoded) {
     const py::error_already_set error;
@@ -72,7 +72,7 @@ std::string bytes_of(const py::handle& text) {
 
 void raise(const char* type, const std::exception& error) {
   const py::object raised = py::module_::import("dolp._native").attr(type);
-  PyErr_SetObject(raised.ptr(), text_of(error.what()).ptr());
+  PyErr_SetObject(raised.ptr(), to_str(error.what()).ptr());
 }
 
 void translate(std::exception_ptr error) {
@@ -85,7 +85,7 @@ void translate(std::exception_ptr error) {
   } catch (const dolp::IoError& io) {
     raise("IoError", io);
   } catch (const dolp::MemoryError& memory) {
-    PyErr_SetObject(PyExc_MemoryError, text_of(memory.what()).ptr());
+    PyErr_SetObject(PyExc_MemoryError, to_str(memory.what()).ptr());
   }
 }
 
@@ -95,7 +95,7 @@ void add_error(py::module_& module, const std::string& name, PyObject* base, con
   module.attr(name.c_str()) = py::reinterpret_steal<py::object>(type);
 }
 
-std::size_t position_of(const std::string& argument, const std::string& word, const std::vector<std::string>& words) {
+std::size_t word_position(const std::string& argument, const std::string& word, const std::vector<std::string>& words) {
   const auto found = std::ranges::find(words, word);
   if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
   std::string allowed;
@@ -104,13 +104,13 @@ std::size_t position_of(const std::string& argument, const std::string& word, co
 }
 
 /// Converts a value from Python: None, bool, float, str, a list, or a dictionary with from, to, count and spacing.
-dolp::Value value_of(const std::string& key, const py::handle& value) {
+dolp::Value to_value(const std::string& key, const py::handle& value) {
   if (value.is_none()) return {};
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>();
   if (py::isinstance<py::float_>(value)) return value.cast<double>();
-  if (py::isinstance<py::str>(value)) return bytes_of(value);
+  if (py::isinstance<py::str>(value)) return to_utf8(value);
   if (py::isinstance<py::list>(value) && py::len(value) > 0 && !py::isinstance<py::float_>(value[py::int_(0)]))
-    return dolp::TomlText{bytes_of(py::module_::import("json").attr("dumps")(value))};  // a JSON list is valid TOML
+    return dolp::TomlText{to_utf8(py::module_::import("json").attr("dumps")(value))};  // a JSON list is valid TOML
   if (!py::isinstance<py::dict>(value)) return value.cast<std::vector<double>>();
   const auto range = value.cast<std::map<std::string, py::object>>();
   for (const auto& [name, item] : range) {
@@ -129,25 +129,25 @@ dolp::Value value_of(const std::string& key, const py::handle& value) {
 
 using Values = std::vector<std::pair<py::str, py::object>>;  // keys of a scene, each with its value as a Python object
 
-std::vector<dolp::Setting> settings_of(const Values& values) {
+std::vector<dolp::Setting> to_settings(const Values& values) {
   std::vector<dolp::Setting> settings;
   for (const auto& [key, value] : values) {
-    const std::string name = bytes_of(key);
-    settings.push_back({name, value_of(name, value)});
+    const std::string name = to_utf8(key);
+    settings.push_back({name, to_value(name, value)});
   }
   return settings;
 }
 
-/// Converts a value to a Python object; the reverse of value_of(). TOML text becomes a str.
-py::object object_of(const dolp::Value& value) {
+/// Converts a value to a Python object; the reverse of to_value(). TOML text becomes a str.
+py::object to_object(const dolp::Value& value) {
   const auto object = [](const auto& content) -> py::object {
     using Content = std::decay_t<decltype(content)>;
     if constexpr (std::is_same_v<Content, std::monostate>) {
       return py::none();
     } else if constexpr (std::is_same_v<Content, std::string>) {
-      return text_of(content);
+      return to_str(content);
     } else if constexpr (std::is_same_v<Content, dolp::TomlText>) {
-      return text_of(content.text);
+      return to_str(content.text);
     } else if constexpr (std::is_same_v<Content, dolp::AxisRange>) {
       using py::literals::operator""_a;
       return py::dict("from"_a = content.from, "to"_a = content.to, "count"_a = content.count,
@@ -164,7 +164,7 @@ void warn(const std::vector<std::string>& remarks) {
   constexpr int kCaller = 2;  // stack level of the user's line; level 1 is the dolp package
   const py::object category = py::module_::import("dolp._native").attr("InputWarning");
   for (const std::string& remark : remarks)
-    py::module_::import("warnings").attr("warn")(text_of(remark), category, kCaller);
+    py::module_::import("warnings").attr("warn")(to_str(remark), category, kCaller);
 }
 
 dolp::Scene with_warnings(dolp::Scene scene) {
@@ -186,14 +186,14 @@ py::object value_of_key(const dolp::Scene& scene, const std::string& key) {
     return values.empty() ? py::none() : py::object(py::cast(values));
   }
   const std::optional<std::string> word = scene.word(key);
-  if (!word || type != dolp::Key::Type::kFlag) return word ? py::object(text_of(*word)) : py::none();
+  if (!word || type != dolp::Key::Type::kFlag) return word ? py::object(to_str(*word)) : py::none();
   return py::bool_(*word == "true");
 }
 
-Values values_of(const dolp::Scene& scene) {
+Values setting_values(const dolp::Scene& scene) {
   Values values;
   for (const dolp::Setting& setting : scene.settings())
-    values.emplace_back(text_of(setting.key), object_of(setting.value));
+    values.emplace_back(to_str(setting.key), to_object(setting.value));
   return values;
 }
 
@@ -206,7 +206,7 @@ std::vector<dolp::Column> views(const Columns& columns) {
   return all;
 }
 
-std::vector<dolp::FitRange> ranges_of(const std::vector<std::pair<std::string, std::vector<double>>>& vary) {
+std::vector<dolp::FitRange> to_ranges(const std::vector<std::pair<std::string, std::vector<double>>>& vary) {
   std::vector<dolp::FitRange> ranges;
   for (const auto& [key, ends] : vary) {
     if (ends.size() < 2 || ends.size() > 3)
@@ -217,97 +217,97 @@ std::vector<dolp::FitRange> ranges_of(const std::vector<std::pair<std::string, s
 }
 
 template <class Range, class Of>
-py::list list_of(Range&& range, const Of& of) {
+py::list to_list(Range&& range, const Of& of) {
   py::list all;
   for (const auto& element : range) all.append(of(element));
   return all;
 }
 
 template <class Value>
-py::array_t<Value> array_of(std::vector<Value> values) {
+py::array_t<Value> to_array(std::vector<Value> values) {
   auto* const kept = new std::vector<Value>(std::move(values));
   const py::capsule owner(kept, [](void* held) { delete static_cast<std::vector<Value>*>(held); });
   return py::array_t<Value>(kept->size(), kept->data(), owner);
 }
 
-py::dict dict_of(const std::vector<dolp::Attribute>& attributes) {
+py::dict to_dict(const std::vector<dolp::Attribute>& attributes) {
   py::dict named;
   for (const auto& [name, value] : attributes) {
-    if (const auto* number = std::get_if<double>(&value)) named[text_of(name)] = *number;
-    if (const auto* text = std::get_if<std::string>(&value)) named[text_of(name)] = text_of(*text);
+    if (const auto* number = std::get_if<double>(&value)) named[to_str(name)] = *number;
+    if (const auto* text = std::get_if<std::string>(&value)) named[to_str(name)] = to_str(*text);
   }
   return named;
 }
 
 /// Makes the tuple that _native.pyi calls Parts.
-py::tuple parts_of(dolp::ResultColumns results, const dolp::Quantities& given, const std::string& stokes_units,
-                   const std::vector<dolp::Attribute>& attributes) {
+py::tuple result_parts(dolp::ResultColumns results, const dolp::Quantities& given, const std::string& stokes_units,
+                       const std::vector<dolp::Attribute>& attributes) {
   py::list quantities;
   for (const dolp::Quantity quantity : given) {
-    const dolp::QuantityDescription& known = dolp::description_of(quantity);
-    quantities.append(py::make_tuple(known.name, known.long_name, text_of(dolp::units_of(quantity, stokes_units)),
-                                     known.ancillary, array_of(std::move(results[quantity]))));
+    const dolp::QuantityDescription& known = dolp::describe(quantity);
+    quantities.append(py::make_tuple(known.name, known.long_name, to_str(dolp::quantity_units(quantity, stokes_units)),
+                                     known.ancillary, to_array(std::move(results[quantity]))));
   }
-  return py::make_tuple(quantities, array_of(std::move(results.status)), dict_of(attributes));
+  return py::make_tuple(quantities, to_array(std::move(results.status)), to_dict(attributes));
 }
 
-py::tuple parts_of(dolp::Results results) {
-  return parts_of(std::move(static_cast<dolp::ResultColumns&>(results)), results.given, results.stokes_units,
-                  results.attributes);
+py::tuple result_parts(dolp::Results results) {
+  return result_parts(std::move(static_cast<dolp::ResultColumns&>(results)), results.given, results.stokes_units,
+                      results.attributes);
 }
 
 /// Makes the tuple that _native.pyi calls Contents.
-py::tuple contents_of(const dolp::Table& table) {
+py::tuple table_contents(const dolp::Table& table) {
   const dolp::TableValues& values = table.values();
   py::list axes, curves;
   for (const dolp::Axis axis : dolp::kAllAxes) {
-    const char* const name = dolp::description_of(axis).name;
+    const char* const name = dolp::describe(axis).name;
     if (!values.labels[axis].empty()) {
-      const auto label = [&](double value) { return text_of(values.label(axis, value)); };
-      axes.append(py::make_tuple(name, list_of(values.axes[axis], label)));
+      const auto label = [&](double value) { return to_str(values.label(axis, value)); };
+      axes.append(py::make_tuple(name, to_list(values.axes[axis], label)));
     } else if (!values.axes[axis].empty()) {
-      axes.append(py::make_tuple(name, array_of(values.axes[axis])));
+      axes.append(py::make_tuple(name, to_array(values.axes[axis])));
     }
   }
   for (const dolp::TableCurve& known : dolp::kTableCurves) {
     const std::vector<double>& used = (values.*known.curve).used;
-    if (!used.empty()) curves.append(py::make_tuple(known.name, known.long_name, known.units, array_of(used)));
+    if (!used.empty()) curves.append(py::make_tuple(known.name, known.long_name, known.units, to_array(used)));
   }
-  return py::make_tuple(axes, array_of(values.wind_m_s), curves,
-                        parts_of(values, values.quantities(), values.stokes_units, table.file_attributes()));
+  return py::make_tuple(axes, to_array(values.wind_m_s), curves,
+                        result_parts(values, values.quantities(), values.stokes_units, table.file_attributes()));
 }
 
 /// Makes the second element of the tuple that Evaluator.response() returns; _native.pyi describes it.
-py::tuple responses_of(const dolp::TableValues& table) {
+py::tuple response_tuple(const dolp::TableValues& table) {
   py::list variables;
   for (const dolp::ResponseVariable variable : dolp::kAllResponseVariables) {
-    const dolp::ResponseDescription& known = dolp::description_of(variable);
+    const dolp::ResponseDescription& known = dolp::describe(variable);
     if (table.responses[variable].empty()) continue;
     variables.append(py::make_tuple(known.name, known.long_name, known.has_beta ? dolp::kResponseQualifier : "",
-                                    known.has_beta, array_of(table.responses[variable])));
+                                    known.has_beta, to_array(table.responses[variable])));
   }
-  return py::make_tuple(array_of(table.beta_deg), dolp::kBeta.long_name, dolp::kBeta.units, variables);
+  return py::make_tuple(to_array(table.beta_deg), dolp::kBeta.long_name, dolp::kBeta.units, variables);
 }
 
-std::vector<double> vector_of(const Array& values) { return {values.data(), values.data() + values.size()}; }
+std::vector<double> to_vector(const Array& values) { return {values.data(), values.data() + values.size()}; }
 
 /// Maps the column names of materials and bands to their lists of labels. A column has positions in its list of labels.
-py::dict labels_of(const dolp::AxisLabels& labels) {
+py::dict to_label_lists(const dolp::AxisLabels& labels) {
   py::dict all;
   for (const dolp::Axis axis : dolp::kAllAxes) {
-    if (!dolp::description_of(axis).has_labels) continue;
-    all[dolp::description_of(axis).column] = list_of(labels[axis], text_of);
+    if (!dolp::describe(axis).has_labels) continue;
+    all[dolp::describe(axis).column] = to_list(labels[axis], to_str);
   }
   return all;
 }
 
-std::vector<dolp::Attribute> attributes_of(const py::dict& attributes) {
+std::vector<dolp::Attribute> to_attributes(const py::dict& attributes) {
   std::vector<dolp::Attribute> all;
   for (const auto& [name, value] : attributes) {
     if (py::isinstance<py::str>(value)) {
-      all.push_back({bytes_of(name), bytes_of(value)});
+      all.push_back({to_utf8(name), to_utf8(value)});
     } else {
-      all.push_back({bytes_of(name), value.cast<double>()});
+      all.push_back({to_utf8(name), value.cast<double>()});
     }
   }
   return all;
@@ -333,52 +333,52 @@ PYBIND11_MODULE(_native, module) {
   py::register_exception_translator(translate);
 
   const auto from_text = [](const py::str& text, const Values& values, const py::str& name) {
-    return dolp::Scene::from_text(bytes_of(text), settings_of(values), bytes_of(name));
+    return dolp::Scene::from_text(to_utf8(text), to_settings(values), to_utf8(name));
   };
   py::class_<dolp::Scene>(module, "Scene")
       .def_static("from_file",
                   [](const std::filesystem::path& path, const Values& values) {
-                    return with_warnings(dolp::Scene::from_file(path, settings_of(values)));
+                    return with_warnings(dolp::Scene::from_file(path, to_settings(values)));
                   })
       .def_static("from_text",
                   [from_text](const py::str& text, const Values& values, const py::str& name) {
                     return with_warnings(from_text(text, values, name));
                   })
       .def("with_", [](const dolp::Scene& scene,
-                       const Values& values) { return with_warnings(scene.with(settings_of(values))); })
+                       const Values& values) { return with_warnings(scene.with(to_settings(values))); })
       .def_static("from_attributes",
                   [](const py::dict& attributes, const py::str& name) {
-                    return with_warnings(dolp::Scene::from_attributes(attributes_of(attributes), bytes_of(name)));
+                    return with_warnings(dolp::Scene::from_attributes(to_attributes(attributes), to_utf8(name)));
                   })
       .def("for_points", &dolp::Scene::for_points)
-      .def("toml", [](const dolp::Scene& scene) { return text_of(scene.toml()); })
-      .def("values", &values_of)
-      .def("value", [](const dolp::Scene& scene, const py::str& key) { return value_of_key(scene, bytes_of(key)); })
+      .def("toml", [](const dolp::Scene& scene) { return to_str(scene.toml()); })
+      .def("values", &setting_values)
+      .def("value", [](const dolp::Scene& scene, const py::str& key) { return value_of_key(scene, to_utf8(key)); })
       .def("model_advice", &dolp::Scene::model_advice)
-      .def("labels", [](const dolp::Scene& scene) { return labels_of(scene.labels()); })
+      .def("labels", [](const dolp::Scene& scene) { return to_label_lists(scene.labels()); })
       .def("refractive_index", &dolp::Scene::refractive_index)
       .def("__deepcopy__", [](const dolp::Scene& scene, const py::dict&) { return scene; })
       .def(py::pickle(
           [](const dolp::Scene& scene) {
-            const auto line = [](const dolp::Setting& setting) { return text_of(setting.text()); };
+            const auto line = [](const dolp::Setting& setting) { return to_str(setting.text()); };
             const bool is_of_table = !scene.table_attributes().empty();
             return py::make_tuple(
-                text_of(scene.text()),
-                is_of_table ? py::object(list_of(scene.settings(), line)) : py::cast(values_of(scene)),
-                text_of(scene.name()), dict_of(scene.table_attributes()));
+                to_str(scene.text()),
+                is_of_table ? py::object(to_list(scene.settings(), line)) : py::cast(setting_values(scene)),
+                to_str(scene.name()), to_dict(scene.table_attributes()));
           },
           [from_text](const py::tuple& state) {
             const auto attributes = state[3].cast<py::dict>();
             if (attributes.empty()) return from_text(state[0], state[1].cast<Values>(), state[2]);
             std::vector<std::string> settings;
-            for (const py::handle& line : state[1]) settings.push_back(bytes_of(line));
-            return dolp::Scene::from_attributes(attributes_of(attributes), bytes_of(state[2]))
+            for (const py::handle& line : state[1]) settings.push_back(to_utf8(line));
+            return dolp::Scene::from_attributes(to_attributes(attributes), to_utf8(state[2]))
                 .with_all(dolp::settings_from_text(settings));
           }))
       .def_property_readonly("evaluator", &dolp::Scene::evaluator)
       .def_property_readonly("is_of_table", [](const dolp::Scene& scene) { return !scene.table_attributes().empty(); })
-      .def_property_readonly("name", [](const dolp::Scene& scene) { return text_of(scene.name()); })
-      .def_property_readonly("title", [](const dolp::Scene& scene) { return text_of(scene.title()); });
+      .def_property_readonly("name", [](const dolp::Scene& scene) { return to_str(scene.name()); })
+      .def_property_readonly("title", [](const dolp::Scene& scene) { return to_str(scene.title()); });
 
   py::class_<dolp::Evaluator>(module, "Evaluator")
       .def(py::init([](const std::string& evaluator, const std::string& device) {
@@ -387,7 +387,7 @@ PYBIND11_MODULE(_native, module) {
       .def(
           "table",
           [](dolp::Evaluator& evaluator, const dolp::Scene& scene, bool keep_all, std::vector<std::string> quantities) {
-            return contents_of(interruptible([&](const dolp::Progress& progress) {
+            return table_contents(interruptible([&](const dolp::Progress& progress) {
               return evaluator.table(scene, {keep_all, progress, "dolp.table", false, std::move(quantities)});
             }));
           })
@@ -396,12 +396,12 @@ PYBIND11_MODULE(_native, module) {
              const dolp::Table table = interruptible([&](const dolp::Progress& progress) {
                return evaluator.response(scene, {.progress = progress, .history = "dolp.response"});
              });
-             return py::make_tuple(contents_of(table), responses_of(table.values()));
+             return py::make_tuple(table_contents(table), response_tuple(table.values()));
            })
       .def("write_table",
            [](dolp::Evaluator& evaluator, const dolp::Scene& scene, const std::filesystem::path& path, bool keep_all,
               bool resume, std::vector<std::string> quantities) {
-             return text_of(interruptible([&](const dolp::Progress& progress) {
+             return to_str(interruptible([&](const dolp::Progress& progress) {
                const dolp::RunOptions options{keep_all, progress, "dolp.table", resume, std::move(quantities)};
                return evaluator.write_table(scene, path, options).text;
              }));
@@ -409,7 +409,7 @@ PYBIND11_MODULE(_native, module) {
       .def("evaluate",
            [](dolp::Evaluator& evaluator, const dolp::Scene& scene, const Columns& columns, bool keep_all) {
              const std::vector<dolp::Column> points = views(columns);
-             return parts_of(interruptible([&](const dolp::Progress& progress) {
+             return result_parts(interruptible([&](const dolp::Progress& progress) {
                return evaluator.evaluate(scene, points, {keep_all, progress, "dolp.evaluate"});
              }));
            })
@@ -423,14 +423,14 @@ PYBIND11_MODULE(_native, module) {
              std::vector<dolp::MeasuredData> sets;
              for (const auto& [csv, values] : data) {
                const std::string name = "data" + (data.size() > 1 ? std::to_string(sets.size() + 1) : "");
-               sets.push_back(dolp::MeasuredData::from_csv(csv, name, settings_of(values)));
+               sets.push_back(dolp::MeasuredData::from_csv(csv, name, to_settings(values)));
                warn(sets.back().remarks);
              }
-             dolp::FitOptions options{.vary = ranges_of(vary), .starts = starts, .seed = seed, .plot = plot};
+             dolp::FitOptions options{.vary = to_ranges(vary), .starts = starts, .seed = seed, .plot = plot};
              for (const auto& [key, words] : compare) options.compare.push_back({key, words});
-             options.loss = static_cast<dolp::Loss>(position_of("loss", loss, dolp::loss_names()));
+             options.loss = static_cast<dolp::Loss>(word_position("loss", loss, dolp::loss_names()));
              options.model_error =
-                 static_cast<dolp::ModelError>(position_of("model_error", model_error, dolp::model_error_names()));
+                 static_cast<dolp::ModelError>(word_position("model_error", model_error, dolp::model_error_names()));
              dolp::Fit fit = interruptible([&](const dolp::Progress& progress) {
                options.progress = progress;
                return evaluator.fit(scene, sets, options);
@@ -438,7 +438,7 @@ PYBIND11_MODULE(_native, module) {
              if (!fit.has_minimum) {
                throw dolp::InputError("fit: no descent converged; try other ranges, or more starts");
              }
-             return py::make_tuple(text_of(fit.report.text), text_of(fit.report.json), std::move(fit.scene));
+             return py::make_tuple(to_str(fit.report.text), to_str(fit.report.json), std::move(fit.scene));
            })
       .def("mueller", [](dolp::Evaluator& evaluator, const dolp::Scene& scene, const Columns& columns) {
         const std::vector<dolp::Column> points = views(columns);
@@ -452,41 +452,41 @@ PYBIND11_MODULE(_native, module) {
 
   module.def("plan", [](const dolp::Scene& scene, const std::string& device, bool keep_all) {
     const dolp::Report plan = dolp::plan(scene, device, keep_all);
-    return py::make_tuple(text_of(plan.text), text_of(plan.json));
+    return py::make_tuple(to_str(plan.text), to_str(plan.json));
   });
-  module.def("devices", [] { return list_of(dolp::devices(), description); });
+  module.def("devices", [] { return to_list(dolp::devices(), description); });
   module.def("materials", [] {
-    return list_of(dolp::materials(), [](const dolp::BuiltInMaterial& material) {
+    return to_list(dolp::materials(), [](const dolp::BuiltInMaterial& material) {
       return py::make_tuple(material.name, material.from_um, material.to_um, material.source);
     });
   });
   module.def("keys", [] {
     const auto is_first = [](const dolp::Key& key) { return key.layer <= 1; };  // each further film has the same keys
-    return list_of(dolp::keys() | std::views::filter(is_first), [](const dolp::Key& key) {
+    return to_list(dolp::keys() | std::views::filter(is_first), [](const dolp::Key& key) {
       return py::make_tuple(key.key, key.unit, key.allowed(), key.fallback, key.meaning);
     });
   });
   module.def("key_by_meaning", [](const py::str& unknown) -> py::object {
-    const std::optional<dolp::KeyHint> meant = dolp::key_by_meaning(bytes_of(unknown));
-    return meant ? py::object(text_of(meant->key)) : py::none();
+    const std::optional<dolp::KeyHint> meant = dolp::key_by_meaning(to_utf8(unknown));
+    return meant ? py::object(to_str(meant->key)) : py::none();
   });
   module.def("axes", [] {
     const auto described = [](const dolp::AxisDescription& axis) {
       return py::make_tuple(axis.column, axis.name, axis.long_name, axis.units);
     };
-    py::list all = list_of(dolp::kColumnOrder, [&](dolp::Axis axis) { return described(dolp::description_of(axis)); });
+    py::list all = to_list(dolp::kColumnOrder, [&](dolp::Axis axis) { return described(dolp::describe(axis)); });
     all.append(described(dolp::kWind));
     return all;
   });
-  const auto name = [](auto described) { return dolp::description_of(described).name; };
-  module.def("table_axes", [name] { return list_of(dolp::kAllAxes, name); });
+  const auto name = [](auto described) { return dolp::describe(described).name; };
+  module.def("table_axes", [name] { return to_list(dolp::kAllAxes, name); });
   module.def("status_bits", [] {
-    return list_of(dolp::kStatusBits, [](const dolp::StatusBit& bit) { return py::make_tuple(bit.mask, bit.meaning); });
+    return to_list(dolp::kStatusBits, [](const dolp::StatusBit& bit) { return py::make_tuple(bit.mask, bit.meaning); });
   });
-  module.def("quantities", [name] { return list_of(dolp::kAllQuantities, name); });
+  module.def("quantities", [name] { return to_list(dolp::kAllQuantities, name); });
   module.def("surface_settings", [] {
-    return list_of(dolp::surface_settings(), [](const dolp::Setting& setting) {
-      return py::make_tuple(text_of(setting.key), object_of(setting.value));
+    return to_list(dolp::surface_settings(), [](const dolp::Setting& setting) {
+      return py::make_tuple(to_str(setting.key), to_object(setting.value));
     });
   });
   module.def("response_fingerprints", [](const Array& entries) {
@@ -494,7 +494,7 @@ PYBIND11_MODULE(_native, module) {
     const std::size_t width = static_cast<std::size_t>(entries.shape(1));
     for (py::ssize_t i = 0; i < entries.shape(0); ++i)
       found.push_back(dolp::response_fingerprint({entries.data(i, 0), width}));
-    return array_of(std::move(found));
+    return to_array(std::move(found));
   });
   module.def("version", &dolp::version);
   module.def("commit", &dolp::commit);

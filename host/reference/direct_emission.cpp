@@ -47,11 +47,11 @@ class Facets {
 
   Moments emission(const Refinement& refinement) {
     const double steepest = end();
-    const SlopeTask<kCount> task{.integrand = [this](const SlopePoint& point) { return of_pair(point); },
+    const SlopeTask<kCount> task{.integrand = [this](const SlopePoint& point) { return pair_emission(point); },
                                  .scales = [this](const Emitted& value) { return scales(value); },
                                  .steepest = steepest,
                                  .bends_end = steepest};
-    const Integral<2 * kCount> integral = integrate_slopes_of<kCount>(task, slopes_, scan(), refinement, {});
+    const Integral<2 * kCount> integral = integrate_all_slopes<kCount>(task, slopes_, scan(), refinement, {});
     const Emitted beyond = tail(steepest, refinement);
     const double rounding = (kRounding + 0.5 * refinement.relative_tolerance) * std::abs(beyond[kIntensity]) +
                             kRounding * (is_response_ ? view_.cos : integral.value[kIntensity]) + kNoShare * view_.cos;
@@ -76,7 +76,7 @@ class Facets {
   RegimeScan scan() const {
     return {view_, theta_rad_, {.halvings = kHalvings}, [this](const SlopePoint& point) { return regime(point); }};
   }
-  Emitted of_facet(const SlopePoint& point, double side) const {
+  Emitted facet_emission(const SlopePoint& point, double side) const {
     const double e = facing(point, side);
     if (e <= 0.0) return {};
     const double cos_alpha = 1.0 / std::sqrt(1.0 + point.t * point.t);
@@ -91,10 +91,10 @@ class Facets {
     return {visible * 0.5 * (from_s + from_p), visible * 0.5 * (from_s - from_p)};
   }
 
-  Emitted of_pair(const SlopePoint& point) {
+  Emitted pair_emission(const SlopePoint& point) {
     evaluations_ += 1.0;
-    const Emitted a = of_facet(point, 1.0);
-    const Emitted b = of_facet(point, -1.0);
+    const Emitted a = facet_emission(point, 1.0);
+    const Emitted b = facet_emission(point, -1.0);
     return {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])};
   }
 
@@ -121,8 +121,8 @@ class Facets {
     if (share < kNoShare) return {};
     Breaks breaks(0.0, 0.5 * pi);
     for (const double chi : scan().chi_breaks(t)) breaks.add(chi);
-    const Integral<kCount> row = integrate<kCount>([&](double chi) { return of_pair(slope_point(t, chi)); }, breaks,
-                                                   {.relative = refinement.relative_tolerance},
+    const Integral<kCount> row = integrate<kCount>([&](double chi) { return pair_emission(slope_point(t, chi)); },
+                                                   breaks, {.relative = refinement.relative_tolerance},
                                                    [this](const Emitted& value) { return scales(value); });
     const double factor = share * 2.0 * std::numbers::inv_pi;
     return {factor * row.value[kIntensity], factor * row.value[kPolarised]};

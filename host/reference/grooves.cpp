@@ -62,7 +62,7 @@ enum Component : std::size_t {
 };
 using GrooveValues = Values<kCount>;
 
-Groove<double> groove_of(double t) {
+Groove<double> make_groove(double t) {
   const double cos_alpha = 1.0 / std::sqrt(1.0 + t * t);
   return {cos_alpha, t * cos_alpha};
 }
@@ -108,7 +108,7 @@ std::uint64_t history(const SlopePoint& point, const Vector3& omega, Facet first
                       const SkyFunction* sky) {
   constexpr std::uint64_t kPrime = 1099511628211U;
   std::uint64_t hash = 14695981039346656037U;
-  GrooveBeam<double> beam(groove_of(point.t), omega, first);
+  GrooveBeam<double> beam(make_groove(point.t), omega, first);
   for (int count = 0; beam.flux() > 0.0 && count < kMostFollowed; ++count) {
     const Vector3 n = beam.normal();
     const double cos_beta = -dot(beam.direction(), n);
@@ -125,14 +125,14 @@ std::uint64_t history(const SlopePoint& point, const Vector3& omega, Facet first
   return hash;
 }
 
-GrooveValues scales_of(const GrooveValues& value) {
+GrooveValues value_scales(const GrooveValues& value) {
   const double floor = kNegligible * value[kAlbedo] + std::numeric_limits<double>::min();
   const double reflected = std::max(floor, value[kReflected]);
   return {std::max(floor, value[kAlbedo]),         reflected, reflected, std::max(floor, value[kAbsorbed]),
           std::numeric_limits<double>::infinity(), reflected, reflected};
 }
 
-GrooveValues values_of(const GrooveLight& light) {
+GrooveValues light_values(const GrooveLight& light) {
   return {light.albedo, light.reflected + light.lost, light.polarised,    light.absorbed,
           light.lost,   light.sky_reflected,          light.sky_polarised};
 }
@@ -160,13 +160,13 @@ class Surveyor {
       return history(point, omega, Facet::kA, special, sky_) * 3 + history(point, omega, Facet::kB, special, sky_);
     });
     const SlopeTask<kCount> task{.integrand = [this](const SlopePoint& point) { return at(point); },
-                                 .scales = scales_of,
+                                 .scales = value_scales,
                                  .steepest = end,
                                  .bends_end = std::min(bends_end, end),
                                  .thin_weight = kThinWeight,
                                  .work = [this] { return bounces_; },
                                  .most_work = kMostBounces};
-    const Integral<2 * kCount> integral = integrate_slopes_of<kCount>(
+    const Integral<2 * kCount> integral = integrate_all_slopes<kCount>(
         task, slopes_, scan, {refinement_.relative_tolerance / kBentErrors, refinement_.subdivisions}, expected);
 
     const double share = slopes_.share_above(end);
@@ -175,7 +175,7 @@ class Surveyor {
     const double tail_most = std::min(tail_weight, kTailRoom * share * at_end[kReflected]);
     const double half_lost = 0.5 * (integral.value[kLost] + integral.value[kCount + kLost]);
     const double unknown = 0.5 * tail_most + half_lost;
-    const auto error_of = [&](std::size_t k) {
+    const auto integral_error = [&](std::size_t k) {
       const bool is_signed = k == kPolarised || k == kSkyReflected || k == kSkyPolarised;
       const double magnitude = is_signed ? integral.value[kReflected] : integral.value[k];
       return kBentErrors * (integral.error[k] + integral.value[kCount + k]) + kRounding * magnitude;
@@ -185,14 +185,14 @@ class Surveyor {
     m.r_i = integral.value[kReflected] + 0.5 * tail_most - half_lost;
     m.r_q = integral.value[kPolarised];
     m.deficit = integral.value[kAbsorbed] + (tail_weight - 0.5 * tail_most) + half_lost;
-    m.albedo_error = error_of(kAlbedo) + kRounding * tail_weight;
+    m.albedo_error = integral_error(kAlbedo) + kRounding * tail_weight;
     // Amplitudes have an absolute rounding error, so their squares have a large relative error if the index is near 1.
     const double amplitude_error = kRounding * (std::sqrt(m.r_i * m.albedo) + kRounding * m.albedo);
-    m.r_i_error = error_of(kReflected) + unknown + amplitude_error;
-    m.r_q_error = std::max(error_of(kPolarised), error_of(kReflected)) + 2.0 * unknown + amplitude_error;
-    m.deficit_error = error_of(kAbsorbed) + unknown + kRounding * tail_weight;
+    m.r_i_error = integral_error(kReflected) + unknown + amplitude_error;
+    m.r_q_error = std::max(integral_error(kPolarised), integral_error(kReflected)) + 2.0 * unknown + amplitude_error;
+    m.deficit_error = integral_error(kAbsorbed) + unknown + kRounding * tail_weight;
     if (sky_) {
-      const double sky_error = std::max(error_of(kSkyReflected), error_of(kSkyPolarised));
+      const double sky_error = std::max(integral_error(kSkyReflected), integral_error(kSkyPolarised));
       m.columns = {{integral.value[kSkyReflected], integral.value[kSkyPolarised],
                     std::max(sky_error, m.r_i_error) + 2.0 * unknown + tail_most + half_lost}};
     }
@@ -208,7 +208,7 @@ class Surveyor {
     const GrooveLight light = light_in_groove(point.t, point.sin_chi, point.cos_chi, view_, constants_, sky_);
     bounces_ += light.bounces;
     evaluations_ += 1.0;
-    return values_of(light);
+    return light_values(light);
   }
   GrooveValues look(double t) {
     GrooveValues mean{};
@@ -263,7 +263,7 @@ class Surveyor {
 GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zenith& view, const FacetOptics& constants,
                             const SkyFunction* sky) {
   const SlopePoint point{t, sin_chi, cos_chi};
-  const Groove<double> groove = groove_of(t);
+  const Groove<double> groove = make_groove(t);
   const Vector3 omega = toward_view(point, view);
   GrooveLight total;
   for (const Facet first : {Facet::kA, Facet::kB}) follow(groove, point, omega, first, constants, sky, total);

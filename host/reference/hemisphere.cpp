@@ -302,7 +302,7 @@ double amplitude_rounding(double reflected, double albedo) {
 // Sum of the errors of the outer and inner integrals, of the masking G and of rounding. The last two are relative to
 // `magnitude`. G_1 is at least 1/2, so its relative error is at most twice its absolute tolerance.
 template <std::size_t N>
-double error_of(const Integral<N>& integral, std::size_t k, double magnitude, const Refinement& refinement) {
+double integral_error(const Integral<N>& integral, std::size_t k, double magnitude, const Refinement& refinement) {
   const double masking_error = 2.0 * masking_tolerance_for(refinement);
   return integral.error[k] + integral.value[N / 2 + k] + (masking_error + kRounding + kElevationRounding) * magnitude;
 }
@@ -341,7 +341,7 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
   const auto integral = hemisphere.integrate_zenith();
   const double cos_theta = zenith_from_deg(theta_deg).cos;
   const auto error_at = [&](std::size_t k) {
-    return error_of(integral, k, integral.value[k == kAlbedo || k == kAbsorbed ? k : kReflected], refinement);
+    return integral_error(integral, k, integral.value[k == kAlbedo || k == kAbsorbed ? k : kReflected], refinement);
   };
   const double amplitude_error = amplitude_rounding(integral.value[kReflected], integral.value[kAlbedo]);
   Moments moments;
@@ -374,7 +374,7 @@ std::vector<ColumnMoments> hemisphere_responses(const Slopes& slopes, Masking ma
       Hemisphere<kCurves>(slopes, masking, theta_deg, bent, refinement, nullptr, &curves).integrate_zenith();
   std::vector<ColumnMoments> columns;
   for (std::size_t i = kMomentCount, q = i + kCurves; i < kMomentCount + kCurves; ++i, ++q) {
-    const auto error = [&](std::size_t k) { return error_of(integral, k, integral.value[kAlbedo], refinement); };
+    const auto error = [&](std::size_t k) { return integral_error(integral, k, integral.value[kAlbedo], refinement); };
     columns.push_back({integral.value[i], integral.value[q], std::max(error(i), error(q))});
   }
   return columns;

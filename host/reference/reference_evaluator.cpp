@@ -77,7 +77,7 @@ void check(const ScatteringRequest& request) {
   for (const FacetOptics& index : request.optics) check_index(index);
 }
 
-Moments mirror_of(const MomentsRequest& request, const MomentsPoint& point) {
+Moments mirror_point(const MomentsRequest& request, const MomentsPoint& point) {
   Moments m = reference::mirror_moments(point.theta_deg, point.index);
   if (!request.sky) return m;
   for (const double g : request.sky->at(point.theta_deg)) m.columns.push_back({g * m.r_i, g * m.r_q, m.r_i_error});
@@ -85,8 +85,8 @@ Moments mirror_of(const MomentsRequest& request, const MomentsPoint& point) {
 }
 
 /// Responses: the moments with Chebyshev polynomials instead of the reflectances.
-std::vector<ColumnMoments> responses_of(const MomentsRequest& request, const MomentsPoint& point,
-                                        const reference::Slopes& slopes, const reference::Refinement& refinement) {
+std::vector<ColumnMoments> response_columns(const MomentsRequest& request, const MomentsPoint& point,
+                                            const reference::Slopes& slopes, const reference::Refinement& refinement) {
   const double c0 = request.response->c0;
   const reference::Curves curves = [c0](double cos_beta) {
     const double angle = std::acos(std::clamp(2.0 * std::asinh(cos_beta / c0) / std::asinh(1.0 / c0) - 1.0, -1.0, 1.0));
@@ -105,8 +105,9 @@ std::vector<ColumnMoments> responses_of(const MomentsRequest& request, const Mom
   return columns;
 }
 
-Moments moments_of(const MomentsRequest& request, const MomentsPoint& point, const reference::Refinement& refinement) {
-  if (point.shape.sigma == 0.0) return mirror_of(request, point);
+Moments point_moments(const MomentsRequest& request, const MomentsPoint& point,
+                      const reference::Refinement& refinement) {
+  if (point.shape.sigma == 0.0) return mirror_point(request, point);
   const reference::Slopes slopes(request.distribution, point.shape.sigma, point.shape.q);
   const auto integrate = [&](const SkyFunction* sky) {
     return request.scattering == Scattering::kSingle
@@ -135,11 +136,11 @@ Moments moments_of(const MomentsRequest& request, const MomentsPoint& point, con
     m.direct_q_error = direct.direct_q_error;
     m.evaluations += direct.evaluations;
   }
-  if (request.response) m.columns = responses_of(request, point, slopes, refinement);
+  if (request.response) m.columns = response_columns(request, point, slopes, refinement);
   return m;
 }
 
-ScatteringMatrix matrix_of(const ScatteringRequest& request, const ScatteringEntry& entry) {
+ScatteringMatrix scattering_matrix(const ScatteringRequest& request, const ScatteringEntry& entry) {
   const BeamAngles& angles = request.angles.at(entry.angles);
   const SlopeShape& shape = request.shapes.at(entry.shape);
   Surface surface;
@@ -182,7 +183,7 @@ std::vector<Moments> ReferenceEvaluator::evaluate(const MomentsRequest& request,
   const reference::Refinement refinement{relative_tolerance(options_, request.tolerance), options_.subdivisions};
   std::vector<Moments> results(request.size());
   const auto compute = [&](std::size_t i) {
-    if (request.is_wanted(i)) results[i] = moments_of(request, request[i], refinement);
+    if (request.is_wanted(i)) results[i] = point_moments(request, request[i], refinement);
   };
   parallel_for(results.size(), compute, progress, kEntriesAtOnce);
   for (const Moments& moments : results) report_.evaluations += moments.evaluations;
@@ -194,7 +195,7 @@ std::vector<ScatteringMatrix> ReferenceEvaluator::scatter(const ScatteringReques
   check(request);
   const auto start = std::chrono::steady_clock::now();
   std::vector<ScatteringMatrix> results(request.entries.size());
-  const auto compute = [&](std::size_t i) { results[i] = matrix_of(request, request.entries[i]); };
+  const auto compute = [&](std::size_t i) { results[i] = scattering_matrix(request, request.entries[i]); };
   parallel_for(results.size(), compute, progress, kEntriesAtOnce);
   note(seconds_since(start));
   return results;

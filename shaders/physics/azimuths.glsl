@@ -164,7 +164,7 @@ struct SlopeResult {
 };
 
 // The sums at one slope, for slopes.comp. The masking does not depend on the slope distribution: no_row() is enough.
-SlopeResult azimuths_of(RuleNode rule, ThetaNode theta, IndexNode index, SlopeNode slope_node) {
+SlopeResult integrate_azimuths(RuleNode rule, ThetaNode theta, IndexNode index, SlopeNode slope_node) {
   Slope slope;
   slope.t = slope_node.t;
   slope.digits = slope_node.digits;

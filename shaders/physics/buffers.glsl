@@ -29,10 +29,10 @@ layout(std430, binding = DOLP_BINDING_MASKING_TABLE) writeonly buffer MaskingTab
 #ifdef DOLP_DOUBLE
 layout(binding = DOLP_BINDING_RULE_NODES) uniform usamplerBuffer rule_nodes;
 layout(binding = DOLP_BINDING_MASKING_NODES) uniform usamplerBuffer masking_nodes;
-real2 doubles_of(uvec4 texel) { return real2(packDouble2x32(texel.xy), packDouble2x32(texel.zw)); }
-real2 rule_node(int i) { return doubles_of(texelFetch(rule_nodes, i)); }
+real2 to_real2(uvec4 texel) { return real2(packDouble2x32(texel.xy), packDouble2x32(texel.zw)); }
+real2 rule_node(int i) { return to_real2(texelFetch(rule_nodes, i)); }
 real4 masking_node(uint i) {
-  return real4(doubles_of(texelFetch(masking_nodes, int(2u * i))), doubles_of(texelFetch(masking_nodes, int(2u * i + 1u))));
+  return real4(to_real2(texelFetch(masking_nodes, int(2u * i))), to_real2(texelFetch(masking_nodes, int(2u * i + 1u))));
 }
 #else
 layout(binding = DOLP_BINDING_RULE_NODES) uniform samplerBuffer rule_nodes;

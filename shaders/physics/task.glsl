@@ -17,7 +17,7 @@ struct Task {
 
 bool has_bit(uint word, uint bit) { return ((word >> bit) & 1u) == 1u; }
 
-Task task_of(uint word) {
+Task unpack_task(uint word) {
   Task task;
   task.members = int(word & ((1u << DOLP_TASK_MEMBERS_BITS) - 1u));
   task.piece = int((word >> DOLP_TASK_PIECE_SHIFT) & ((1u << DOLP_TASK_PIECE_BITS) - 1u));

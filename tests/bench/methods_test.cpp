@@ -116,7 +116,7 @@ TEST(BenchFormulas, AdaptiveCubature_TightTolerance_AgreesWithReferenceForBothDi
   const std::unique_ptr<Solver> hcubature = solver_of("hcubature");
   for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
     for (const Masking masking : {Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith}) {
-      SCOPED_TRACE(name_of(masking));
+      SCOPED_TRACE(to_name(masking));
       MomentsRequest request;
       request.distribution = distribution;
       request.masking = masking;
@@ -132,9 +132,9 @@ TEST(BenchFormulas, AdaptiveCubature_TightTolerance_AgreesWithReferenceForBothDi
 // than the device, but not fewer.
 TEST(BenchNative, Grid_HasTheDevicesNodesOrMore) {
   for (const Masking masking : {Masking::kIntegral, Masking::kSmith}) {
-    SCOPED_TRACE(name_of(masking));
+    SCOPED_TRACE(to_name(masking));
     const MomentsRequest request =
-        steel_request(masking, axes_of({10.0, 40.0, 60.0, 80.0}, {0.05, 0.2, 0.5, 1.0}, {1.75, 3.0, 8.0}));
+        steel_request(masking, make_axes({10.0, 40.0, 60.0, 80.0}, {0.05, 0.2, 0.5, 1.0}, {1.75, 3.0, 8.0}));
     const Solution ours = solver_of("native-float")->solve(request, 1e-4);
     const double share = *ours.evaluations / *solver_of("vulkan-float")->solve(request, 1e-4).evaluations;
     EXPECT_GE(share, 0.999);

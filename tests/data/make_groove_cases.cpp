@@ -95,7 +95,7 @@ std::string lines_of(Distribution distribution) {
     const bool is_random = cases[i].name == "ordinary" || cases[i].name == "corners";
     if (is_random && !(m.r_i_error <= kLeastKnown * m.r_i)) continue;
     text += fmt::format("{},v-cavity,{},{},{},{},{},{},{},{},{},{:.3g},{:.3g},{:.3g},{:.3g},{},adaptive quadrature\n",
-                        name_of(distribution), theta_deg, shape.sigma, shape.q, index.n, index.k, m.r_i, m.r_q,
+                        to_name(distribution), theta_deg, shape.sigma, shape.q, index.n, index.k, m.r_i, m.r_q,
                         m.albedo, m.deficit, 1.01 * m.r_i_error, 1.01 * m.r_q_error, 1.01 * m.albedo_error,
                         1.01 * m.deficit_error, cases[i].name);
   }

@@ -40,15 +40,15 @@ TEST_F(Response, SceneWithoutAMaterial_HasOneForEachMasking) {
     const TableReader reader(at("r.nc"));
     const TableBox all{{}, reader.head().counts()};
     const TableValues table = reader.read(all);
-    reader.check_hash(reader.sums_of(table, all));
+    reader.check_hash(reader.value_sums(table, all));
     ASSERT_EQ(table.size(), 12U);
     ASSERT_EQ(table.beta_deg.size(), 24U);
     const bool has_emission = masking == "smith" || masking == "v-cavity";
     for (const ResponseVariable variable : kAllResponseVariables) {
       const bool is_emission = variable == ResponseVariable::kEmissionI || variable == ResponseVariable::kEmissionQ;
       EXPECT_EQ(table.responses[variable].size(),
-                is_emission && !has_emission ? 0 : table.size() * table.width_of(variable))
-          << masking << " " << description_of(variable).name;
+                is_emission && !has_emission ? 0 : table.size() * table.values_per_entry(variable))
+          << masking << " " << describe(variable).name;
     }
     EXPECT_TRUE(table.index_n.used.empty());
   }

@@ -61,10 +61,10 @@ class Shards : public CommandLine {
     for (const Quantity quantity : kAllQuantities) {
       const std::vector<double>& x = one[quantity];
       const std::vector<double>& y = other[quantity];
-      ASSERT_EQ(x.size(), y.size()) << description_of(quantity).name;
+      ASSERT_EQ(x.size(), y.size()) << describe(quantity).name;
       for (std::size_t i = 0; i < x.size(); ++i)
         ASSERT_EQ(std::bit_cast<std::uint64_t>(x[i]), std::bit_cast<std::uint64_t>(y[i]))
-            << description_of(quantity).name << ' ' << i;
+            << describe(quantity).name << ' ' << i;
     }
   }
 };

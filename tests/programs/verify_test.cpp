@@ -30,7 +30,7 @@ TEST(Overrides, AnyValues_SurviveTheAttribute) {
         {"title=a = b", "emission=none", "grid.q=[2,\n3]"},
         {"grid.theta_deg={from=0,\nto=80,\ncount=3}", "grid.theta_deg.count=5", "surface.n=2"}}) {
     std::vector<std::string> again;
-    for (const Setting& setting : settings_of(settings_text(settings_from_text(overrides))))
+    for (const Setting& setting : override_settings(settings_text(settings_from_text(overrides))))
       again.push_back(setting.text());
     EXPECT_EQ(again, overrides);
   }
@@ -144,8 +144,7 @@ TEST_F(Verify, AlbedoAndEmissivitiesOffByThreeBounds_AreFoundInEveryEntry) {
         wrong[quantity][i] += 3.0 * (quantity == Quantity::kAlbedo ? of_albedo : of_rho);
       }
       write_table(wrong, at("t.nc"));
-      EXPECT_EQ(verify_json(kAccuracy)["failures"].size(), table.size())
-          << masking << ' ' << description_of(quantity).name;
+      EXPECT_EQ(verify_json(kAccuracy)["failures"].size(), table.size()) << masking << ' ' << describe(quantity).name;
     }
   }
 }
@@ -236,7 +235,7 @@ TEST_F(Verify, OneCorruptedValue_Exit1AndIsNamed) {
                                        {Quantity::kStokesU, true},
                                        {Quantity::kStokesV, true},
                                        {Quantity::kStokesI, true}}) {
-    const std::string name = description_of(corruption.quantity).name;
+    const std::string name = describe(corruption.quantity).name;
     double bound = corruption.is_dolp ? table[Quantity::kErrorEstimate][at_entry]
                                       : table[Quantity::kRhoErrorEstimate][at_entry] * table[Quantity::kRhoI][at_entry];
     if (name.starts_with("stokes")) bound *= table[Quantity::kStokesI][at_entry];

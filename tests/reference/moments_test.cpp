@@ -149,8 +149,8 @@ TEST(ReferenceMoments, PlainQuadratureOfTheMuellerMatrix_Agrees) {
     }
     const std::complex<double> mean = sum * kRadPerDeg * kRadPerDeg * std::cos(kTheta_deg * kRadPerDeg);
     const Moments m = moments(Distribution::kCauchy, masking, kTheta_deg, {0.5, 1.8}, index);
-    EXPECT_NEAR(m.r_i, mean.real(), (kInner + kOuter) * m.r_i) << name_of(masking);
-    EXPECT_NEAR(m.r_q, mean.imag(), (kInner + kOuter) * m.r_i) << name_of(masking);
+    EXPECT_NEAR(m.r_i, mean.real(), (kInner + kOuter) * m.r_i) << to_name(masking);
+    EXPECT_NEAR(m.r_q, mean.imag(), (kInner + kOuter) * m.r_i) << to_name(masking);
   }
 }
 

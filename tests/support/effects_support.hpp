@@ -107,16 +107,15 @@ class RandomScenes {
   Random random_;
 };
 
-inline std::string describe(const SceneValues& s) {
+inline std::string scene_text(const SceneValues& s) {
   std::string text = fmt::format(
       "{} N {:.6g}+{:.6g}i k_s {:.4g} k_d {:.4g} c {:.3g}, {:.4g}..{:.4g} um, {} view {:.5g} azimuth {:.5g}, tolerance "
       "{:.2g}",
-      name_of(Model{s.surface.distribution, s.surface.masking}), s.surface.material.constant.n,
+      to_name(Model{s.surface.distribution, s.surface.masking}), s.surface.material.constant.n,
       s.surface.material.constant.k, s.surface.specular, s.surface.diffuse, s.surface.diffuse_exponent,
-      s.spectrum.min_um, s.spectrum.max_um, name_of(s.geometry.mode), s.geometry.view_zenith_deg,
+      s.spectrum.min_um, s.spectrum.max_um, to_name(s.geometry.mode), s.geometry.view_zenith_deg,
       s.geometry.relative_azimuth_deg, s.accuracy.tolerance);
-  if (s.emission)
-    text += fmt::format(", emission {:.9g} K {}", s.emission->temperature_K, name_of(s.emission->model));
+  if (s.emission) text += fmt::format(", emission {:.9g} K {}", s.emission->temperature_K, to_name(s.emission->model));
   if (s.surroundings) text += fmt::format(", surroundings {:.9g} K", s.surroundings->temperature_K);
   if (s.source) text += fmt::format(", source {:.4g} or {:.4g}", s.source->irradiance, s.source->relative_irradiance);
   if (s.path)
@@ -124,8 +123,8 @@ inline std::string describe(const SceneValues& s) {
   return text;
 }
 
-inline std::string describe(const SceneValues& scene, const SceneEntry& entry) {
-  return fmt::format("{}; theta {:.9g} sigma {:.6g} q {:.6g}", describe(scene), entry.theta_deg, entry.shape.sigma,
+inline std::string scene_text(const SceneValues& scene, const SceneEntry& entry) {
+  return fmt::format("{}; theta {:.9g} sigma {:.6g} q {:.6g}", scene_text(scene), entry.theta_deg, entry.shape.sigma,
                      entry.shape.q);
 }
 

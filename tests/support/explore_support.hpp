@@ -75,7 +75,7 @@ class Driver {
 
 inline std::vector<Point> truth(const Scene& scene, const PointList& list) {
   Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
-  return points_of(list, evaluator.evaluate(scene, list.columns()));
+  return result_points(list, evaluator.evaluate(scene, list.columns()));
 }
 
 /// Accurate results of the scene at the zeniths of `points`.

@@ -34,7 +34,7 @@ inline constexpr std::array<Model, 8> kModels{{{Distribution::kCauchy, Masking::
                                                {Distribution::kGaussian, Masking::kIntegral},
                                                {Distribution::kGaussian, Masking::kSmith}}};
 
-inline std::string name_of(const Model& model) {
+inline std::string to_name(const Model& model) {
   constexpr std::array kMaskings = {"None", "VCavity", "Integral", "Smith"};
   return std::string(model.distribution == Distribution::kCauchy ? "Cauchy" : "Gaussian") +
          kMaskings[static_cast<std::size_t>(model.masking)];
@@ -118,7 +118,7 @@ enum class Kernel { kCpuFloat, kCpuDouble, kVulkanFloat, kVulkanDouble };
 inline constexpr std::array kKernels{Kernel::kCpuFloat, Kernel::kCpuDouble, Kernel::kVulkanFloat,
                                      Kernel::kVulkanDouble};
 
-inline std::string name_of(Kernel kernel) {
+inline std::string to_name(Kernel kernel) {
   constexpr std::array kNames = {"CpuFloat", "CpuDouble", "VulkanFloat", "VulkanDouble"};
   return kNames[static_cast<std::size_t>(kernel)];
 }
@@ -137,7 +137,7 @@ inline std::unique_ptr<ModelEvaluator> make_evaluator(Kernel kernel, VulkanOptio
 using KernelAndModel = std::tuple<Kernel, Model>;
 
 inline std::string kernel_and_model_name(const testing::TestParamInfo<KernelAndModel>& test) {
-  return name_of(std::get<0>(test.param)) + name_of(std::get<1>(test.param));
+  return to_name(std::get<0>(test.param)) + to_name(std::get<1>(test.param));
 }
 
 /// The four moments that are integrals over the hemisphere. The moments of the direct emission are not among them.

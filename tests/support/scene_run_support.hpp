@@ -40,7 +40,7 @@ inline SceneValues make_scene(Distribution distribution, Masking masking, const 
   scene.emission = Emission{300.0, EmissionModel::kMoments};
   scene.surroundings = Surroundings{240.0};
   scene.spectrum = {10.6, 10.6};
-  scene.grid = axes_of({60.0}, {0.3}, {2.0});
+  scene.grid = make_axes({60.0}, {0.3}, {2.0});
   return scene;
 }
 
@@ -92,7 +92,7 @@ inline std::vector<std::uint64_t> bits_of(const PointResult& result) {
 /// Scene and entry for the message of a failed check.
 inline std::string text_of(const SceneValues& scene, const SceneEntry& entry) {
   const OpticalConstants index = entry.index.value_or(scene.surface.material.constant);
-  return std::string(name_of(scene.surface.distribution)) + " " + name_of(scene.surface.masking) + " theta " +
+  return std::string(to_name(scene.surface.distribution)) + " " + to_name(scene.surface.masking) + " theta " +
          std::to_string(entry.theta_deg) + " log10 sigma " + std::to_string(std::log10(entry.shape.sigma)) + " q " +
          std::to_string(entry.shape.q) + " N " + std::to_string(index.n) + " + " + std::to_string(index.k) + "i";
 }

@@ -68,7 +68,7 @@ inline void expect_same(const TableValues& actual, const TableValues& expected) 
   EXPECT_EQ(actual.axes, expected.axes);
   EXPECT_EQ(actual.wind_m_s, expected.wind_m_s);
   for (const Quantity quantity : kAllQuantities) {
-    expect_same(actual[quantity], expected[quantity], description_of(quantity).name);
+    expect_same(actual[quantity], expected[quantity], describe(quantity).name);
   }
   EXPECT_EQ(actual.status, expected.status);
   for (const TableCurve& described : kTableCurves) EXPECT_EQ(actual.*described.curve, expected.*described.curve);

@@ -9,8 +9,8 @@ constexpr double kUnitRoundoff = 0x1p-24;  // relative rounding error of float
 
 GroupedWork::GroupedWork(const MomentsRequest& request)
     : data(kernel_data(request)),
-      rows(rows_of(request, data)),
-      pieces(pieces_of(rows, data, 0, static_cast<std::uint32_t>(rows.rows.size()))) {}
+      rows(make_rows(request, data)),
+      pieces(row_pieces(rows, data, 0, static_cast<std::uint32_t>(rows.rows.size()))) {}
 
 std::vector<Moments> moments_of(const GroupedWork& work, const std::vector<kernel::MomentsNode>& nodes) {
   const Rows& rows = work.rows;
@@ -27,10 +27,10 @@ std::vector<Moments> moments_of(const GroupedWork& work, const std::vector<kerne
   for (std::size_t i = 0; i < rows.rows.size(); ++i) {
     const Row& row = rows.rows[i];
     const Chunk& chunk = rows.chunks[row.chunk];
-    const std::uint32_t theta = rows.theta_of(work.data, row);
+    const std::uint32_t theta = rows.theta_position(work.data, row);
     for (std::uint32_t g = 0; g < chunk.count; ++g) {
-      const std::uint32_t shape = rows.shape_of[chunk.first + g];
-      moments[work.data.entry_of(row.direction, row.index, shape)] =
+      const std::uint32_t shape = rows.shape_positions[chunk.first + g];
+      moments[work.data.entry_position(row.direction, row.index, shape)] =
           moments_from_kernel(sums[i * rows.width + g], work.data, {theta, shape, row.index}, kUnitRoundoff);
     }
   }

@@ -81,13 +81,13 @@ Eigen::Matrix4d mueller(const Jones& j) {
   const Complex ss = j(0, 0), sp = j(0, 1), ps = j(1, 0), pp = j(1, 1);  // sp: incident field p, reflected field s
   const double a = std::norm(ss), b = std::norm(sp), c = std::norm(ps), d = std::norm(pp);
   const Complex first = std::conj(ss) * sp, second = std::conj(ps) * pp;
-  const Complex of_s = std::conj(ss) * ps, of_p = std::conj(sp) * pp;
+  const Complex s_in = std::conj(ss) * ps, p_in = std::conj(sp) * pp;
   const Complex straight = std::conj(ss) * pp, crossed = std::conj(sp) * ps;
   return Eigen::Matrix4d{
       {0.5 * (a + b + c + d), 0.5 * (a - b + c - d), (first + second).real(), -(first + second).imag()},
       {0.5 * (a + b - c - d), 0.5 * (a - b - c + d), (first - second).real(), -(first - second).imag()},
-      {(of_s + of_p).real(), (of_s - of_p).real(), (straight + crossed).real(), (crossed - straight).imag()},
-      {(of_s + of_p).imag(), (of_s - of_p).imag(), (straight + crossed).imag(), (straight - crossed).real()}};
+      {(s_in + p_in).real(), (s_in - p_in).real(), (straight + crossed).real(), (crossed - straight).imag()},
+      {(s_in + p_in).imag(), (s_in - p_in).imag(), (straight + crossed).imag(), (straight - crossed).real()}};
 }
 
 /// Mueller matrix of a beam after `bounces` bounces in an unfolded groove (shaders/physics/groove.glsl). After an odd

@@ -56,7 +56,7 @@ double InPlaneMasking::weight(double slope) const {
 }
 
 /// A position on the axis of the panels. Panel i reaches from i to i + 1.
-double InPlaneMasking::panel_of(double slope) const { return std::asinh(slope / scale_) / length_; }
+double InPlaneMasking::panel_position(double slope) const { return std::asinh(slope / scale_) / length_; }
 
 /// Integrals over a part of a panel. `from`: the slope at `first_panel`.
 InPlaneMasking::Integrals InPlaneMasking::within_panel(double from, double first_panel, double last_panel) const {
@@ -96,8 +96,8 @@ InPlaneMasking::Integrals InPlaneMasking::between(double from, double to) const 
     sum.height += part.height + (start - from) * part.weighted;
   };
   if (from < end_) {
-    const double first = panel_of(from);
-    const double last = to < end_ ? panel_of(to) : static_cast<double>(panels_.size());
+    const double first = panel_position(from);
+    const double last = to < end_ ? panel_position(to) : static_cast<double>(panels_.size());
     auto next = static_cast<std::size_t>(first) + 1;
     add(within_panel(from, first, std::min(static_cast<double>(next), last)), from);
     for (; static_cast<double>(next) + 1.0 <= last; ++next) add(panels_[next], starts_[next]);

@@ -28,7 +28,7 @@ class InPlaneMasking {
 
   double density(double slope) const;
   double weight(double slope) const;
-  double panel_of(double slope) const;
+  double panel_position(double slope) const;
   Integrals within_panel(double from, double first_panel, double last_panel) const;
   Integrals power_law_above(double slope) const;
   Integrals between(double from, double to) const;
@@ -38,10 +38,10 @@ class InPlaneMasking {
   Distribution distribution_;
   Masking masking_;
   double q_minus_1_;
-  double m_;      ///< width of the distribution
-  double norm_;   ///< p(0)
-  double scale_;  ///< unit of tau in the variable of the panels, asinh(tau / scale_)
-  double end_;    ///< from this slope the cauchy distribution counts as a power law, and the gaussian as 0
+  double m_;             ///< width of the distribution
+  double norm_;          ///< p(0)
+  double scale_;         ///< unit of tau in the variable of the panels, asinh(tau / scale_)
+  double end_;           ///< from this slope the cauchy distribution counts as a power law, and the gaussian as 0
   double length_ = 1.0;  ///< length of a panel
   std::vector<double> starts_;     ///< slope at the start of each panel
   std::vector<Integrals> panels_;  ///< integrals over each panel

@@ -187,10 +187,10 @@ std::vector<ScatteringMatrix> scattering_matrices(const ScatteringRequest& reque
       matrices[order[i]] = matrix_of_beam(request, entry, geometry, attenuation);
     }
   };
-  const Progress of_beams = [&](std::size_t done, std::size_t) {
+  const Progress beam_progress = [&](std::size_t done, std::size_t) {
     return !progress || progress(std::min(done * kBeamsAtOnce, order.size()), order.size());
   };
-  parallel_for((order.size() + kBeamsAtOnce - 1) / kBeamsAtOnce, compute_group, of_beams, 4);
+  parallel_for((order.size() + kBeamsAtOnce - 1) / kBeamsAtOnce, compute_group, beam_progress, 4);
   return matrices;
 }
 

@@ -23,13 +23,13 @@ bool is_finite(const Moments& m) {
 /// moments. A pair with infinite or NaN known moments is left out. Returns a flag per entry: 1 if its pair is left out.
 std::vector<char> interpolate_all(const ShapePlan& plan, std::span<const Moments> nodes, const MomentsRequest& request,
                                   std::span<Moments> moments) {
-  const std::size_t of_nodes = plan.nodes_of_a_direction();
+  const std::size_t nodes_per_pair = plan.nodes_of_a_direction();
   const std::size_t shapes = request.shapes();
   std::vector<char> is_left(request.size(), 0);
   parallel_ranges(request.size() / shapes, 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       if (!request.is_wanted(i * shapes)) continue;
-      const std::span<const Moments> pair_nodes = nodes.subspan(i * of_nodes, of_nodes);
+      const std::span<const Moments> pair_nodes = nodes.subspan(i * nodes_per_pair, nodes_per_pair);
       if (std::ranges::all_of(pair_nodes, is_finite)) {
         interpolate(plan, pair_nodes, moments.subspan(i * shapes, shapes));
       } else {
@@ -50,10 +50,10 @@ class PlannedMoments {
 
   std::vector<Moments> all() {
     const std::span<const MomentsStep> steps = plan_.steps();
-    if (steps.size() == 1) return moments_of(steps.front());
+    if (steps.size() == 1) return evaluate_step(steps.front());
     std::vector<Moments> moments(plan_.size());
     for (const MomentsStep& step : steps) {
-      std::vector<Moments> step_moments = moments_of(step);
+      std::vector<Moments> step_moments = evaluate_step(step);
       const std::size_t shapes = step.request.shapes();
       const std::size_t directions = plan_.directions();
       for (std::size_t i = 0; i < step_moments.size(); ++i) {
@@ -69,11 +69,11 @@ class PlannedMoments {
  private:
   std::vector<Moments> from_kernel(const MomentsRequest& request) {
     const std::size_t count = request.wanted_count();
-    const Progress of_plan = [&](std::size_t done, std::size_t all) {
+    const Progress plan_progress = [&](std::size_t done, std::size_t all) {
       const std::size_t so_far = done_ + count * done / std::max<std::size_t>(all, 1);
       return !progress_ || progress_(plan_.size() * so_far / std::max<std::size_t>(kernel_moments_, 1), plan_.size());
     };
-    std::vector<Moments> moments = evaluated(request, of_plan);
+    std::vector<Moments> moments = evaluated(request, plan_progress);
     done_ += count;
     return moments;
   }
@@ -86,7 +86,7 @@ class PlannedMoments {
     return moments;
   }
 
-  std::vector<Moments> nodes_of(const MomentsStep& step) {
+  std::vector<Moments> evaluate_nodes(const MomentsStep& step) {
     if (!step.responses) return from_kernel(step.nodes());
     std::vector<std::vector<Moments>> passes;
     for (const MomentsRequest& pass : step.responses->passes) passes.push_back(from_kernel(pass));
@@ -98,8 +98,8 @@ class PlannedMoments {
     return moments;
   }
 
-  std::vector<Moments> moments_of(const MomentsStep& step) {
-    std::vector<Moments> nodes = nodes_of(step);
+  std::vector<Moments> evaluate_step(const MomentsStep& step) {
+    std::vector<Moments> nodes = evaluate_nodes(step);
     if (!step.shapes) return nodes;
     const Clock::time_point start = Clock::now();
     std::vector<Moments> moments(step.request.size());

@@ -110,14 +110,14 @@ EntriesExtent extent_of_grid(const SceneEntries& entries) {
 }
 
 /// All optics that facets can have: the scene's at each wavelength, and each index of the entries with these films.
-std::vector<FacetOptics> indices_of(const SpectralRule& rule, const EntriesExtent& extent) {
+std::vector<FacetOptics> bounding_indices(const SpectralRule& rule, const EntriesExtent& extent) {
   std::vector<FacetOptics> indices = rule.indices();
   const std::vector<FacetOptics> samples = indices;
-  for (const FacetOptics& of_entry : extent.optics) {
+  for (const FacetOptics& entry_optics : extent.optics) {
     for (FacetOptics sample : samples) {
-      sample.index = of_entry.index;
+      sample.index = entry_optics.index;
       indices.push_back(std::move(sample));
-      if (of_entry.is_bare() && samples.front().is_bare()) break;
+      if (entry_optics.is_bare() && samples.front().is_bare()) break;
     }
   }
   return indices;
@@ -125,7 +125,7 @@ std::vector<FacetOptics> indices_of(const SpectralRule& rule, const EntriesExten
 
 }  // namespace
 
-std::vector<EntriesExtent> extents_of(const SceneEntries& entries) {
+std::vector<EntriesExtent> entry_extents(const SceneEntries& entries) {
   if (entries.is_grid()) return {extent_of_grid(entries)};
   std::vector<EntriesExtent> extents(entries.variants().size(), {{}, {0.0, kInfinity}, {kInfinity, 0.0}, {}});
   for (const SceneEntry& entry : entries.all()) {
@@ -177,7 +177,7 @@ EffectBounds::EffectBounds(const SceneModel& scene, const SpectralRule& rule, co
     most_diffuse_ =
         diverges ? kInfinity : 2.0 * surface.diffuse * std::pow(std::max(a.cos, kSmallestCosine), c) / (c + 2.0);
   }
-  if (is_bistatic_ && total_.irradiance > 0.0) add_beams(extent, indices_of(rule, extent));
+  if (is_bistatic_ && total_.irradiance > 0.0) add_beams(extent, bounding_indices(rule, extent));
 }
 
 void EffectBounds::add_beams(const EntriesExtent& extent, const std::vector<FacetOptics>& indices) {

@@ -14,8 +14,9 @@ namespace {
 constexpr std::array kDroppingOrder = {Part::kSource,       Part::kSurroundings, Part::kProfile,       Part::kEmission,
                                        Part::kPathRadiance, Part::kMoments,      Part::kFurtherBounces};
 
-std::vector<EffectBounds> bounds_of(const SceneValues& scene, const SceneEntries& entries, const SpectralRules& rules) {
-  const std::vector<EntriesExtent> extents = extents_of(entries);
+std::vector<EffectBounds> scene_bounds(const SceneValues& scene, const SceneEntries& entries,
+                                       const SpectralRules& rules) {
+  const std::vector<EntriesExtent> extents = entry_extents(entries);
   std::vector<EffectBounds> bounds;
   for (const SceneVariant& variant : entries.variants()) {
     const EntriesExtent& extent = extents[std::min(bounds.size(), extents.size() - 1)];
@@ -146,7 +147,7 @@ Effect model_row(const SceneValues& scene, const EffectPlan& plan, const char* n
 
 Effect masking_row(const SceneValues& scene, const EffectPlan& plan, const SceneEntries& entries) {
   if (scene.surface.masking == Masking::kNone) return absent("masking", "surface.masking is none");
-  return model_row(scene, plan, "masking", name_of(scene.surface.masking), entries);
+  return model_row(scene, plan, "masking", to_name(scene.surface.masking), entries);
 }
 
 Effect scattering_row(const SceneValues& scene, const EffectPlan& plan, const SceneEntries& entries) {
@@ -259,7 +260,7 @@ EffectPlan plan_effects(const SceneValues& scene, const SceneEntries& entries, b
   EffectPlan plan;
   plan.rules = std::make_shared<const SpectralRules>(scene, entries);
   plan.keep_all = keep_all;
-  const std::vector<EffectBounds> bounds = bounds_of(scene, entries, *plan.rules);
+  const std::vector<EffectBounds> bounds = scene_bounds(scene, entries, *plan.rules);
   if (!keep_all && !entries.empty()) drop_effects(plan, scene, bounds);
   set_needs(plan, scene, bounds);
   if (!entries.empty()) return with_spectra(std::move(plan), scene, entries);
@@ -282,17 +283,17 @@ EffectPlan with_spectra(EffectPlan plan, const SceneValues& scene, const SceneEn
 EffectPlan plan_to_keep(const SceneValues& scene, const KeptEffects& kept) {
   EffectPlan plan;
   plan.kept = kept;
-  set_needs(plan, scene, bounds_of(scene, {}, SpectralRules(scene, {})));
+  set_needs(plan, scene, scene_bounds(scene, {}, SpectralRules(scene, {})));
   return plan;
 }
 
 EffectPlan keep_everything(const SceneValues& scene) { return plan_effects(scene, {}, true); }
 
-std::vector<Effect> effects_of(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& given) {
+std::vector<Effect> list_effects(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& given) {
   const EffectPlan plan = with_spectra(given, scene, entries);
   return {specular_row(scene, plan),
           diffuse_row(scene, plan),
-          model_row(scene, plan, "distribution", name_of(scene.surface.distribution), entries),
+          model_row(scene, plan, "distribution", to_name(scene.surface.distribution), entries),
           masking_row(scene, plan, entries),
           scattering_row(scene, plan, entries),
           complex_index_row(scene, plan, entries),

@@ -27,7 +27,7 @@ struct EntriesExtent {
 };
 
 /// For a grid one extent, because all its SceneVariants have equal directions. For points, one for each SceneVariant.
-std::vector<EntriesExtent> extents_of(const SceneEntries& entries);
+std::vector<EntriesExtent> entry_extents(const SceneEntries& entries);
 
 /// Bounds of the change of p = (Q, U) / I that each part of a scene causes at any of the entries.
 /// Derivation: let a part add (dI, dQ, dU) to the Stokes parameters, and let a prime mark values without the part. Then
@@ -92,7 +92,7 @@ EffectPlan with_spectra(EffectPlan plan, const SceneValues& scene, const SceneEn
 /// True if the run gives an emissivity: the scene emits, and the plan keeps all moments that the emissivity needs.
 bool gives_emissivity(const SceneValues& scene, const EffectPlan& plan);
 
-std::vector<Effect> effects_of(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan);
+std::vector<Effect> list_effects(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan);
 
 std::string effects_text(const std::vector<Effect>& rows, const EffectPlan& plan);
 

@@ -157,12 +157,12 @@ struct Shares {
   double least = 0.0;          ///< least error bound of a sum, relative to the sum
   double pair = 1.0;           ///< error bound divided by the difference of two rules
   // Two rules with few nodes may agree by chance, so the bound of a sum is at least a share of the tolerance.
-  double of_rule() const { return least + rounding; }
-  double of_masked() const { return of_rule() + masking; }
+  double rule_error() const { return least + rounding; }
+  double masked_error() const { return rule_error() + masking; }
 };
 
-Shares shares_of(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
-                 double unit_roundoff) {
+Shares error_shares(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
+                    double unit_roundoff) {
   const kernel::ShapeNode& shape = data.shapes[entry.shape];
   const kernel::ThetaNode& theta = data.thetas[entry.theta];
   const kernel::IndexNode& index = data.indices[entry.index];
@@ -186,42 +186,42 @@ void set_errors(Moments& moments, const kernel::MomentsNode& node, const KernelD
                 const Shares& shares) {
   const double r_i_scale = std::abs(node.r_i);  // r_i can be negative if a rule does not converge
   const double deficit_scale = node.deficit + 2.0 * node.behind;
-  moments.r_i_error =
-      shares.pair * node.reflected_difference + shares.of_masked() * r_i_scale + shares.reflected_cut + shares.grooves;
+  moments.r_i_error = shares.pair * node.reflected_difference + shares.masked_error() * r_i_scale +
+                      shares.reflected_cut + shares.grooves;
   moments.r_q_error = moments.r_i_error;
   const double largest_difference =
       std::max({node.reflected_difference, node.albedo_difference, node.deficit_difference});
-  moments.albedo_error = shares.pair * largest_difference + shares.of_masked() * std::abs(node.albedo) + shares.cut;
+  moments.albedo_error = shares.pair * largest_difference + shares.masked_error() * std::abs(node.albedo) + shares.cut;
   // With total reflection, the deficit may be far smaller than r_i. So the deficit error is relative to the albedo.
   const bool is_critical = data.indices[entry.index].critical_cos > 0.0;
   const double deficit_terms = std::max(std::abs(deficit_scale), is_critical ? std::abs(node.albedo) : 0.0);
   const bool is_multiple = data.scattering == Scattering::kMultiple;
-  moments.deficit_error = shares.pair * node.deficit_difference + shares.of_rule() * deficit_terms +
+  moments.deficit_error = shares.pair * node.deficit_difference + shares.rule_error() * deficit_terms +
                           shares.masking * std::abs(node.albedo) +
                           (is_multiple ? shares.reflected_cut + shares.grooves : shares.cut);
 }
 
 void add_curve_errors(Moments& moments, const kernel::MomentsNode& node, const kernel::ThetaNode& theta,
                       const CurveError& error, double unit_roundoff) {
-  const double of_facet = 1.5 * (error.absolute + kCurveRoundings * unit_roundoff * error.per_roundoff);
+  const double facet_error = 1.5 * (error.absolute + kCurveRoundings * unit_roundoff * error.per_roundoff);
   for (double* const bound : {&moments.r_i_error, &moments.r_q_error, &moments.deficit_error})
-    *bound += of_facet * std::abs(node.albedo);
-  for (double* const bound : {&moments.direct_i_error, &moments.direct_q_error}) *bound += of_facet * theta.c;
+    *bound += facet_error * std::abs(node.albedo);
+  for (double* const bound : {&moments.direct_i_error, &moments.direct_q_error}) *bound += facet_error * theta.c;
 }
 
 /// `sums` has the four numbers of column k that add_columns() gives.
 ColumnMoments column_moments(std::span<const double> sums, std::size_t k, const kernel::MomentsNode& node,
                              const KernelData& data, const kernel::ThetaNode& theta, const Shares& shares,
                              double unit_roundoff) {
-  const double of_sky = data.sky.count > 0 ? sky_error(data, data.response ? 0 : k, unit_roundoff) : 0.0;
+  const double sky_bound = data.sky.count > 0 ? sky_error(data, data.response ? 0 : k, unit_roundoff) : 0.0;
   if (!data.response) {
-    const double error = shares.pair * sums[2] + (of_sky + shares.of_masked()) * std::abs(node.r_i);
+    const double error = shares.pair * sums[2] + (sky_bound + shares.masked_error()) * std::abs(node.r_i);
     return {sums[0], sums[1], error + shares.reflected_cut + shares.grooves};
   }
   const double largest = data.response->of == Response::Of::kDirect ? theta.c : std::abs(node.albedo);
   return {.i = sums[0],
           .q = sums[1],
-          .error = (shares.rounding + response_rounding(k, unit_roundoff) + of_sky) * largest + shares.cut,
+          .error = (shares.rounding + response_rounding(k, unit_roundoff) + sky_bound) * largest + shares.cut,
           .i_apart = shares.pair * sums[2],
           .q_apart = shares.pair * sums[3],
           .relative_error = shares.least + shares.masking};
@@ -246,7 +246,7 @@ void take_complement(Moments& moments, double cosine) {
 Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
                             double unit_roundoff, std::span<const double> columns) {
   const kernel::ThetaNode& theta = data.thetas[entry.theta];
-  const Shares shares = shares_of(node, data, entry, unit_roundoff);
+  const Shares shares = error_shares(node, data, entry, unit_roundoff);
   Moments moments;
   moments.r_i = node.r_i;
   moments.r_q = node.r_q;
@@ -262,7 +262,7 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
   if (data.has_direct) {
     moments.direct_i = node.direct_i;
     moments.direct_q = node.direct_q;
-    moments.direct_i_error = shares.pair * node.direct_difference + shares.of_masked() * theta.c + shares.cut;
+    moments.direct_i_error = shares.pair * node.direct_difference + shares.masked_error() * theta.c + shares.cut;
     moments.direct_q_error = moments.direct_i_error;
   }
   if (data.has_curves) add_curve_errors(moments, node, theta, data.curve_errors[entry.index], unit_roundoff);

@@ -37,7 +37,7 @@ struct Loops {
 };
 
 // Loop iterations for a ray: one for each bounce or group of bounces (next_bounces in groove.glsl).
-double turns_of(double bounces) {
+double ray_turns(double bounces) {
   double turns = 2.0;
   double taken = 1.0;
   for (double done = 0.0; done < bounces; done += taken) {
@@ -60,11 +60,11 @@ Loops groove_loops(const KernelData& data, double start, double end) {
   loops.arcs = start >= slope_with_bounces(splits + 2.0) ? 2.0 : 5.0;
   if (start < DOLP_STEEPEST_SPLIT) loops.arcs += std::min(splits, std::max(std::floor(most) - 1.0, 0.0));
   // Rays that lean away from the facet bounce up to twice as often as vertical rays.
-  loops.turns = turns_of(std::min(2.0 * most, double{DOLP_LAST_BOUNCES}));
+  loops.turns = ray_turns(std::min(2.0 * most, double{DOLP_LAST_BOUNCES}));
   return loops;
 }
 
-Loops loops_of(const KernelData& data, double critical, double start, double end) {
+Loops slope_loops(const KernelData& data, double critical, double start, double end) {
   Loops loops;
   if (data.scattering == Scattering::kMultiple) {
     loops = groove_loops(data, start, end);
@@ -87,10 +87,10 @@ double iterations(const KernelData& data, const Loops& loops, double most_nodes)
   // Iterations that integrate nothing: each arc also loops over the corners of the sky that lie outside the arc.
   const double idle = data.sky.count == 0 ? 0.0 : 2.0 * loops.arcs * (1.0 + loops.corners);
   if (!data.needs_masking_table()) return kTurnsOfSlope + idle + arcs * (2.0 + most_nodes * (1.0 + loops.turns));
-  const auto of_rule = [&](double share) {
+  const auto rule_iterations = [&](double share) {
     return 1.0 + share * data.rule_order * (1.0 + idle + arcs * (2.0 + share * most_nodes));
   };
-  return of_rule(1.0) + of_rule(kCoarseShare + 1.0 / data.rule_order);
+  return rule_iterations(1.0) + rule_iterations(kCoarseShare + 1.0 / data.rule_order);
 }
 
 std::uint8_t most_nodes(const KernelData& data, const Loops& loops) {
@@ -116,7 +116,7 @@ void add_direction(KernelData& data, const MomentsRequest& request, double theta
   pieces.count = static_cast<std::uint32_t>(points.size() - 1);
   pieces.has_split_line = variant.has_line;
   for (std::size_t i = 0; i < pieces.count; ++i) {
-    const Loops loops = loops_of(data, variant.critical_cos, node.end[i], node.end[i + 1]);
+    const Loops loops = slope_loops(data, variant.critical_cos, node.end[i], node.end[i + 1]);
     pieces.most_nodes[i] = most_nodes(data, loops);
     pieces.lockstep[i] = static_cast<std::uint16_t>(kMostArcs * loops.turns + loops.arcs);
   }
@@ -267,7 +267,7 @@ void add_points(KernelData& data, const MomentsRequest& request) {
   for (std::size_t i = 0; i < request.size(); ++i) {
     const bool is_new = i == 0 || request[i].shape != request[i - 1].shape;
     if (is_new) add_shape(data, request, request[i].shape);
-    data.shape_of.push_back(static_cast<std::uint32_t>(data.shapes.size() - 1));
+    data.shape_positions.push_back(static_cast<std::uint32_t>(data.shapes.size() - 1));
     add_direction(data, request, request.theta_deg[i], {data.indices[i].critical_cos, data.needs_line.back() != 0});
   }
 }
@@ -342,7 +342,7 @@ double worst_iterations(const KernelData& data) {
     const Pieces& pieces = data.pieces[entry.theta];
     const kernel::ThetaNode& theta = data.thetas[entry.theta];
     for (std::uint32_t piece = 0; piece < pieces.count; ++piece) {
-      const Loops loops = loops_of(data, critical, theta.end[piece], theta.end[piece + 1]);
+      const Loops loops = slope_loops(data, critical, theta.end[piece], theta.end[piece + 1]);
       worst = std::max(worst, iterations(data, loops, pieces.most_nodes[piece]));
     }
   }
@@ -352,12 +352,12 @@ double worst_iterations(const KernelData& data) {
 MomentsEntry KernelData::operator[](std::size_t entry) const {
   if (!is_grid) {
     const auto point = static_cast<std::uint32_t>(entry);
-    return {point, shape_of[entry], point};
+    return {point, shape_positions[entry], point};
   }
   const auto shape = static_cast<std::uint32_t>(entry % shapes.size());
   const std::size_t pair = entry / shapes.size();
   const auto index = static_cast<std::uint32_t>(pair / directions);
-  return {theta_of(static_cast<std::uint32_t>(pair % directions), index, shape), shape, index};
+  return {theta_position(static_cast<std::uint32_t>(pair % directions), index, shape), shape, index};
 }
 
 }  // namespace dolp

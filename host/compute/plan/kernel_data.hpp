@@ -83,7 +83,7 @@ struct KernelData {
   std::vector<kernel::IndexNode> indices;
   /// For each index of a grid, the position of its DirectionVariant. Shapes with needs_line have the next position.
   std::vector<std::uint32_t> index_variant;
-  std::vector<std::uint32_t> shape_of;
+  std::vector<std::uint32_t> shape_positions;
   /// Nodes and weights of the rules. The list continues with the tables of the sky (SkyTable) and of the reflectances.
   std::vector<std::array<double, 2>> rule_nodes;
   std::size_t left_out_nodes = 0;  ///< nodes of reflectance tables that Tables::kCounted leaves out
@@ -93,12 +93,12 @@ struct KernelData {
   std::size_t column_count() const { return response ? response->count : sky.count; }
   bool needs_masking_table() const { return masking == Masking::kIntegral || masking == Masking::kSmith; }
   std::size_t size() const { return is_grid ? directions * indices.size() * shapes.size() : directions; }
-  std::uint32_t theta_of(std::uint32_t direction, std::uint32_t index, std::uint32_t shape) const {
+  std::uint32_t theta_position(std::uint32_t direction, std::uint32_t index, std::uint32_t shape) const {
     if (!is_grid) return direction;
     const std::uint32_t variant = index_variant[index] + (needs_line[shape] != 0 ? 1U : 0U);
     return variant * static_cast<std::uint32_t>(directions) + direction;
   }
-  std::size_t entry_of(std::uint32_t direction, std::uint32_t index, std::uint32_t shape) const {
+  std::size_t entry_position(std::uint32_t direction, std::uint32_t index, std::uint32_t shape) const {
     return is_grid ? (index * directions + direction) * shapes.size() + shape : direction;
   }
   MomentsEntry operator[](std::size_t entry) const;

@@ -10,13 +10,13 @@ namespace {
 constexpr std::size_t kColumnsAtOnce = 1U << 20U;  // largest number of columns in a step; limits its memory
 
 template <class List, class CountOf>
-std::size_t sum_over(const List& list, const CountOf& count_of) {
+std::size_t sum_over(const List& list, const CountOf& item_count) {
   std::size_t sum = 0;
-  for (const auto& item : list) sum += count_of(item);
+  for (const auto& item : list) sum += item_count(item);
   return sum;
 }
 
-std::size_t moments_of(const MomentsStep& step) {
+std::size_t kernel_moment_count(const MomentsStep& step) {
   return sum_over(step.kernel_requests(), [](const MomentsRequest* request) { return request->wanted_count(); });
 }
 
@@ -41,7 +41,7 @@ MomentsPlan::MomentsPlan(const MomentsRequest& request) : size_(request.size()) 
   directions_ = request.theta_deg.size();
   for (std::vector<std::size_t>& directions : split_grazing_directions(request)) {
     MomentsStep step{.directions = std::move(directions)};
-    step.request = request.of_directions(step.directions);
+    step.request = request.select_directions(step.directions);
     step.shapes = shape_plan(step.request);
     add(std::move(step));
   }
@@ -61,10 +61,10 @@ void MomentsPlan::add(MomentsStep step) {
     std::iota(positions.begin(), positions.end(), first);
     MomentsStep& part = steps_.emplace_back();
     for (const std::size_t i : positions) part.directions.push_back(step.directions[i]);
-    part.request = step.request.of_directions(positions);
+    part.request = step.request.select_directions(positions);
     part.shapes = step.shapes;
-    if (part.shapes) part.shapes->nodes = step.shapes->nodes.of_directions(positions);
-    part.responses = responses.of_directions(positions);
+    if (part.shapes) part.shapes->nodes = step.shapes->nodes.select_directions(positions);
+    part.responses = responses.select_directions(positions);
   }
 }
 
@@ -73,10 +73,10 @@ std::size_t MomentsPlan::saved_entries() const {
 }
 
 std::size_t MomentsPlan::nodes_of_saved() const {
-  return sum_over(steps_, [](const MomentsStep& step) { return step.saves_work() ? moments_of(step) : 0; });
+  return sum_over(steps_, [](const MomentsStep& step) { return step.saves_work() ? kernel_moment_count(step) : 0; });
 }
 
-std::size_t MomentsPlan::kernel_moments() const { return sum_over(steps_, moments_of); }
+std::size_t MomentsPlan::kernel_moments() const { return sum_over(steps_, kernel_moment_count); }
 
 std::vector<char> MomentsPlan::saving_directions() const {
   std::vector<char> saves(directions_, 0);

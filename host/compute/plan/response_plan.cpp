@@ -21,12 +21,12 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 /// The mask `wanted` of a second request, with other indices. Its index j must have each entry (direction and shape)
 /// that `request` wants at any of its own indices in needed_by[j].
-std::vector<char> wanted_of(const MomentsRequest& request, const std::vector<std::vector<std::size_t>>& needed_by) {
-  const std::size_t of_index = request.theta_deg.size() * request.shapes();
+std::vector<char> wanted_mask(const MomentsRequest& request, const std::vector<std::vector<std::size_t>>& needed_by) {
+  const std::size_t entries_per_index = request.theta_deg.size() * request.shapes();
   std::vector<char> wanted;
   for (const std::vector<std::size_t>& indices : needed_by) {
-    for (std::size_t i = 0; !request.wanted.empty() && i < of_index; ++i) {
-      const auto wants = [&](std::size_t index) { return request.is_wanted(index * of_index + i); };
+    for (std::size_t i = 0; !request.wanted.empty() && i < entries_per_index; ++i) {
+      const auto wants = [&](std::size_t index) { return request.is_wanted(index * entries_per_index + i); };
       wanted.push_back(std::ranges::any_of(indices, wants) ? 1 : 0);
     }
   }
@@ -78,8 +78,8 @@ struct Sums {
   }
   /// Sums for the difference of two reflectance curves. If its sign changes, terms of a sum cancel. So relative errors
   /// refer to an upper bound of the sum: response 0, whose polynomial is 1, times the sum of all |weights|.
-  static Sums of_difference(const Responses& responses, Responses::Part of, Responses::Part apart,
-                            const RowMajor& weights) {
+  static Sums difference(const Responses& responses, Responses::Part of, Responses::Part apart,
+                         const RowMajor& weights) {
     Sums sums(responses, of, apart, weights);
     const Eigen::VectorXd largest = weights.cwiseAbs().rowwise().sum();
     for (Eigen::Index shape = 0; shape < sums.error.cols(); ++shape) {
@@ -96,7 +96,7 @@ class Combination {
  public:
   Combination(const MomentsRequest& request, const ResponsePlan& plan)
       : request_(request), sources_(*plan.sources), passes_(plan.passes.size()) {
-    const ResponseWeights& reference = request.basis->of_reference();
+    const ResponseWeights& reference = request.basis->reference_weights();
     for (std::size_t i = 0; i < sources_.size(); ++i) {
       if (sources_[i].weights) reached_.push_back(i);
     }
@@ -139,9 +139,9 @@ class Combination {
     // There are two ways to the moments of an index: a sum for its whole reflectance curve, or the moments of the
     // reference index plus a sum for the difference of the curves. The second is more accurate if the curves are
     // similar or if little light is absorbed.
-    const Sums more_absorbed = Sums::of_difference(all, Responses::kI, Responses::kIApart, absorbed_apart_);
-    const Sums more_split = Sums::of_difference(all, Responses::kQ, Responses::kQApart, split_apart_);
-    const ResponseWeights& of_reference = request_.basis->of_reference();
+    const Sums more_absorbed = Sums::difference(all, Responses::kI, Responses::kIApart, absorbed_apart_);
+    const Sums more_split = Sums::difference(all, Responses::kQ, Responses::kQApart, split_apart_);
+    const ResponseWeights& reference_weights = request_.basis->reference_weights();
     const double evaluations_share = static_cast<double>(passes_) / static_cast<double>(reached_.size());
     for_all(reference.size(), moments, [&](Moments& sum, const ResponseWeights& own, auto index, auto shape) {
       const Moments& from = reference[static_cast<std::size_t>(shape)];
@@ -153,13 +153,13 @@ class Combination {
       sum.r_i_error = i.error(index, shape) + own.absorbed_error * albedo;
       sum.r_q_error = q.error(index, shape) + i.error(index, shape) + own.split_error * albedo;
       const double apart_error =
-          more_absorbed.error(index, shape) + (own.absorbed_error + of_reference.absorbed_error) * albedo;
+          more_absorbed.error(index, shape) + (own.absorbed_error + reference_weights.absorbed_error) * albedo;
       if (from.r_i_error + apart_error < sum.r_i_error) {
         sum.r_i = from.r_i - more_absorbed.value(index, shape);
         sum.r_q = from.r_q + more_split.value(index, shape);
         sum.r_i_error = from.r_i_error + apart_error;
         sum.r_q_error = from.r_q_error + more_split.error(index, shape) + more_absorbed.error(index, shape) +
-                        (own.split_error + of_reference.split_error) * albedo;
+                        (own.split_error + reference_weights.split_error) * albedo;
       }
       // The error estimate of a sum may be too small, because differences between rules cancel by chance. So the
       // relative error bound of r_i is at least the bound at the reference index.
@@ -213,10 +213,10 @@ class Combination {
 
 }  // namespace
 
-ResponsePlan ResponsePlan::of_directions(std::span<const std::size_t> directions) const {
+ResponsePlan ResponsePlan::select_directions(std::span<const std::size_t> directions) const {
   ResponsePlan part{.sources = sources};
-  for (const MomentsRequest& pass : passes) part.passes.push_back(pass.of_directions(directions));
-  if (others) part.others = others->of_directions(directions);
+  for (const MomentsRequest& pass : passes) part.passes.push_back(pass.select_directions(directions));
+  if (others) part.others = others->select_directions(directions);
   return part;
 }
 
@@ -226,10 +226,10 @@ std::size_t response_passes(bool wants_direct, std::size_t sky_functions) {
 
 namespace {
 
-std::vector<ResponsePlan::Source> sources_of(const ResponseBasis& basis, std::span<const FacetOptics> indices) {
+std::vector<ResponsePlan::Source> response_sources(const ResponseBasis& basis, std::span<const FacetOptics> indices) {
   std::vector<ResponsePlan::Source> sources(indices.size());
   parallel_ranges(sources.size(), 1, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) sources[i].weights = basis.weights_of(indices[i]);
+    for (std::size_t i = first; i < last; ++i) sources[i].weights = basis.find_weights(indices[i]);
   });
   return sources;
 }
@@ -279,7 +279,7 @@ ResponsePlan plan_of_points(const MomentsRequest& request) {
     if (is_new) reference.append(point);
     plan.points.push_back({.pass = pass->second, .source = source->second});
   }
-  std::vector<ResponsePlan::Source> sources = sources_of(*request.basis, indices);
+  std::vector<ResponsePlan::Source> sources = response_sources(*request.basis, indices);
   for (std::size_t i = 0; i < request.size(); ++i) {
     if (sources[plan.points[i].source].weights) continue;
     plan.points[i].other = static_cast<std::uint32_t>(others.size());
@@ -293,7 +293,7 @@ ResponsePlan plan_of_points(const MomentsRequest& request) {
 
 ResponsePlan plan_of_grid(const MomentsRequest& request) {
   ResponsePlan plan;
-  std::vector<ResponsePlan::Source> sources = sources_of(*request.basis, request.optics);
+  std::vector<ResponsePlan::Source> sources = response_sources(*request.basis, request.optics);
   MomentsRequest others = request;
   others.basis = nullptr;
   others.optics.clear();
@@ -309,12 +309,12 @@ ResponsePlan plan_of_grid(const MomentsRequest& request) {
     beyond.push_back({i});
   }
   plan.sources = std::make_shared<const std::vector<ResponsePlan::Source>>(std::move(sources));
-  others.wanted = wanted_of(request, beyond);
+  others.wanted = wanted_mask(request, beyond);
   if (!others.optics.empty()) plan.others = std::move(others);
   if (reached.empty()) return plan;
   MomentsRequest reference = request;
   reference.optics = {request.basis->reference()};
-  reference.wanted = wanted_of(request, {reached});
+  reference.wanted = wanted_mask(request, {reached});
   add_passes(plan, request, std::move(reference));
   return plan;
 }
@@ -322,18 +322,18 @@ ResponsePlan plan_of_grid(const MomentsRequest& request) {
 std::vector<Moments> combined_points(const MomentsRequest& request, const ResponsePlan& plan,
                                      std::span<const std::vector<Moments>> passes, std::span<const Moments> others) {
   const Combination combine(request, plan);
-  std::vector<std::vector<std::size_t>> points_of(plan.passes.front().size());
-  for (std::size_t i = 0; i < plan.points.size(); ++i) points_of[plan.points[i].pass].push_back(i);
+  std::vector<std::vector<std::size_t>> pass_points(plan.passes.front().size());
+  for (std::size_t i = 0; i < plan.points.size(); ++i) pass_points[plan.points[i].pass].push_back(i);
   std::vector<Moments> moments(request.size());
-  parallel_ranges(points_of.size(), 1, [&](std::size_t first, std::size_t last) {
-    std::vector<Moments> of_sources(plan.sources->size());
+  parallel_ranges(pass_points.size(), 1, [&](std::size_t first, std::size_t last) {
+    std::vector<Moments> source_moments(plan.sources->size());
     for (std::size_t pass = first; pass < last; ++pass) {
-      std::vector<std::span<const Moments>> of_passes;
-      for (const std::vector<Moments>& one : passes) of_passes.push_back(std::span(one).subspan(pass, 1));
-      combine(cos_sin_deg(plan.passes.front().theta_deg[pass]).cos, of_passes, of_sources);
-      for (const std::size_t i : points_of[pass]) {
+      std::vector<std::span<const Moments>> pass_moments;
+      for (const std::vector<Moments>& one : passes) pass_moments.push_back(std::span(one).subspan(pass, 1));
+      combine(cos_sin_deg(plan.passes.front().theta_deg[pass]).cos, pass_moments, source_moments);
+      for (const std::size_t i : pass_points[pass]) {
         const ResponsePlan::PointSource& point = plan.points[i];
-        moments[i] = (*plan.sources)[point.source].weights ? of_sources[point.source] : others[point.other];
+        moments[i] = (*plan.sources)[point.source].weights ? source_moments[point.source] : others[point.other];
       }
     }
   });
@@ -356,10 +356,10 @@ std::vector<Moments> combined(const MomentsRequest& request, const ResponsePlan&
   parallel_ranges(directions, 1, [&](std::size_t first, std::size_t last) {
     std::vector<Moments> own(request.optics.size() * shapes);
     for (std::size_t theta = first; theta < last; ++theta) {
-      std::vector<std::span<const Moments>> of_passes;
+      std::vector<std::span<const Moments>> pass_moments;
       for (const std::vector<Moments>& pass : passes)
-        of_passes.push_back(std::span(pass).subspan(theta * shapes, shapes));
-      if (!of_passes.empty()) combine(cos_sin_deg(request.theta_deg[theta]).cos, of_passes, own);
+        pass_moments.push_back(std::span(pass).subspan(theta * shapes, shapes));
+      if (!pass_moments.empty()) combine(cos_sin_deg(request.theta_deg[theta]).cos, pass_moments, own);
       for (std::size_t i = 0; i < plan.sources->size(); ++i) {
         const ResponsePlan::Source& source = (*plan.sources)[i];
         const auto from = source.weights ? std::span<const Moments>(own).subspan(i * shapes, shapes)

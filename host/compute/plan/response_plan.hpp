@@ -32,7 +32,7 @@ struct ResponsePlan {
   std::shared_ptr<const std::vector<Source>> sources;  ///< one for each index; points with the same index share one
   std::vector<PointSource> points;
 
-  ResponsePlan of_directions(std::span<const std::size_t> directions) const;
+  ResponsePlan select_directions(std::span<const std::size_t> directions) const;
 };
 
 std::size_t response_passes(bool wants_direct, std::size_t sky_functions);

@@ -38,7 +38,7 @@ void add_chunk(Rows& rows, const KernelData& data, std::span<const std::uint32_t
   const auto first = static_cast<std::uint32_t>(rows.shapes.size());
   rows.chunks.push_back({first, static_cast<std::uint32_t>(shapes.size())});
   for (const std::uint32_t shape : shapes) {
-    rows.shape_of.push_back(shape);
+    rows.shape_positions.push_back(shape);
     rows.shapes.push_back(data.shapes[shape]);
   }
   unite(std::span(rows.shapes).subspan(first));
@@ -48,7 +48,7 @@ void add_grid_chunks(Rows& rows, const MomentsRequest& request, const KernelData
   std::vector<std::uint32_t> ascending(request.q.size());
   std::iota(ascending.begin(), ascending.end(), 0U);
   std::ranges::stable_sort(ascending, {}, [&](std::uint32_t i) { return request.q[i]; });
-  const auto of_q = static_cast<std::uint32_t>(request.q.size());
+  const auto q_count = static_cast<std::uint32_t>(request.q.size());
   std::vector<std::uint32_t> chunk;
   for (std::uint32_t sigma = 0; sigma < request.sigma.size(); ++sigma) {
     const auto close = [&] {
@@ -56,7 +56,7 @@ void add_grid_chunks(Rows& rows, const MomentsRequest& request, const KernelData
       chunk.clear();
     };
     for (const std::uint32_t q : ascending) {
-      const std::uint32_t shape = sigma * of_q + q;
+      const std::uint32_t shape = sigma * q_count + q;
       if (!chunk.empty() && (chunk.size() == rows.width || !belongs(data, chunk.front(), shape))) close();
       chunk.push_back(shape);
     }
@@ -69,7 +69,7 @@ std::uint32_t used_members(const Rows& rows, const MomentsRequest& request, cons
   if (request.wanted.empty()) return chunk.count;
   std::uint32_t used = 0;
   for (std::uint32_t member = chunk.first; member < chunk.first + chunk.count; ++member) {
-    used += request.is_wanted(data.entry_of(row.direction, row.index, rows.shape_of[member])) ? 1 : 0;
+    used += request.is_wanted(data.entry_position(row.direction, row.index, rows.shape_positions[member])) ? 1 : 0;
   }
   return used;
 }
@@ -102,21 +102,21 @@ Rows point_rows(const KernelData& data) {
   Rows rows;
   for (std::uint32_t shape = 0; shape < data.shapes.size(); ++shape) add_chunk(rows, data, {&shape, 1});
   for (std::uint32_t point = 0; point < data.directions; ++point) {
-    rows.rows.push_back({point, point, data.shape_of[point]});
+    rows.rows.push_back({point, point, data.shape_positions[point]});
   }
   return rows;
 }
 
 }  // namespace
 
-Rows rows_of(const MomentsRequest& request, const KernelData& data) {
+Rows make_rows(const MomentsRequest& request, const KernelData& data) {
   if (!data.is_grid) return point_rows(data);
   Rows rows = grid_chunks(request, data);
   add_grid_rows(rows, request, data);
   return rows;
 }
 
-std::vector<RowPiece> pieces_of(const Rows& rows, const KernelData& data, std::uint32_t first, std::uint32_t count) {
+std::vector<RowPiece> row_pieces(const Rows& rows, const KernelData& data, std::uint32_t first, std::uint32_t count) {
   const auto same_work = [&](const Row& a, const Row& b) {
     return !data.is_grid || (a.chunk == b.chunk && a.index == b.index);
   };
@@ -129,7 +129,7 @@ std::vector<RowPiece> pieces_of(const Rows& rows, const KernelData& data, std::u
     counts.clear();
     for (std::uint32_t i = begin; i < next; ++i) {
       const Row& row = rows.rows[i];
-      counts.push_back(piece_count(data, rows.theta_of(data, row), rows.shapes[rows.chunks[row.chunk].first]));
+      counts.push_back(piece_count(data, rows.theta_position(data, row), rows.shapes[rows.chunks[row.chunk].first]));
     }
     for (std::uint32_t piece = 0; piece < std::ranges::max(counts); ++piece) {
       for (std::uint32_t i = begin; i < next; ++i) {

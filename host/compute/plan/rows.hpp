@@ -34,21 +34,21 @@ struct RowPiece {
 struct Rows {
   std::uint32_t width = 1;                ///< 1 or kRowWidth
   std::vector<kernel::ShapeNode> shapes;  ///< chunk by chunk; a chunk has one scale, cut, table_scale and cusp_digits
-  std::vector<std::uint32_t> shape_of;    ///< position of each of `shapes` in KernelData::shapes
+  std::vector<std::uint32_t> shape_positions;  ///< position of each of `shapes` in KernelData::shapes
   std::vector<Chunk> chunks;
   std::vector<Row> rows;  ///< ordered by chunk, index and direction
 
-  std::uint32_t theta_of(const KernelData& data, const Row& row) const {
-    return data.theta_of(row.direction, row.index, shape_of[chunks[row.chunk].first]);
+  std::uint32_t theta_position(const KernelData& data, const Row& row) const {
+    return data.theta_position(row.direction, row.index, shape_positions[chunks[row.chunk].first]);
   }
 };
 
 /// Kernel rows with kRowWidth places for entries. If at least half of all places would be empty, the rows have one
 /// place. Which entries share a row depends only on the shapes, not on directions, indices and wanted entries.
-Rows rows_of(const MomentsRequest& request, const KernelData& data);
+Rows make_rows(const MomentsRequest& request, const KernelData& data);
 
 /// The pieces of `count` rows from row `first`. Each invocation of the kernel computes one piece. Pieces with about
 /// equal work are neighbours, because neighbouring invocations wait for each other.
-std::vector<RowPiece> pieces_of(const Rows& rows, const KernelData& data, std::uint32_t first, std::uint32_t count);
+std::vector<RowPiece> row_pieces(const Rows& rows, const KernelData& data, std::uint32_t first, std::uint32_t count);
 
 }  // namespace dolp

@@ -14,9 +14,9 @@ namespace {
 using Values = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 template <class ValueOf>
-Values at_nodes(const ShapePlan& plan, std::span<const Moments> nodes, const ValueOf& value_of) {
+Values at_nodes(const ShapePlan& plan, std::span<const Moments> nodes, const ValueOf& node_value) {
   Values values(static_cast<Eigen::Index>(plan.sigma.nodes.size()), static_cast<Eigen::Index>(plan.q.nodes.size()));
-  for (Eigen::Index i = 0; i < values.size(); ++i) values.data()[i] = value_of(nodes[static_cast<std::size_t>(i)]);
+  for (Eigen::Index i = 0; i < values.size(); ++i) values.data()[i] = node_value(nodes[static_cast<std::size_t>(i)]);
   return values;
 }
 
@@ -57,15 +57,15 @@ class Interpolation {
 
 void interpolate_column(const ShapePlan& plan, const Interpolation& interpolated, std::span<const Moments> nodes,
                         std::size_t k, std::span<Moments> moments) {
-  for (Moments& of_entry : moments) of_entry.columns.resize(k + 1);
+  for (Moments& entry : moments) entry.columns.resize(k + 1);
   for (double ColumnMoments::*component : {&ColumnMoments::i, &ColumnMoments::q}) {
-    const auto value_of = [&](const Moments& node) { return node.columns[k].*component; };
-    const auto bound_of = [&](const Moments& node) {
+    const auto node_value = [&](const Moments& node) { return node.columns[k].*component; };
+    const auto node_bound = [&](const Moments& node) {
       const ColumnMoments& column = node.columns[k];
       return column.error + std::max(std::abs(column.i_apart), std::abs(column.q_apart)) +
              column.relative_error * std::abs(column.*component);
     };
-    const auto [value, error] = interpolated(at_nodes(plan, nodes, value_of), at_nodes(plan, nodes, bound_of));
+    const auto [value, error] = interpolated(at_nodes(plan, nodes, node_value), at_nodes(plan, nodes, node_bound));
     for (std::size_t i = 0; i < moments.size(); ++i) {
       moments[i].columns[k].*component = value.data()[i];
       moments[i].columns[k].error = std::max(moments[i].columns[k].error, error.data()[i]);
@@ -192,7 +192,7 @@ void interpolate(const ShapePlan& plan, std::span<const Moments> nodes, std::spa
     interpolate_column(plan, interpolated, nodes, k, moments);
   double evaluations = 0.0;
   for (const Moments& node : nodes) evaluations += node.evaluations;
-  for (Moments& of_entry : moments) of_entry.evaluations = evaluations / static_cast<double>(moments.size());
+  for (Moments& entry : moments) entry.evaluations = evaluations / static_cast<double>(moments.size());
 }
 
 }  // namespace dolp

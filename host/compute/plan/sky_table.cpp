@@ -83,7 +83,7 @@ struct Corner {
   Eigen::RowVectorXd bend;  // for each function, the jump of its slope df/du
 };
 
-std::vector<Corner> corners_of(const SkyBasis& basis) {
+std::vector<Corner> sky_corners(const SkyBasis& basis) {
   constexpr double kStep = 1e-4;
   std::vector<Corner> corners;
   const std::vector<double>& ends_deg = basis.nodes().ends_deg();
@@ -100,7 +100,7 @@ std::vector<Corner> corners_of(const SkyBasis& basis) {
   return corners;
 }
 
-Eigen::RowVectorXd bends_of(std::span<const Corner> corners, Eigen::Index functions) {
+Eigen::RowVectorXd bend_norms(std::span<const Corner> corners, Eigen::Index functions) {
   Eigen::RowVectorXd squares = Eigen::RowVectorXd::Zero(functions);
   for (const Corner& corner : corners) squares += corner.bend.cwiseAbs2();
   return squares.cwiseSqrt();
@@ -110,7 +110,7 @@ Eigen::RowVectorXd bends_of(std::span<const Corner> corners, Eigen::Index functi
 std::size_t split_corners(std::span<const Corner> corners, Eigen::Index functions, double tolerance) {
   const std::size_t most = std::min<std::size_t>(corners.size(), DOLP_MOST_SKY_CORNERS);
   std::size_t split = 0;
-  while (split < most && bends_of(corners.subspan(split), functions).maxCoeff() > kMostBends * tolerance) ++split;
+  while (split < most && bend_norms(corners.subspan(split), functions).maxCoeff() > kMostBends * tolerance) ++split;
   return split;
 }
 
@@ -137,10 +137,10 @@ SkyTable append_sky(const SkyBasis& basis, const SkyTolerances& tolerances, bool
   table.log2_cells = static_cast<std::uint32_t>(std::countr_zero(cells));
   const Eigen::MatrixXd& ends = table_cells.ends();
   table.has_cusp = splits && (ends.row(1) - ends.row(0)).cwiseAbs().maxCoeff() * cells > kLeastBend;
-  std::vector<Corner> corners = corners_of(basis);
+  std::vector<Corner> corners = sky_corners(basis);
   const auto split = static_cast<std::ptrdiff_t>(splits ? split_corners(corners, ends.cols(), tolerances.integral) : 0);
   table.corners = static_cast<std::uint32_t>(split);
-  const Eigen::RowVectorXd bends = bends_of(std::span(corners).subspan(static_cast<std::size_t>(split)), ends.cols());
+  const Eigen::RowVectorXd bends = bend_norms(std::span(corners).subspan(static_cast<std::size_t>(split)), ends.cols());
   for (Eigen::Index k = 0; k < ends.cols(); ++k) {
     table.bends.push_back(bends[k]);
     for (Eigen::Index i = 0; i + 1 < ends.rows(); ++i) nodes.push_back({ends(i, k), ends(i + 1, k) - ends(i, k)});

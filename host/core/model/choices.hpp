@@ -23,23 +23,23 @@ enum class Mode { kHemispherical, kBistatic };
 enum class Precision { kAuto, kFloat, kDouble };
 
 /// The names of the enumerators in scene files and reports, in the order of declaration.
-constexpr auto words_of(Distribution) { return std::array{"cauchy", "gaussian"}; }
-constexpr auto words_of(Masking) { return std::array{"none", "v-cavity", "integral", "smith"}; }
-constexpr auto words_of(Scattering) { return std::array{"single", "multiple"}; }
-constexpr auto words_of(EmissionModel) { return std::array{"moments", "fresnel", "direct"}; }
-constexpr auto words_of(DiffusePolarisation) { return std::array{"none", "transmission"}; }
-constexpr auto words_of(Mode) { return std::array{"hemispherical", "bistatic"}; }
-constexpr auto words_of(Precision) { return std::array{"auto", "float", "double"}; }
+constexpr auto choice_names(Distribution) { return std::array{"cauchy", "gaussian"}; }
+constexpr auto choice_names(Masking) { return std::array{"none", "v-cavity", "integral", "smith"}; }
+constexpr auto choice_names(Scattering) { return std::array{"single", "multiple"}; }
+constexpr auto choice_names(EmissionModel) { return std::array{"moments", "fresnel", "direct"}; }
+constexpr auto choice_names(DiffusePolarisation) { return std::array{"none", "transmission"}; }
+constexpr auto choice_names(Mode) { return std::array{"hemispherical", "bistatic"}; }
+constexpr auto choice_names(Precision) { return std::array{"auto", "float", "double"}; }
 
 template <class Choice>
-constexpr const char* name_of(Choice choice) requires requires {
-  words_of(choice);
+constexpr const char* to_name(Choice choice) requires requires {
+  choice_names(choice);
 }
-{ return words_of(choice)[static_cast<std::size_t>(choice)]; }
+{ return choice_names(choice)[static_cast<std::size_t>(choice)]; }
 
 template <class Choice>
 constexpr std::optional<Choice> named(std::string_view word) {
-  const auto words = words_of(Choice{});
+  const auto words = choice_names(Choice{});
   const auto found = std::ranges::find(words, word);
   if (found == words.end()) return std::nullopt;
   return static_cast<Choice>(found - words.begin());

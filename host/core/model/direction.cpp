@@ -21,17 +21,17 @@ double zenith_before_limit_deg(Masking masking, double zenith_deg) {
   return keeps_projected_area(masking) && zenith_deg == 90.0 ? kNearGrazingDeg : zenith_deg;
 }
 
-Treatment treatment_of(Distribution distribution, Masking masking, double theta_deg, const SlopeShape& shape) {
+Treatment choose_treatment(Distribution distribution, Masking masking, double theta_deg, const SlopeShape& shape) {
   if (is_mirror(shape)) return Treatment::kMirror;
   const bool has_heavy_tail = distribution == Distribution::kCauchy && shape.q <= kDivergentQ;
   const bool diverges = theta_deg == 90.0 && has_heavy_tail && !keeps_projected_area(masking);
   return diverges ? Treatment::kDivergentLimit : Treatment::kIntegrated;
 }
 
-Direction direction_of(Distribution distribution, Masking masking, double theta_deg, const SlopeShape& shape) {
+Direction make_direction(Distribution distribution, Masking masking, double theta_deg, const SlopeShape& shape) {
   Direction direction;
   direction.theta_deg = theta_deg;
-  direction.treatment = treatment_of(distribution, masking, theta_deg, shape);
+  direction.treatment = choose_treatment(distribution, masking, theta_deg, shape);
   const bool is_integrated = direction.treatment == Treatment::kIntegrated;
   direction.used_deg = is_integrated ? zenith_before_limit_deg(masking, theta_deg) : theta_deg;
   const bool is_mirror_limit = direction.treatment == Treatment::kMirror && theta_deg == 90.0;

@@ -21,9 +21,9 @@ struct Direction {
   Treatment treatment = Treatment::kIntegrated;
 };
 
-Treatment treatment_of(Distribution distribution, Masking masking, double theta_deg, const SlopeShape& shape);
+Treatment choose_treatment(Distribution distribution, Masking masking, double theta_deg, const SlopeShape& shape);
 
-Direction direction_of(Distribution distribution, Masking masking, double theta_deg, const SlopeShape& shape);
+Direction make_direction(Distribution distribution, Masking masking, double theta_deg, const SlopeShape& shape);
 
 bool is_mirror(const SlopeShape& shape);
 

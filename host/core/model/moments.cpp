@@ -21,14 +21,14 @@ double MomentsRequest::finer_tolerance(double share) const {
 
 MomentsPoint MomentsRequest::operator[](std::size_t entry) const {
   if (layout == Layout::kList) return {theta_deg[entry], {sigma[entry], q[entry]}, optics[entry]};
-  const std::size_t of_sigma = entry / q.size();
-  const std::size_t of_theta = of_sigma / sigma.size();
-  return {theta_deg[of_theta % theta_deg.size()],
-          {sigma[of_sigma % sigma.size()], q[entry % q.size()]},
-          optics[of_theta / theta_deg.size()]};
+  const std::size_t sigma_quotient = entry / q.size();
+  const std::size_t theta_quotient = sigma_quotient / sigma.size();
+  return {theta_deg[theta_quotient % theta_deg.size()],
+          {sigma[sigma_quotient % sigma.size()], q[entry % q.size()]},
+          optics[theta_quotient / theta_deg.size()]};
 }
 
-MomentsRequest MomentsRequest::of_directions(std::span<const std::size_t> directions) const {
+MomentsRequest MomentsRequest::select_directions(std::span<const std::size_t> directions) const {
   MomentsRequest part = *this;
   part.theta_deg.clear();
   part.wanted.clear();

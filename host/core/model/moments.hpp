@@ -73,7 +73,7 @@ struct MomentsRequest {
   std::size_t shapes() const { return sigma.size() * q.size(); }
   MomentsPoint operator[](std::size_t entry) const;
   /// This request for only some directions of a grid, given by their positions in `theta_deg`.
-  MomentsRequest of_directions(std::span<const std::size_t> directions) const;
+  MomentsRequest select_directions(std::span<const std::size_t> directions) const;
   void append(const MomentsPoint& point);  ///< adds an entry; the request becomes a list
   friend bool operator==(const MomentsRequest&, const MomentsRequest&) = default;
 };

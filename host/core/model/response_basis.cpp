@@ -26,7 +26,7 @@ constexpr std::size_t kMostTried = 32;        // at most so many indices determi
 
 using CurveCoefficients = Eigen::Matrix<double, kCoefficients, 2>;  ///< columns: ResponseWeights::absorbed and split
 
-CurveCoefficients coefficients_of(const FacetOptics& index, double c0) {
+CurveCoefficients curve_coefficients(const FacetOptics& index, double c0) {
   static const std::vector<double> points = lobatto_points(kCoefficients);
   static const Eigen::MatrixXd transform = chebyshev_coefficients(kCoefficients);
   CurveCoefficients values;
@@ -39,21 +39,21 @@ CurveCoefficients coefficients_of(const FacetOptics& index, double c0) {
 }
 
 /// Bounds of the errors of both reflectance curves if only the first `count` coefficients are kept.
-Eigen::RowVector2d errors_of(const CurveCoefficients& all, Eigen::Index count) {
+Eigen::RowVector2d tail_errors(const CurveCoefficients& all, Eigen::Index count) {
   return all.bottomRows(kCoefficients - count).cwiseAbs().colwise().sum() +
          kCoefficients * all.bottomRows<kLastOfCurve>().cwiseAbs().colwise().maxCoeff();
 }
 
 /// Number of polynomials that the reflectances of an index need; kMostResponses + 1 if kMostResponses are too few.
 std::size_t needed(const FacetOptics& index, double c0, double tolerance) {
-  const CurveCoefficients all = coefficients_of(index, c0);
+  const CurveCoefficients all = curve_coefficients(index, c0);
   const double most = kReach * tolerance * reflectance_level(index);
   std::size_t count = 2;
-  while (count <= kMostResponses && !(errors_of(all, static_cast<Eigen::Index>(count)).maxCoeff() <= most)) ++count;
+  while (count <= kMostResponses && !(tail_errors(all, static_cast<Eigen::Index>(count)).maxCoeff() <= most)) ++count;
   return count;
 }
 
-std::vector<FacetOptics> candidates_of(const std::vector<FacetOptics>& indices, std::size_t most) {
+std::vector<FacetOptics> candidate_indices(const std::vector<FacetOptics>& indices, std::size_t most) {
   std::vector<FacetOptics> candidates;
   const std::size_t count = std::min(indices.size(), most);
   for (std::size_t i = 0; i < count; ++i) {
@@ -81,8 +81,8 @@ double distance_of_bend(const FacetOptics& optics) {
 
 std::shared_ptr<const ResponseBasis> ResponseBasis::of(const std::vector<FacetOptics>& indices, double tolerance,
                                                        std::size_t passes) {
-  const std::vector<FacetOptics> tried = candidates_of(indices, kMostTried);
-  const double of_candidate = static_cast<double>(indices.size()) / static_cast<double>(tried.size());
+  const std::vector<FacetOptics> tried = candidate_indices(indices, kMostTried);
+  const double indices_per_candidate = static_cast<double>(indices.size()) / static_cast<double>(tried.size());
   std::shared_ptr<ResponseBasis> basis(new ResponseBasis);
   basis->tolerance_ = tolerance;
   double least = static_cast<double>(indices.size()) / kLeastGain;
@@ -91,8 +91,8 @@ std::shared_ptr<const ResponseBasis> ResponseBasis::of(const std::vector<FacetOp
     for (const FacetOptics& index : tried) counts.push_back(needed(index, c0, tolerance));
     for (const std::size_t count : kCounts) {
       const auto left = static_cast<double>(std::ranges::count_if(counts, [&](auto own) { return own > count; }));
-      const double time =
-          static_cast<double>(passes) * (1.0 + kTimeOfResponse * static_cast<double>(count)) + left * of_candidate;
+      const double time = static_cast<double>(passes) * (1.0 + kTimeOfResponse * static_cast<double>(count)) +
+                          left * indices_per_candidate;
       if (time >= least) continue;
       least = time;
       basis->count_ = count;
@@ -102,7 +102,7 @@ std::shared_ptr<const ResponseBasis> ResponseBasis::of(const std::vector<FacetOp
   if (basis->count_ == 0) return nullptr;
   double lowest = std::numeric_limits<double>::infinity();
   basis->bend_ = basis->c0_;
-  for (const FacetOptics& index : candidates_of(indices, kMostCandidates)) {
+  for (const FacetOptics& index : candidate_indices(indices, kMostCandidates)) {
     if (needed(index, basis->c0_, tolerance) > basis->count_) continue;
     basis->bend_ = std::min(basis->bend_, distance_of_bend(index));
     // The reference must not have total reflection, which would enlarge the error bounds of all responses.
@@ -111,14 +111,14 @@ std::shared_ptr<const ResponseBasis> ResponseBasis::of(const std::vector<FacetOp
     basis->reference_ = index;
   }
   if (std::isinf(lowest)) return nullptr;
-  basis->of_reference_ = *basis->weights_of(basis->reference_);
+  basis->reference_weights_ = *basis->find_weights(basis->reference_);
   return basis;
 }
 
-std::optional<ResponseWeights> ResponseBasis::weights_of(const FacetOptics& index) const {
-  const CurveCoefficients all = coefficients_of(index, c0_);
+std::optional<ResponseWeights> ResponseBasis::find_weights(const FacetOptics& index) const {
+  const CurveCoefficients all = curve_coefficients(index, c0_);
   const auto count = static_cast<Eigen::Index>(count_);
-  const Eigen::RowVector2d errors = errors_of(all, count);
+  const Eigen::RowVector2d errors = tail_errors(all, count);
   if (!(errors.maxCoeff() <= kReach * tolerance_ * reflectance_level(index))) return std::nullopt;
   return ResponseWeights{all.col(0).head(count), all.col(1).head(count), errors[0], errors[1]};
 }

@@ -35,15 +35,15 @@ class ResponseBasis {
   double c0() const { return c0_; }
   /// Distance from the cosines [0, 1] to the nearest complex cosine c where asinh(c / c0) or a reflectance is singular.
   double bend() const { return bend_; }
-  const ResponseWeights& of_reference() const { return of_reference_; }
+  const ResponseWeights& reference_weights() const { return reference_weights_; }
   /// Weights for moments of `index`; nullopt if it needs more than count() responses, as with total reflection.
-  std::optional<ResponseWeights> weights_of(const FacetOptics& index) const;
+  std::optional<ResponseWeights> find_weights(const FacetOptics& index) const;
 
  private:
   ResponseBasis() = default;
 
   FacetOptics reference_;
-  ResponseWeights of_reference_;
+  ResponseWeights reference_weights_;
   std::size_t count_ = 0;
   double c0_ = 1.0;
   double bend_ = 1.0;

@@ -13,8 +13,8 @@ static_assert(kCuttingOrder.size() == kAxisCount);
 
 }  // namespace
 
-Axes axes_of(std::vector<double> theta_deg, std::vector<double> sigma, std::vector<double> q,
-             std::vector<double> wavelength_um, std::vector<double> n, std::vector<double> k) {
+Axes make_axes(std::vector<double> theta_deg, std::vector<double> sigma, std::vector<double> q,
+               std::vector<double> wavelength_um, std::vector<double> n, std::vector<double> k) {
   Axes axes;
   axes[Axis::kWavelength] = std::move(wavelength_um);
   axes[Axis::kN] = std::move(n);
@@ -25,7 +25,7 @@ Axes axes_of(std::vector<double> theta_deg, std::vector<double> sigma, std::vect
   return axes;
 }
 
-Axes part_of(const Axes& axes, const PerAxis& first, const PerAxis& count) {
+Axes axes_part(const Axes& axes, const PerAxis& first, const PerAxis& count) {
   Axes part;
   for (const Axis axis : kAllAxes) {
     const auto begin = axes[axis].begin() + static_cast<std::ptrdiff_t>(first[axis]);
@@ -40,14 +40,14 @@ PerAxis positions_on_axes(std::size_t position, const PerAxis& counts) {
   return on_axes;
 }
 
-PerAxis counts_of(const Axes& axes) {
+PerAxis axis_counts(const Axes& axes) {
   PerAxis counts;
   std::ranges::transform(axes, counts.begin(),
                          [](const auto& values) { return std::max<std::size_t>(values.size(), 1); });
   return counts;
 }
 
-std::size_t size_of(const PerAxis& counts) {
+std::size_t grid_size(const PerAxis& counts) {
   return std::accumulate(counts.begin(), counts.end(), std::size_t{1}, std::multiplies<>());
 }
 
@@ -58,7 +58,7 @@ void set_value(SceneVariant& variant, Axis axis, double value) {
   if (axis == Axis::kTemperature) variant.temperature_K = value;
 }
 
-std::vector<SceneVariant> variants_of(const Axes& axes) {
+std::vector<SceneVariant> grid_variants(const Axes& axes) {
   std::vector<SceneVariant> variants = {{}};
   for (const Axis axis : kVariantAxes) {
     if (axes[axis].empty()) continue;
@@ -71,14 +71,14 @@ std::vector<SceneVariant> variants_of(const Axes& axes) {
   return variants;
 }
 
-SceneEntries SceneEntries::of_grid(Axes axes, const OpticalConstants& index) {
+SceneEntries SceneEntries::grid(Axes axes, const OpticalConstants& index) {
   SceneEntries entries;
   entries.is_grid_ = true;
-  entries.counts_ = counts_of(axes);
+  entries.counts_ = axis_counts(axes);
   for (const Axis axis : kAllAxes) {
-    if (description_of(axis).is_required && axes[axis].empty()) entries.counts_ = {};
+    if (describe(axis).is_required && axes[axis].empty()) entries.counts_ = {};
   }
-  entries.variants_ = variants_of(axes);
+  entries.variants_ = grid_variants(axes);
   entries.whole_ = entries.counts_;
   entries.whole_axes_ = std::make_shared<const Axes>(axes);
   entries.axes_ = std::move(axes);
@@ -87,7 +87,7 @@ SceneEntries SceneEntries::of_grid(Axes axes, const OpticalConstants& index) {
 }
 
 SceneEntries SceneEntries::grid(std::vector<double> theta_deg, std::vector<double> sigma, std::vector<double> q) {
-  return of_grid(axes_of(std::move(theta_deg), std::move(sigma), std::move(q)), {});
+  return grid(make_axes(std::move(theta_deg), std::move(sigma), std::move(q)), {});
 }
 
 std::size_t SceneEntries::variant_at(const PerAxis& on_axes) const {
@@ -97,8 +97,8 @@ std::size_t SceneEntries::variant_at(const PerAxis& on_axes) const {
 }
 
 OpticalConstants SceneEntries::index_at(const PerAxis& on_axes) const {
-  const auto at = [&](Axis axis, double of_scene) {
-    return axes_[axis].empty() ? of_scene : axes_[axis][on_axes[axis]];
+  const auto at = [&](Axis axis, double scene_value) {
+    return axes_[axis].empty() ? scene_value : axes_[axis][on_axes[axis]];
   };
   return {at(Axis::kN, index_.n), at(Axis::kK, index_.k)};
 }
@@ -115,14 +115,14 @@ SceneEntry SceneEntries::operator[](std::size_t entry) const {
 }
 
 SceneEntries SceneEntries::part(const PerAxis& first, const PerAxis& count) const {
-  SceneEntries part = of_grid(part_of(axes_, first, count), index_);
+  SceneEntries part = grid(axes_part(axes_, first, count), index_);
   part.whole_ = whole_;
   part.whole_axes_ = whole_axes_;
   for (const Axis axis : kAllAxes) part.first_[axis] = first_[axis] + first[axis];
   return part;
 }
 
-std::optional<std::size_t> SceneEntries::position_of(std::size_t in_whole) const {
+std::optional<std::size_t> SceneEntries::find_position(std::size_t in_whole) const {
   const PerAxis on_axes = positions_on_axes(in_whole, whole_);
   std::size_t position = 0;
   for (std::size_t i = 0; i < on_axes.size(); ++i) {
@@ -146,12 +146,12 @@ SceneEntries SceneEntries::chosen(std::span<const std::size_t> positions) const 
   points.reserve(positions.size());
   for (const std::size_t position : positions) {
     SceneEntry& point = points.emplace_back((*this)[position]);
-    std::uint32_t& of_variant = number[point.variant];
-    if (of_variant == kUnused) {
-      of_variant = static_cast<std::uint32_t>(variants.size());
+    std::uint32_t& variant_number = number[point.variant];
+    if (variant_number == kUnused) {
+      variant_number = static_cast<std::uint32_t>(variants.size());
       variants.push_back(variants_[point.variant]);
     }
-    point.variant = of_variant;
+    point.variant = variant_number;
   }
   if (variants.empty()) variants = {{}};
   return {std::move(points), std::move(variants)};
@@ -170,13 +170,13 @@ std::vector<SceneEntries> SceneEntries::parts(std::size_t most) const {
   const std::function<void(PerAxis, PerAxis, std::size_t)> cut_along = [&](PerAxis first, PerAxis count,
                                                                            std::size_t number) {
     const Axis axis = kCuttingOrder[number];
-    const std::size_t of_one = size_of(count) / count[axis];
-    const std::size_t fit = std::clamp<std::size_t>(most / of_one, 1, count[axis]);
+    const std::size_t entries_per_value = grid_size(count) / count[axis];
+    const std::size_t fit = std::clamp<std::size_t>(most / entries_per_value, 1, count[axis]);
     const std::size_t all = count[axis];
     for (std::size_t i = 0; i < all; i += fit) {
       first[axis] = i;
       count[axis] = std::min(fit, all - i);
-      if (of_one > most && number + 1 < kCuttingOrder.size()) {
+      if (entries_per_value > most && number + 1 < kCuttingOrder.size()) {
         cut_along(first, count, number + 1);
       } else {
         parts.push_back(part(first, count));
@@ -193,8 +193,9 @@ void for_each_run(const PerAxis& first, const PerAxis& count, const PerAxis& who
   std::size_t slowest = count.size() - 1;
   while (slowest > 0 && count[slowest] == whole[slowest]) --slowest;
   const auto from = static_cast<std::ptrdiff_t>(slowest);
-  const std::size_t of_run = std::accumulate(count.begin() + from, count.end(), std::size_t{1}, std::multiplies<>());
-  const std::size_t runs = size_of(count) / of_run;
+  const std::size_t entries_per_run =
+      std::accumulate(count.begin() + from, count.end(), std::size_t{1}, std::multiplies<>());
+  const std::size_t runs = grid_size(count) / entries_per_run;
   for (std::size_t run = 0; run < runs; ++run) {
     PerAxis at = first;
     for (std::size_t i = slowest, rest = run; i-- > 0;) {
@@ -203,7 +204,7 @@ void for_each_run(const PerAxis& first, const PerAxis& count, const PerAxis& who
     }
     std::size_t in_whole = 0;
     for (std::size_t i = 0; i < whole.size(); ++i) in_whole = in_whole * whole[i] + at[i];
-    use({run * of_run, in_whole, of_run});
+    use({run * entries_per_run, in_whole, entries_per_run});
   }
 }
 

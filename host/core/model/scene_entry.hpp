@@ -19,18 +19,19 @@
 
 namespace dolp {
 
-Axes axes_of(std::vector<double> theta_deg, std::vector<double> sigma, std::vector<double> q,
-             std::vector<double> wavelength_um = {}, std::vector<double> n = {}, std::vector<double> k = {});
+Axes make_axes(std::vector<double> theta_deg, std::vector<double> sigma, std::vector<double> q,
+               std::vector<double> wavelength_um = {}, std::vector<double> n = {}, std::vector<double> k = {});
 
 /// Cuts each axis to count[axis] values, from position first[axis] on. Empty axes stay empty.
-Axes part_of(const Axes& axes, const PerAxis& first, const PerAxis& count);
+Axes axes_part(const Axes& axes, const PerAxis& first, const PerAxis& count);
 
 /// The position on each axis of entry number `position` in a table. `counts`: number of values on each axis.
 PerAxis positions_on_axes(std::size_t position, const PerAxis& counts);
 
-/// counts_of: number of values on each axis, where an empty axis counts as 1. size_of: the product of these numbers.
-PerAxis counts_of(const Axes& axes);
-std::size_t size_of(const PerAxis& counts);
+/// axis_counts: number of values on each axis, where an empty axis counts as 1. grid_size: the product of these
+/// numbers.
+PerAxis axis_counts(const Axes& axes);
+std::size_t grid_size(const PerAxis& counts);
 
 struct SceneEntry {
   double theta_deg = 0.0;
@@ -62,7 +63,7 @@ inline constexpr std::array kVariantAxes = {Axis::kMaterial, Axis::kBand, Axis::
 
 void set_value(SceneVariant& variant, Axis axis, double value);
 
-std::vector<SceneVariant> variants_of(const Axes& axes);
+std::vector<SceneVariant> grid_variants(const Axes& axes);
 
 /// `count` entries that are consecutive in a part of a grid (from `in_part`) and in the whole grid (from `in_whole`).
 struct GridRun {
@@ -79,11 +80,11 @@ class SceneEntries {
       : variants_(std::move(variants)), points_(std::move(points)) {}
   SceneEntries(std::initializer_list<SceneEntry> points) : points_(points) {}
   /// `index`: index of the surface. It gives k if the grid has an axis of n only, and n if it has an axis of k only.
-  static SceneEntries of_grid(Axes axes, const OpticalConstants& index);
+  static SceneEntries grid(Axes axes, const OpticalConstants& index);
   static SceneEntries grid(std::vector<double> theta_deg, std::vector<double> sigma, std::vector<double> q);
 
   bool is_grid() const { return is_grid_; }
-  std::size_t size() const { return is_grid_ ? size_of(counts_) : points_.size(); }
+  std::size_t size() const { return is_grid_ ? grid_size(counts_) : points_.size(); }
   bool empty() const { return size() == 0; }
   SceneEntry operator[](std::size_t entry) const;
   auto all() const {
@@ -119,7 +120,7 @@ class SceneEntries {
   const PerAxis& whole() const { return whole_; }     ///< number of values on each axis of the whole grid
   const Axes& whole_axes() const { return *whole_axes_; }
   /// Converts an entry's position in the whole grid to its position in this part; nullopt if the part lacks the entry.
-  std::optional<std::size_t> position_of(std::size_t in_whole) const;
+  std::optional<std::size_t> find_position(std::size_t in_whole) const;
 
  private:
   bool is_grid_ = false;

@@ -131,7 +131,7 @@ SkyBasis::SkyBasis(SkyNodes nodes, const std::vector<Eigen::VectorXd>& functions
     double largest = tolerance;
     for (const Eigen::VectorXd& function : functions) {
       const double scale = function.cwiseAbs().maxCoeff();
-      const double error = scale > 0.0 ? weights_of(function).error / scale : 0.0;
+      const double error = scale > 0.0 ? find_weights(function).error / scale : 0.0;
       if (error <= largest) continue;
       largest = error;
       worst = &function;
@@ -143,7 +143,7 @@ SkyBasis::SkyBasis(SkyNodes nodes, const std::vector<Eigen::VectorXd>& functions
   }
 }
 
-SkyWeights SkyBasis::weights_of(const Eigen::VectorXd& function) const {
+SkyWeights SkyBasis::find_weights(const Eigen::VectorXd& function) const {
   if (size() == 0) return {{}, function.cwiseAbs().maxCoeff()};
   SkyWeights weights;
   weights.of = sums_.solve(function);

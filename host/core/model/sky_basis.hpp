@@ -63,7 +63,7 @@ class SkyBasis {
   const SkyNodes& nodes() const { return nodes_; }
   std::size_t size() const { return static_cast<std::size_t>(values_.cols()); }
   Eigen::RowVectorXd at(double zenith_deg) const { return nodes_.at(zenith_deg, values_); }
-  SkyWeights weights_of(const Eigen::VectorXd& function) const;
+  SkyWeights find_weights(const Eigen::VectorXd& function) const;
   SkyBasis only(std::size_t function) const {
     return {nodes_, {values_.col(static_cast<Eigen::Index>(function))}, 0.0};
   }

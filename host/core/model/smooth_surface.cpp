@@ -61,11 +61,11 @@ SmoothAbsorptance bare_absorptance(const OpticalConstants& index, double cosine)
   const double real =
       is_small ? square.real() - (1.0 - cosine) * (1.0 + cosine) : (n - 1.0) * (n + 1.0) - k * k + cosine * cosine;
   const Complex w = std::sqrt(Complex(real, square.imag()));
-  const double of_s = std::norm(cosine + w);
-  const double of_p = std::norm(square * cosine + w);
+  const double s_denominator = std::norm(cosine + w);
+  const double p_denominator = std::norm(square * cosine + w);
   const double transmitted = 4.0 * cosine * w.real();
-  return {transmitted / of_s, 4.0 * cosine * (std::conj(square) * w).real() / of_p,
-          transmitted / of_s * (std::norm(square - 1.0) / of_p)};
+  return {transmitted / s_denominator, 4.0 * cosine * (std::conj(square) * w).real() / p_denominator,
+          transmitted / s_denominator * (std::norm(square - 1.0) / p_denominator)};
 }
 
 /// (R_s - R_p) / 2 between the first two rows of measured reflectances, at sin^2(beta) = `sin2`, before it is limited.

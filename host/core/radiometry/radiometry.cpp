@@ -295,7 +295,7 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
   }
   const std::span<const Reflectance> reflectances(reflected.data(), reflected.size());
   const EmissionModel model = emission_model(scene_);
-  const auto emissivities_of = [&](EmissionModel of) {
+  const auto model_emissivities = [&](EmissionModel of) {
     boost::container::small_vector<Emissivity, 1> list;
     for (std::size_t j = 0; j < moments.size(); ++j) {
       list.push_back(of == EmissionModel::kFresnel ? fresnel_emissivity(optics.facets[j], cos_theta)
@@ -305,7 +305,7 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
     }
     return list;
   };
-  const auto list = emissivities_of(model);
+  const auto list = model_emissivities(model);
   const std::span<const Emissivity> emissivities(list.data(), list.size());
   Stokes sum = stokes_sum(kept_rule_, reflectances, emissivities, model, cos_theta, !bistatic);
   Stokes sky;
@@ -330,7 +330,7 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
   set_dolp(result, sum);
   if (scene_.emission) add_emissivity(result, rule_, emissivities, cos_theta);
   if (scene_.emission && scene_.emission->has_bracket) {
-    const auto direct = emissivities_of(EmissionModel::kDirect);
+    const auto direct = model_emissivities(EmissionModel::kDirect);
     const Bracket between = bracket(scene_, kept_rule_, reflectances, {direct.data(), direct.size()}, sky, cos_theta);
     result[kDolpLow] = between.low;
     result[kDolpHigh] = between.high;

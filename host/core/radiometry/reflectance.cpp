@@ -61,26 +61,26 @@ double mean_weight(const SpectralSample& sample, MeanLight light, double cos_the
 MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Reflectance> reflectances,
                                  double cos_theta) {
   const MeanLight light = mean_light(rule, cos_theta);
-  const auto weight_of = [&](const SpectralSample& sample) { return mean_weight(sample, light, cos_theta); };
+  const auto sample_weight = [&](const SpectralSample& sample) { return mean_weight(sample, light, cos_theta); };
   MeanReflectance mean;
   double total = 0.0;
   double rho_i_error = 0.0;
   double rho_q_error = 0.0;
   for (std::size_t j = 0; j < reflectances.size(); ++j) {
     const Reflectance& r = reflectances[j];
-    const double weight = weight_of(rule.samples[j]);
+    const double weight = sample_weight(rule.samples[j]);
     total += weight;
     mean.rho_i += weight * r.rho_i;
     mean.rho_q += weight * r.rho_q;
     rho_i_error += std::abs(weight) * (r.rho_i_error + rule.relative_error * std::abs(r.rho_i));
     rho_q_error += std::abs(weight) * (r.rho_q_error + rule.relative_error * std::abs(r.rho_q));
   }
-  const auto error_of = [&](double Reflectance::*rho) {
+  const auto spectral_error = [&](double Reflectance::*rho) {
     return panel_error(
-        rule, [&](std::size_t j, std::size_t m) { return weight_of(rule.samples[j]) * (reflectances[m].*rho); });
+        rule, [&](std::size_t j, std::size_t m) { return sample_weight(rule.samples[j]) * (reflectances[m].*rho); });
   };
-  rho_i_error += error_of(&Reflectance::rho_i);
-  rho_q_error += error_of(&Reflectance::rho_q);
+  rho_i_error += spectral_error(&Reflectance::rho_i);
+  rho_q_error += spectral_error(&Reflectance::rho_q);
   mean.rho_i /= total;
   mean.rho_q /= total;
   mean.error = std::max(rho_i_error, rho_q_error) / total;

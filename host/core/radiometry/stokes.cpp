@@ -72,7 +72,7 @@ struct Span {
   double half = 0.0;
 };
 
-Span span_of(const std::vector<double>& values) {
+Span value_span(const std::vector<double>& values) {
   if (values.empty()) return {};
   const auto [least, most] = std::ranges::minmax(values);
   return {0.5 * (least + most), 0.5 * (most - least)};
@@ -92,7 +92,7 @@ Stokes stokes_sum(const SpectralRule& rule, std::span<const Reflectance> reflect
       add_emitting_sample(sum, rule.samples[j], reflectances[j], emissivities[j], direct, rounding);
     }
   }
-  const auto error_of = [&](double Reflectance::*rho, double Emissivity::*emissivity) {
+  const auto spectral_error = [&](double Reflectance::*rho, double Emissivity::*emissivity) {
     return panel_error(rule, [&](std::size_t j, std::size_t m) {
       const SpectralSample& sample = rule.samples[j];
       const double direct = with_source ? sample.irradiance * cos_theta : 0.0;
@@ -101,8 +101,8 @@ Stokes stokes_sum(const SpectralRule& rule, std::span<const Reflectance> reflect
       return sample.emitted * (emissivities[m].*emissivity) + (direct + sample.surroundings) * reflected;
     });
   };
-  sum.i_error += error_of(&Reflectance::rho_i, &Emissivity::i);
-  sum.q_error += error_of(&Reflectance::rho_q, &Emissivity::q);
+  sum.i_error += spectral_error(&Reflectance::rho_i, &Emissivity::i);
+  sum.q_error += spectral_error(&Reflectance::rho_q, &Emissivity::q);
   return sum;
 }
 
@@ -143,7 +143,7 @@ void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std:
     sum.q_error += std::abs(rho.q) * error + rho.error * std::abs(sky.value);
   }
   if (weights.empty() || surface.specular == 0.0) return;
-  const auto error_of = [&](double ColumnMoments::*part) {
+  const auto spectral_error = [&](double ColumnMoments::*part) {
     return panel_error(rule, [&](std::size_t j, std::size_t m) {
       double term = 0.0;
       for (std::size_t k = 0; k < moments[m].columns.size(); ++k)
@@ -151,8 +151,8 @@ void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std:
       return surface.specular / cos_theta * term;
     });
   };
-  sum.i_error += error_of(&ColumnMoments::i);
-  sum.q_error += error_of(&ColumnMoments::q);
+  sum.i_error += spectral_error(&ColumnMoments::i);
+  sum.q_error += spectral_error(&ColumnMoments::q);
 }
 
 void add_beam(Stokes& sum, double k_s, const SpectralRule& rule, std::span<const Scattered> scattered,
@@ -172,14 +172,14 @@ void add_beam(Stokes& sum, double k_s, const SpectralRule& rule, std::span<const
     sum.q_error += error + rounding * std::abs(diffuse_q);
     sum.u_error += error;
   }
-  const auto error_of = [&](double Scattered::*part) {
+  const auto spectral_error = [&](double Scattered::*part) {
     return panel_error(rule, [&](std::size_t j, std::size_t m) {
       return pi * k_s * rule.samples[j].irradiance / cos_theta_r * (scattered[m].*part);
     });
   };
-  sum.i_error += error_of(&Scattered::i);
-  sum.q_error += error_of(&Scattered::q);
-  sum.u_error += error_of(&Scattered::u);
+  sum.i_error += spectral_error(&Scattered::i);
+  sum.q_error += spectral_error(&Scattered::q);
+  sum.u_error += spectral_error(&Scattered::u);
 }
 
 void add_path(Stokes& sum, const std::optional<Path>& path, double path_exitance) {
@@ -204,7 +204,7 @@ Bracket bracket(const SceneModel& scene, const SpectralRule& rule, std::span<con
   double error = sky.q_error;
   for (std::size_t j = 0; j < reflectances.size(); ++j) {
     const SpectralSample& sample = rule.samples[j];
-    const Span beyond_mean = span_of(sample.sky);
+    const Span beyond_mean = value_span(sample.sky);
     const double net = sample.irradiance * cos_theta + sample.excess + beyond_mean.middle;
     const double rest = std::max(reflectances[j].absorbed - direct[j].i, 0.0);
     q -= net * direct[j].q + beyond_mean.middle * reflectances[j].rho_q;

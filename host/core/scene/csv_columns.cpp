@@ -75,7 +75,7 @@ double in_micrometres(double value, SpectralUnit unit) {
   return value;
 }
 
-std::string names_of(const std::vector<CsvColumn>& columns) {
+std::string column_names(const std::vector<CsvColumn>& columns) {
   std::vector<std::string> names;
   for (const CsvColumn& column : columns) {
     const bool is_spectral = column.name == kSpectralColumn;
@@ -93,7 +93,7 @@ std::string bare_name(std::string_view name) {
   return lower_case(trim(is_pure ? name.substr(0, bracket) : name));
 }
 
-std::optional<std::size_t> position_of(const std::vector<CsvColumn>& columns, std::string_view name) {
+std::optional<std::size_t> column_position(const std::vector<CsvColumn>& columns, std::string_view name) {
   const std::string wanted = bare_name(name);
   const bool is_spectral = spectral_unit(name).has_value();
   const auto found = std::ranges::find_if(columns, [&](const CsvColumn& column) {
@@ -113,7 +113,7 @@ CsvHeader examine(std::vector<std::string> names, const std::vector<CsvColumn>& 
     if (header.fault.empty()) header.fault = std::move(fault);
   };
   for (const std::string& name : header.names) {
-    std::optional<std::size_t> column = position_of(known, name);
+    std::optional<std::size_t> column = column_position(known, name);
     const std::optional<SpectralUnit> unit = spectral_unit(name);
     if (column) ++header.known;
     if (!column && std::ranges::find(ignored, name) == ignored.end()) add_fault(unknown_column(name, known));
@@ -206,7 +206,7 @@ CsvColumns CsvColumns::header_at(CsvReader& reader, const std::vector<CsvColumn>
     reader.stay();
     return *columns;
   }
-  if (reader.has_only_numbers()) reader.fail("the columns must be named first: " + names_of(known));
+  if (reader.has_only_numbers()) reader.fail("the columns must be named first: " + column_names(known));
   const std::vector<Candidate> candidates = header_candidates(reader, known, ignored);
   auto best = std::ranges::find_if(candidates, [](const Candidate& one) { return one.header.fault.empty(); });
   const bool is_header = best != candidates.end();
@@ -218,9 +218,9 @@ CsvColumns CsvColumns::header_at(CsvReader& reader, const std::vector<CsvColumn>
   return {known, best->header};
 }
 
-CsvColumns CsvColumns::first_of(CsvReader& reader, const std::vector<CsvColumn>& known,
-                                const std::vector<std::string>& ignored) {
-  if (!reader.next()) reader.fail("the file is empty; a line of column names is expected: " + names_of(known));
+CsvColumns CsvColumns::read_names(CsvReader& reader, const std::vector<CsvColumn>& known,
+                                  const std::vector<std::string>& ignored) {
+  if (!reader.next()) reader.fail("the file is empty; a line of column names is expected: " + column_names(known));
   return header_at(reader, known, ignored);
 }
 
@@ -250,7 +250,7 @@ CsvColumns::CsvColumns(std::vector<CsvColumn> known) : known_(std::move(known)) 
 CsvColumns::CsvColumns(std::vector<CsvColumn> known, CsvHeader header)
     : known_(std::move(known)), header_(std::move(header)) {}
 
-std::optional<std::size_t> CsvColumns::cell_of(std::string_view name) const {
+std::optional<std::size_t> CsvColumns::find_cell(std::string_view name) const {
   for (std::size_t cell = 0; cell < header_.cells.size(); ++cell) {
     if (header_.cells[cell] && known_[*header_.cells[cell]].name == name) return cell;
   }
@@ -259,7 +259,7 @@ std::optional<std::size_t> CsvColumns::cell_of(std::string_view name) const {
 
 std::optional<double> CsvColumns::number(const CsvReader& row, std::string_view name) const {
   check_width(row);
-  const std::optional<std::size_t> cell = cell_of(name);
+  const std::optional<std::size_t> cell = find_cell(name);
   return cell ? std::optional(number_at(row, *cell)) : std::nullopt;
 }
 
@@ -281,7 +281,7 @@ double CsvColumns::number_at(const CsvReader& row, std::size_t cell) const {
 }
 
 bool CsvColumns::is_nan(const CsvReader& row, std::string_view name) const {
-  const std::optional<std::size_t> cell = cell_of(name);
+  const std::optional<std::size_t> cell = find_cell(name);
   return cell && *cell < row.cells().size() && is_nan_text(row.cells()[*cell]);
 }
 
@@ -300,7 +300,7 @@ std::string unknown_column(std::string_view name, const std::vector<CsvColumn>& 
   for (const CsvColumn& column : known) names.push_back(column.name);
   const std::optional<std::string> near = near_name(name, names);
   return fmt::format("column \"{}\" is unknown; {}allowed are {}", one_line(name),
-                     near ? fmt::format("the nearest known is {}, ", *near) : "", names_of(known));
+                     near ? fmt::format("the nearest known is {}, ", *near) : "", column_names(known));
 }
 
 }  // namespace dolp

@@ -47,8 +47,8 @@ class CsvColumns {
   static CsvColumns header_at(CsvReader& reader, const std::vector<CsvColumn>& known,
                               const std::vector<std::string>& ignored = {});
   /// Goes to the next line, and reads the header there. Errors: also InputError for a text without lines.
-  static CsvColumns first_of(CsvReader& reader, const std::vector<CsvColumn>& known,
-                             const std::vector<std::string>& ignored = {});
+  static CsvColumns read_names(CsvReader& reader, const std::vector<CsvColumn>& known,
+                               const std::vector<std::string>& ignored = {});
   /// The header in the last comment that names the numbers at the reader's line; nullopt if there is no such comment.
   static std::optional<CsvColumns> in_comments(const CsvReader& reader, const std::vector<CsvColumn>& known,
                                                const std::vector<std::string>& ignored = {});
@@ -56,7 +56,7 @@ class CsvColumns {
   /// For a file without a header. Its rows have all columns in the order of `known`.
   explicit CsvColumns(std::vector<CsvColumn> known);
 
-  bool has(std::string_view name) const { return cell_of(name).has_value(); }
+  bool has(std::string_view name) const { return find_cell(name).has_value(); }
 
   const std::vector<std::string>& names() const { return header_.names; }
   /// For each cell of a row, the position of its column in the list of known columns; nullopt if the column is ignored.
@@ -73,7 +73,7 @@ class CsvColumns {
 
  private:
   CsvColumns(std::vector<CsvColumn> known, CsvHeader header);
-  std::optional<std::size_t> cell_of(std::string_view name) const;
+  std::optional<std::size_t> find_cell(std::string_view name) const;
 
   std::vector<CsvColumn> known_;
   CsvHeader header_;

@@ -193,23 +193,23 @@ std::string where(const Material& material, const YAML::Mark& mark) {
   throw InputError(where(material, node.Mark()) + what);
 }
 
-YAML::Node text_of(const Material& material, const YAML::Node& item, const char* key) {
+YAML::Node node_text(const Material& material, const YAML::Node& item, const char* key) {
   const YAML::Node text = item[key];
   if (!text || !text.IsScalar()) fail(material, item, fmt::format("{}: missing; a DATA item must have it", key));
   return text;
 }
 
 /// Reads the numbers in a text of a YAML file. The text after `data: |` begins one line below the mark `|`.
-CsvReader rows_of(const Material& material, const YAML::Node& text) {
+CsvReader text_rows(const Material& material, const YAML::Node& text) {
   const bool is_block = text.Scalar().find('\n') != std::string::npos;
   return {text.Scalar(),
           material.source,
           {.separator = ' ', .first_line = static_cast<std::size_t>(text.Mark().line) + (is_block ? 2 : 1)}};
 }
 
-std::vector<double> numbers_of(const Material& material, const YAML::Node& text, const char* key) {
+std::vector<double> parse_numbers(const Material& material, const YAML::Node& text, const char* key) {
   std::vector<double> numbers;
-  for (CsvReader row = rows_of(material, text); row.next();) {
+  for (CsvReader row = text_rows(material, text); row.next();) {
     for (std::size_t i = 0; i < row.cells().size(); ++i) numbers.push_back(row.number(i, key));
   }
   return numbers;
@@ -218,13 +218,13 @@ std::vector<double> numbers_of(const Material& material, const YAML::Node& text,
 /// Reads a DATA item with a formula for n. known_range() needs rows in the table of n. So the table gets two rows: the
 /// first and the last wavelength at which the formula gives an allowed n.
 void read_formula(Material& material, const YAML::Node& item, int number) {
-  const YAML::Node range = text_of(material, item, "wavelength_range");
-  const YAML::Node coefficients = text_of(material, item, "coefficients");
-  const std::vector<double> ends_um = numbers_of(material, range, "wavelength_range");
+  const YAML::Node range = node_text(material, item, "wavelength_range");
+  const YAML::Node coefficients = node_text(material, item, "coefficients");
+  const std::vector<double> ends_um = parse_numbers(material, range, "wavelength_range");
   if (ends_um.size() != 2) {
     fail(material, range, fmt::format("wavelength_range = {}: must be two numbers, in um", one_line(range.Scalar())));
   }
-  const Dispersion formula{number, numbers_of(material, coefficients, "coefficients")};
+  const Dispersion formula{number, parse_numbers(material, coefficients, "coefficients")};
   const std::vector<std::size_t> counts = coefficient_counts(number);
   if (std::ranges::find(counts, formula.coefficients.size()) == counts.end()) {
     fail(material, coefficients,
@@ -248,7 +248,7 @@ void read_formula(Material& material, const YAML::Node& item, int number) {
   material.n.formula = formula;
 }
 
-int formula_of(std::string_view type) {
+int formula_number(std::string_view type) {
   int number = kDispersionFormulas;
   while (number > 0 && type != fmt::format("formula {}", number)) --number;
   return number;
@@ -266,9 +266,9 @@ void check_keys(const Material& material, const YAML::Node& item, const std::vec
 
 void read_item(Material& material, IndexRows& rows, const YAML::Node& item) {
   if (!item.IsMap()) fail(material, item, "a DATA item has the keys type and data");
-  const YAML::Node type = text_of(material, item, "type");
+  const YAML::Node type = node_text(material, item, "type");
   const std::string& name = type.Scalar();
-  const int formula = formula_of(name);
+  const int formula = formula_number(name);
   const bool is_nk = name == "tabulated nk", has_n = is_nk || name == "tabulated n";
   if (formula == 0 && !has_n && name != "tabulated k") {
     fail(material, type,
@@ -288,7 +288,7 @@ void read_item(Material& material, IndexRows& rows, const YAML::Node& item) {
   if (has_n) names.emplace_back("n");
   if (!has_n || is_nk) names.emplace_back("k");
   const CsvColumns columns(record_columns(names));
-  for (CsvReader row = rows_of(material, text_of(material, item, "data")); row.next();) rows.add(row, columns);
+  for (CsvReader row = text_rows(material, node_text(material, item, "data")); row.next();) rows.add(row, columns);
   rows.end_table();
 }
 

@@ -65,7 +65,7 @@ std::vector<ColumnRule> column_rules(PointsKind kind, const std::vector<std::str
   for (const Axis axis : kColumnOrder) {
     const bool is_of_shape = axis == Axis::kSigma || axis == Axis::kQ || axis == Axis::kN || axis == Axis::kK;
     if (has_pairs && !is_of_shape) continue;
-    rules.push_back({description_of(axis).column, description_of(axis).range, axis});
+    rules.push_back({describe(axis).column, describe(axis).range, axis});
   }
   rules.push_back({kWind.column, kWind.range, Axis::kSigma, true});
   append_film_rules(rules, names);
@@ -143,7 +143,7 @@ void parse_row(const CsvReader& row, const CsvColumns& columns, const std::vecto
   for (std::size_t cell = 0; cell < columns.cells().size(); ++cell) {
     if (!columns.cells()[cell]) continue;
     const ColumnRule& rule = rules[*columns.cells()[cell]];
-    if (const Axis* const axis = std::get_if<Axis>(&rule.column); axis && description_of(*axis).has_labels) {
+    if (const Axis* const axis = std::get_if<Axis>(&rule.column); axis && describe(*axis).has_labels) {
       std::vector<std::string>& labels = points.labels[*axis];
       if (cell >= row.cells().size()) row.fail(rule.name + ": the value is missing");
       const auto known = std::ranges::find(labels, row.cells()[cell]);
@@ -181,7 +181,7 @@ std::vector<FilmValue> Points::films_at(std::size_t row) const {
 
 std::vector<double> label_positions(const Points& points, Axis axis, const AxisLabels& known) {
   const std::vector<std::string>& labels = known[axis];
-  const auto position_of = [&](double value) -> std::optional<double> {
+  const auto label_position = [&](double value) -> std::optional<double> {
     const std::vector<std::string>& given = points.labels[axis];
     if (given.empty())
       return value < static_cast<double>(labels.size()) ? std::optional(std::floor(value)) : std::nullopt;
@@ -195,9 +195,9 @@ std::vector<double> label_positions(const Points& points, Axis axis, const AxisL
   };
   std::vector<double> positions;
   for (std::size_t row = 0; row < points.size(); ++row) {
-    const std::optional<double> position = position_of((*points[axis])[row]);
+    const std::optional<double> position = label_position((*points[axis])[row]);
     if (!position) {
-      throw InputError(fmt::format("{}: {} = {}: must be one of {}", points.where(row), description_of(axis).column,
+      throw InputError(fmt::format("{}: {} = {}: must be one of {}", points.where(row), describe(axis).column,
                                    points.text_at(axis, row),
                                    labels.empty() ? "none: the grid has no such axis" : join(labels)));
     }
@@ -206,7 +206,7 @@ std::vector<double> label_positions(const Points& points, Axis axis, const AxisL
   return positions;
 }
 
-Points points_of(std::span<const Column> columns, std::size_t count, PointsKind kind) {
+Points make_points(std::span<const Column> columns, std::size_t count, PointsKind kind) {
   std::vector<std::string> names;
   std::ranges::transform(columns, std::back_inserter(names),
                          [](const Column& column) { return std::string(column.name); });
@@ -241,7 +241,7 @@ Points parse_points(const std::string& text, const std::string& path_name, Point
   points.name = input_name(path_name);
   CsvReader row(text, points.name, {.separator = std::nullopt, .has_blank_lines = false});
   const std::vector<ColumnRule> rules = column_rules(kind, header_words(text));
-  const CsvColumns columns = CsvColumns::first_of(row, csv_columns(rules), results);
+  const CsvColumns columns = CsvColumns::read_names(row, csv_columns(rules), results);
   points.header_line = row.line_number();
   add_columns(columns, rules, points);
   while (row.next()) parse_row(row, columns, rules, points);

@@ -59,7 +59,7 @@ inline double value_or(const Points::Column& column, std::size_t row, double fal
 std::vector<double> label_positions(const Points& points, Axis axis, const AxisLabels& known);
 
 /// Points from arrays. Errors: errors of read_points, and InputError if a column's length is neither 1 nor `count`.
-Points points_of(std::span<const Column> columns, std::size_t count, PointsKind kind);
+Points make_points(std::span<const Column> columns, std::size_t count, PointsKind kind);
 
 /// Reads the points in the CSV file at `path` ("-" is stdin). A header without rows is a valid list of no points.
 /// Leaves out columns whose names are in `results`. Angles are in degrees. delta_phi_deg = 180 is the specular side.

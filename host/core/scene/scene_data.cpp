@@ -30,8 +30,8 @@ const KnownData* stored_data(const SceneValues& scene, const auto& name) {
 /// Reads a file that a scene names. If the scene comes from a table and the table's scene names the file too (`known`),
 /// messages begin with `prefix` and quote no text of the file: a table of somebody else may name any file.
 template <class Read>
-auto read_file_of(SceneValues& scene, const std::string& file, const std::string& prefix, const KnownData* known,
-                  const Read& read) {
+auto read_scene_file(SceneValues& scene, const std::string& file, const std::string& prefix, const KnownData* known,
+                     const Read& read) {
   const std::string& path = scene.files.emplace_back(resolve_path(file, scene.path_name));
   if (!known) return read(path);
   if (!known->may_open_files) {
@@ -101,7 +101,7 @@ void load_material(SceneValues& scene, const SceneDocument& document, const Mate
     if (material.is_constant()) return;
     material = fit_to_spectrum(material, scene.spectrum, prefix);
   } else if (is_file) {
-    material = read_file_of(scene, file, prefix, known, [&](const std::string& path) {
+    material = read_scene_file(scene, file, prefix, known, [&](const std::string& path) {
       Material read = read_material_file(path, scene.spectrum, prefix);
       check_axis(read);
       return read;
@@ -193,8 +193,8 @@ void load_materials(SceneValues& scene, const SceneDocument& document) {
   ReflectanceTable table =
       known && known->reflectance
           ? *known->reflectance
-          : read_file_of(scene, scene.names.reflectance_file, prefix, known,
-                         [&](const std::string& path) { return read_reflectance_file(path, prefix); });
+          : read_scene_file(scene, scene.names.reflectance_file, prefix, known,
+                            [&](const std::string& path) { return read_reflectance_file(path, prefix); });
   if (!table.wavelength_um.empty()) check_covers({table.wavelength_um, {}}, all_wavelengths(scene), prefix);
   surface.reflectance = std::make_shared<const ReflectanceTable>(std::move(table));
 }
@@ -213,8 +213,8 @@ void load_source(SceneValues& scene, const SceneDocument& document) {
   } else if (is_preset) {
     source.table = sun_irradiance();
   } else {
-    source.table = read_file_of(scene, scene.names.source_file, prefix, known,
-                                [&](const std::string& path) { return read_irradiance_file(path, prefix); });
+    source.table = read_scene_file(scene, scene.names.source_file, prefix, known,
+                                   [&](const std::string& path) { return read_irradiance_file(path, prefix); });
   }
   check_covers(source.table, all_wavelengths(scene), prefix);
 }
@@ -239,8 +239,8 @@ void load_profile(SceneValues& scene, const SceneDocument& document) {
                                  near ? "; the nearest is " + *near : ""));
   }
   if (!profile) {
-    profile = read_file_of(scene, scene.names.profile, prefix, known,
-                           [&](const std::string& path) { return read_sky_profile(path, prefix); });
+    profile = read_scene_file(scene, scene.names.profile, prefix, known,
+                              [&](const std::string& path) { return read_sky_profile(path, prefix); });
   }
   if (!profile->wavelength_um.empty()) check_covers({profile->wavelength_um, {}}, all_wavelengths(scene), prefix);
   scene.surroundings->set_sky(std::move(*profile));

@@ -246,7 +246,7 @@ const toml::node* SceneDocument::find(std::string_view key) const {
   return node;
 }
 
-const std::string* SceneDocument::origin_of(std::string_view key) const {
+const std::string* SceneDocument::find_origin(std::string_view key) const {
   for (;;) {
     if (const auto found = origins_.find(key); found != origins_.end()) return &found->second;
     if (table_part(key).empty()) return nullptr;
@@ -254,7 +254,7 @@ const std::string* SceneDocument::origin_of(std::string_view key) const {
   }
 }
 
-unsigned SceneDocument::line_of(std::string_view key) const {
+unsigned SceneDocument::line_number(std::string_view key) const {
   for (; !key.empty(); key = table_part(key)) {
     const toml::node* node = find(key);
     if (node && node->source().begin.line > 0) return node->source().begin.line;
@@ -266,10 +266,10 @@ std::string SceneDocument::prefix(std::string_view key) const {
   const toml::node* node = find(key);
   // A missing part of an axis, such as grid.sigma.to, is the fault of the setting that gave the whole axis.
   const bool is_of_value = node != nullptr || find_scene_key(table_part(key)) != nullptr;
-  if (const std::string* origin = is_of_value ? origin_of(key) : nullptr; origin)
+  if (const std::string* origin = is_of_value ? find_origin(key) : nullptr; origin)
     return *origin + ": " + (node ? "" : last_part(key) + ": ");
   const std::string value = node && !node->is_table() ? " = " + one_line(toml_text(*node, false)) : "";
-  return fmt::format("{}:{}: {}{}: ", name_, line_of(key), one_line(key), value);
+  return fmt::format("{}:{}: {}{}: ", name_, line_number(key), one_line(key), value);
 }
 
 std::string SceneDocument::first_set(std::initializer_list<std::string> keys) const {

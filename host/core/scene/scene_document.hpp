@@ -28,7 +28,7 @@ class SceneDocument {
 
   const toml::table& root() const { return root_; }
   const toml::node* find(std::string_view key) const;
-  bool is_set(std::string_view key) const { return origin_of(key) != nullptr; }
+  bool is_set(std::string_view key) const { return find_origin(key) != nullptr; }
 
   /// The first of `keys` that a setting gave, else the first of all. Messages blame it if `keys` contradict each other.
   std::string first_set(std::initializer_list<std::string> keys) const;
@@ -40,10 +40,10 @@ class SceneDocument {
   std::string prefix(std::string_view key) const;
 
   /// The line of a key's value. If the key is absent, the line of the innermost table around it, or 1.
-  unsigned line_of(std::string_view key) const;
+  unsigned line_number(std::string_view key) const;
 
  private:
-  const std::string* origin_of(std::string_view key) const;
+  const std::string* find_origin(std::string_view key) const;
   toml::table& create_table(const std::vector<std::string_view>& path, const std::string& origin);
   void drop_other_alternatives(const std::string& key);
   void erase(const std::string& key);

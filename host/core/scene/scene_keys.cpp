@@ -19,14 +19,14 @@ namespace {
 
 using Type = Key::Type;
 
-KeyValue value_of(double number) { return {.number = number}; }
-KeyValue value_of(bool flag) { return {.word = flag ? 1U : 0U, .text = flag ? "true" : "false"}; }
-KeyValue value_of(const std::string& text) { return {.text = text}; }
-KeyValue value_of(const std::vector<double>& numbers) { return {.numbers = numbers}; }
-KeyValue value_of(const std::vector<std::string>& names) { return {.names = names}; }
+KeyValue to_key_value(double number) { return {.number = number}; }
+KeyValue to_key_value(bool flag) { return {.word = flag ? 1U : 0U, .text = flag ? "true" : "false"}; }
+KeyValue to_key_value(const std::string& text) { return {.text = text}; }
+KeyValue to_key_value(const std::vector<double>& numbers) { return {.numbers = numbers}; }
+KeyValue to_key_value(const std::vector<std::string>& names) { return {.names = names}; }
 template <class Choice>
-KeyValue value_of(Choice choice) requires std::is_enum_v<Choice> {
-  return {.word = static_cast<std::size_t>(choice), .text = name_of(choice)};
+KeyValue to_key_value(Choice choice) requires std::is_enum_v<Choice> {
+  return {.word = static_cast<std::size_t>(choice), .text = to_name(choice)};
 }
 void assign(double& number, const KeyValue& v) { number = v.number; }
 void assign(std::optional<double>& number, const KeyValue& v) { number = v.number; }
@@ -44,11 +44,11 @@ template <class Content>
 std::optional<KeyValue> value_at(const Content* at) {
   if (!at) return std::nullopt;
   if constexpr (std::is_same_v<Content, std::optional<double>>) {
-    return *at ? std::optional(value_of(**at)) : std::nullopt;
+    return *at ? std::optional(to_key_value(**at)) : std::nullopt;
   } else if constexpr (requires { at->empty(); }) {
-    return at->empty() ? std::nullopt : std::optional(value_of(*at));
+    return at->empty() ? std::nullopt : std::optional(to_key_value(*at));
   } else {
-    return value_of(*at);
+    return to_key_value(*at);
   }
 }
 
@@ -79,8 +79,8 @@ SceneKey number(const std::string& key, const char* unit, const NumberRange& ran
 
 template <class Choice, class Address>
 SceneKey choice(const char* key, Choice fallback, const char* meaning, Address address) {
-  const auto words = words_of(fallback);
-  return key_at(described(key, Type::kWord, "", {}, name_of(fallback), meaning, {words.begin(), words.end()}), address,
+  const auto words = choice_names(fallback);
+  return key_at(described(key, Type::kWord, "", {}, to_name(fallback), meaning, {words.begin(), words.end()}), address,
                 always);
 }
 
@@ -95,9 +95,10 @@ SceneKey text(const std::string& key, const char* meaning, Address address, IsTh
 }
 
 SceneKey grid_axis(Axis axis, const char* fallback, const char* meaning) {
-  const AxisDescription& of_axis = description_of(axis);
+  const AxisDescription& axis_description = describe(axis);
   return key_at(
-      described(std::string("grid.") + of_axis.column, Type::kAxis, of_axis.units, of_axis.range, fallback, meaning),
+      described(std::string("grid.") + axis_description.column, Type::kAxis, axis_description.units,
+                axis_description.range, fallback, meaning),
       [axis](auto& s) { return &s.grid[axis]; }, always);
 }
 
@@ -122,28 +123,28 @@ void set_wind(SceneValues& s, const KeyValue& v) {
 
 /// Makes a key that gives E0. Its setter also sets the kind of the source.
 SceneKey source_number(const char* key, const char* unit, const char* meaning, Source::Kind kind,
-                       double Source::*number_of) {
+                       double Source::*number_member) {
   const auto is_kind = [kind](const SceneValues& s) { return s.source && s.source->kind == kind; };
   const auto set = [=](SceneValues& s, const KeyValue& v) {
     s.source->kind = kind;
-    (*s.source).*number_of = v.number;
+    (*s.source).*number_member = v.number;
   };
   return with_set(
       number(
-          key, unit, kNonNegativeRange, "", meaning, [=](auto& s) { return &((*s.source).*number_of); }, is_kind),
+          key, unit, kNonNegativeRange, "", meaning, [=](auto& s) { return &((*s.source).*number_member); }, is_kind),
       set);
 }
 
 /// Makes a key for a number of SkyAir. In a scene that has already been read, the key's setter computes the sky again.
 SceneKey air_number(const char* key, const char* unit, const NumberRange& range, const char* meaning,
-                    std::optional<double> SkyAir::*number_of) {
+                    std::optional<double> SkyAir::*number_member) {
   const auto set = [=](SceneValues& s, const KeyValue& v) {
-    s.surroundings->air.*number_of = v.number;
+    s.surroundings->air.*number_member = v.number;
     if (s.document)
       s.surroundings->set_sky(built_in_sky(s.names.profile, s.surroundings->air, key + std::string(": ")).value());
   };
   return with_set(number(key, unit, range, "", meaning,
-                         [=](auto& s) { return s.surroundings ? &(s.surroundings->air.*number_of) : nullptr; }),
+                         [=](auto& s) { return s.surroundings ? &(s.surroundings->air.*number_member) : nullptr; }),
                   set);
 }
 
@@ -162,7 +163,7 @@ SceneKey wind_axis() {
 
 /// Layer number `layer` of the coating, counted from 1. Adds missing layers if the scene is not const.
 template <class Scene>
-auto& layer_of(Scene& s, std::size_t layer) {
+auto& coating_layer(Scene& s, std::size_t layer) {
   if constexpr (!std::is_const_v<Scene>) {
     s.surface.coating.resize(std::max(s.surface.coating.size(), layer));
     s.names.coating.resize(s.surface.coating.size());
@@ -178,11 +179,11 @@ std::vector<SceneKey> layer_keys(std::size_t layer) {
            s.names.coating[layer - 1].material_file.empty();
   };
   const auto index_address = [=](auto OpticalConstants::*part) {
-    return [=](auto& s) { return &(layer_of(s, layer).material.constant.*part); };
+    return [=](auto& s) { return &(coating_layer(s, layer).material.constant.*part); };
   };
   const auto name_address = [=](auto SceneNames::OfLayer::*name) {
     return [=](auto& s) {
-      layer_of(s, layer);
+      coating_layer(s, layer);
       return &(s.names.coating[layer - 1].*name);
     };
   };
@@ -197,7 +198,7 @@ std::vector<SceneKey> layer_keys(std::size_t layer) {
            name_address(&SceneNames::OfLayer::material_file), has_layer),
       number(
           begin + "thickness_um", "um", kThicknessUmRange, "required", "thickness of the film",
-          [=](auto& s) { return &layer_of(s, layer).thickness_um; }, has_layer),
+          [=](auto& s) { return &coating_layer(s, layer).thickness_um; }, has_layer),
   };
   for (SceneKey& key : keys) key.description.layer = layer;
   return keys;

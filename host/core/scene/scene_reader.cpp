@@ -52,21 +52,21 @@ std::vector<std::string> document_keys(const SceneDocument& document) {
     }
   }
   std::stable_sort(keys.begin(), keys.end(), [&](const std::string& a, const std::string& b) {
-    return document.line_of(a) < document.line_of(b);
+    return document.line_number(a) < document.line_number(b);
   });
   return keys;
 }
 
 /// The first of KeyAlternative::heads in the document, or null. Refuses two alternatives, and companions without head.
 const std::string* chosen_key(const SceneDocument& document, const KeyChoice& choice) {
-  const auto first_of = [&](const std::vector<std::string>& keys) -> const std::string* {
+  const auto first_given = [&](const std::vector<std::string>& keys) -> const std::string* {
     const auto found = std::ranges::find_if(keys, [&](const std::string& key) { return document.find(key); });
     return found == keys.end() ? nullptr : &*found;
   };
   const std::string* chosen = nullptr;
   for (const KeyAlternative& alternative : choice.alternatives) {
-    const std::string* const head = first_of(alternative.heads);
-    if (const std::string* const companion = first_of(alternative.companions); companion && !head)
+    const std::string* const head = first_given(alternative.heads);
+    if (const std::string* const companion = first_given(alternative.companions); companion && !head)
       document.fail(*companion, "needs " + alternative.heads.front() + " beside it");
     if (chosen && head) document.fail(*head, "cannot be combined with " + *chosen);
     chosen = head ? head : chosen;
@@ -260,7 +260,7 @@ void apply(SceneDocument& document, const Setting& setting) {
   document.apply(setting);
 }
 
-SceneValues scene_of(const SceneDocument& document, const std::string& path_name, std::shared_ptr<KnownData> known) {
+SceneValues build_scene(const SceneDocument& document, const std::string& path_name, std::shared_ptr<KnownData> known) {
   SceneValues scene = read_keys(document);
   fill_from_grid(scene, document);
   scene.path_name = path_name;
@@ -280,7 +280,7 @@ SceneValues parse_scene(const std::string& text, const std::string& path_name, c
                         std::shared_ptr<KnownData> known) {
   SceneDocument document(text, path_name);
   for (const Setting& setting : settings) apply(document, setting);
-  SceneValues scene = scene_of(document, path_name, std::move(known));
+  SceneValues scene = build_scene(document, path_name, std::move(known));
   scene.text = text;
   scene.settings = settings;
   return scene;
@@ -305,7 +305,7 @@ SceneValues with_settings(const SceneValues& scene, const std::vector<Setting>& 
   }
   SceneDocument document = *scene.document;
   for (const Setting& setting : settings) apply(document, setting);
-  SceneValues changed = scene_of(document, scene.path_name, scene.known);
+  SceneValues changed = build_scene(document, scene.path_name, scene.known);
   changed.text = scene.text;
   changed.settings = scene.settings;
   changed.settings.insert(changed.settings.end(), settings.begin(), settings.end());

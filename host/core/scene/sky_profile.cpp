@@ -72,10 +72,10 @@ constexpr double kVapourHeight_km = 2.0;
 const char* value_column(bool is_radiance) { return is_radiance ? "radiance" : "temperature_K"; }
 
 CsvColumns read_header(CsvReader& reader) {
-  CsvColumns columns = CsvColumns::first_of(reader, {{"zenith_deg", kZenithDegRange, true},
-                                                     {"temperature_K", kBackgroundTemperatureRange},
-                                                     {"radiance", kNonNegativeRange, false, {}, "W m-2 sr-1 um-1"},
-                                                     {"wavelength_um", kWavelengthUmRange}});
+  CsvColumns columns = CsvColumns::read_names(reader, {{"zenith_deg", kZenithDegRange, true},
+                                                       {"temperature_K", kBackgroundTemperatureRange},
+                                                       {"radiance", kNonNegativeRange, false, {}, "W m-2 sr-1 um-1"},
+                                                       {"wavelength_um", kWavelengthUmRange}});
   const bool has_radiance = columns.has("radiance");
   if (columns.has("temperature_K") == has_radiance) {
     reader.fail(fmt::format("needs one of the columns temperature_K, a number in {}, and radiance, W m-2 sr-1 um-1{}",

@@ -215,10 +215,10 @@ ReflectanceTable read_reflectance_file(const std::string& path, const std::strin
 
 ReflectanceTable parse_reflectances(const std::string& text, const std::string& name) {
   CsvReader reader(text, name, kDataFile);
-  const CsvColumns columns = CsvColumns::first_of(reader, {{"beta_deg", kZenithDegRange, true},
-                                                           {"r_s", kFractionRange, true},
-                                                           {"r_p", kFractionRange, true},
-                                                           {"wavelength_um", kWavelengthUmRange}});
+  const CsvColumns columns = CsvColumns::read_names(reader, {{"beta_deg", kZenithDegRange, true},
+                                                             {"r_s", kFractionRange, true},
+                                                             {"r_p", kFractionRange, true},
+                                                             {"wavelength_um", kWavelengthUmRange}});
   ReflectanceTable table;
   std::vector<MeasuredReflectance> measured;
   for (const AngleRow& row : read_angle_rows(reader, columns, "beta_deg", {"r_s", "r_p"}, name)) {
@@ -236,8 +236,8 @@ ReflectanceTable parse_reflectances(const std::string& text, const std::string& 
     measured.back().r_s.push_back(r_s);
     measured.back().r_p.push_back(r_p);
   }
-  for (MeasuredReflectance& of_wavelength : measured)
-    table.measured.push_back(std::make_shared<const MeasuredReflectance>(std::move(of_wavelength)));
+  for (MeasuredReflectance& reflectance : measured)
+    table.measured.push_back(std::make_shared<const MeasuredReflectance>(std::move(reflectance)));
   return table;
 }
 

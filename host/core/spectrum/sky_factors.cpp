@@ -10,7 +10,7 @@ namespace {
 // Allowed error of the sky basis, as a share of the tolerance. Each function of the basis slows a kernel by 1/6.
 constexpr double kBasisShare = 0.02;
 
-Eigen::VectorXd vector_of(const std::vector<double>& values) {
+Eigen::VectorXd to_vector(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
@@ -54,7 +54,7 @@ std::shared_ptr<const SkyBasis> sky_basis(const SceneModel& scene, std::span<con
   if (!scene.surroundings || !scene.surroundings->profile) return nullptr;
   std::vector<Eigen::VectorXd> functions;
   for (const SpectralRule* rule : rules) {
-    for (const SpectralSample& sample : rule->samples) functions.push_back(vector_of(sample.sky));
+    for (const SpectralSample& sample : rule->samples) functions.push_back(to_vector(sample.sky));
   }
   SkyNodes nodes(scene.surroundings->profile->ends_deg());
   auto basis = std::make_shared<const SkyBasis>(std::move(nodes), functions, kBasisShare * scene.accuracy.tolerance);
@@ -65,8 +65,8 @@ std::vector<SkyWeights> sky_weights(const SpectralRule& rule, const SkyBasis* ba
   std::vector<SkyWeights> weights;
   if (!basis || rule.samples.empty() || rule.samples.front().sky.empty()) return weights;
   for (const SpectralSample& sample : rule.samples) {
-    const Eigen::VectorXd sky = vector_of(sample.sky);
-    weights.push_back(basis->weights_of(sky));
+    const Eigen::VectorXd sky = to_vector(sample.sky);
+    weights.push_back(basis->find_weights(sky));
     weights.back().error += basis->nodes().error(sky);
   }
   return weights;

@@ -49,7 +49,7 @@ constexpr double kMostPanels = 32.0;
 constexpr double kMostMirrorPanels = 512.0;
 constexpr double kMostFringes = 256.0;  // largest number of parts into which fringe_ends() divides a band
 
-const SkyProfile* profile_of(const SceneModel& scene) {
+const SkyProfile* scene_profile(const SceneModel& scene) {
   return scene.surroundings ? scene.surroundings->profile.get() : nullptr;
 }
 
@@ -99,7 +99,7 @@ FineNode fine_node(SampledScene& sampled, double wavelength_um, double weight) {
 std::vector<double> temperatures(const SceneModel& scene) {
   std::vector<double> result;
   if (scene.emission) result.push_back(scene.emission->temperature_K);
-  const SkyProfile* profile = profile_of(scene);
+  const SkyProfile* profile = scene_profile(scene);
   if (scene.surroundings && !profile) result.push_back(scene.surroundings->temperature_K);
   if (profile && profile->kind == SkyProfile::Kind::kLayers)
     result.insert(result.end(), {profile->air_K, profile->beyond_K});
@@ -153,16 +153,16 @@ std::vector<double> segment_ends(double from_um, double to_um,
 }  // namespace
 
 SampledScene::SampledScene(const SceneModel& scene) : model(scene) {
-  if (const SkyProfile* profile = profile_of(scene)) sky.emplace(*profile);
+  if (const SkyProfile* profile = scene_profile(scene)) sky.emplace(*profile);
 }
 
 std::vector<FineNode> fine_nodes(SampledScene& scene, double from_um, double to_um) {
   const std::optional<Source>& source = scene.model.source;
   const bool tabulated = source && source->kind == Source::Kind::kTabulated;
-  const SkyProfile* profile = profile_of(scene.model);
-  const std::vector<double> of_source = tabulated ? source->table.wavelength_um : std::vector<double>{};
-  const std::vector<double> of_profile = profile ? profile->breaks_um() : std::vector<double>{};
-  const std::vector<double> ends = segment_ends(from_um, to_um, {&of_source, &of_profile});
+  const SkyProfile* profile = scene_profile(scene.model);
+  const std::vector<double> source_wavelengths = tabulated ? source->table.wavelength_um : std::vector<double>{};
+  const std::vector<double> profile_breaks = profile ? profile->breaks_um() : std::vector<double>{};
+  const std::vector<double> ends = segment_ends(from_um, to_um, {&source_wavelengths, &profile_breaks});
   std::vector<FineNode> nodes;
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) append_fine_nodes(scene, ends[i], ends[i + 1], nodes);
   return nodes;

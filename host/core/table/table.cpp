@@ -16,15 +16,15 @@ namespace {
 
 constexpr std::uint64_t kPositionFactor = 0x9e3779b97f4a7c15U;
 
-std::uint64_t bits_of(double value) { return std::bit_cast<std::uint64_t>(value); }
-std::uint64_t bits_of(std::uint32_t value) { return std::uint64_t{value} + 1U; }
+std::uint64_t value_bits(double value) { return std::bit_cast<std::uint64_t>(value); }
+std::uint64_t value_bits(std::uint32_t value) { return std::uint64_t{value} + 1U; }
 
 template <class Value>
 std::uint64_t sum_of_values(std::span<const Value> values, std::size_t first_position) {
   std::uint64_t sum = 0;
   std::uint64_t factor = first_position * kPositionFactor;
   for (const Value value : values) {
-    sum += bits_of(value) * (factor | 1U);
+    sum += value_bits(value) * (factor | 1U);
     factor += kPositionFactor;
   }
   return sum;
@@ -37,7 +37,7 @@ std::vector<double> slice(const std::vector<double>& list, std::size_t first, st
 
 }  // namespace
 
-std::string spectral_data_of(const TableHead& head) {
+std::string spectral_data_text(const TableHead& head) {
   std::string text;
   for (const TableCurve& described : kTableCurves) {
     const Curve& curve = head.*described.curve;
@@ -78,7 +78,7 @@ void take_spectral_data(TableHead& head, const std::string& name) {
   head.attributes.erase(found);
 }
 
-std::string coordinates_of(const TableHead& head) {
+std::string coordinate_names(const TableHead& head) {
   std::vector<std::string> names;
   if (!head.axes[Axis::kMaterial].empty()) names.emplace_back(kMaterialName.name);
   if (!head.axes[Axis::kBand].empty()) names.insert(names.end(), {kBandLow.name, kBandHigh.name});
@@ -89,14 +89,14 @@ std::string coordinates_of(const TableHead& head) {
   return fmt::format("{}", fmt::join(names, " "));
 }
 
-TableLayout layout_of(const TableValues& table) {
+TableLayout values_layout(const TableValues& table) {
   TableLayout layout{static_cast<const TableHead&>(table), table.quantities(), !table.status.empty()};
   std::ranges::copy_if(kAllResponseVariables, std::back_inserter(layout.responses),
                        [&](ResponseVariable variable) { return !table.responses[variable].empty(); });
   return layout;
 }
 
-ResultColumns columns_of(std::span<const PointResult> results, const Quantities& quantities) {
+ResultColumns result_columns(std::span<const PointResult> results, const Quantities& quantities) {
   constexpr std::size_t kEntriesAtOnce = 16384;
   ResultColumns columns;
   for (const Quantity quantity : quantities) columns[quantity].resize(results.size());
@@ -111,12 +111,12 @@ ResultColumns columns_of(std::span<const PointResult> results, const Quantities&
 }
 
 std::vector<TableBox> boxes_in_order(const PerAxis& counts, std::size_t most) {
-  if (size_of(counts) == 0) return {};
+  if (grid_size(counts) == 0) return {};
   // A box has all values of the last axes, some values of one axis before them, and one value of each earlier axis.
   std::size_t cut = counts.size() - 1;
-  std::size_t of_one = 1;
-  while (cut > 0 && of_one * counts[cut] <= most) of_one *= counts[cut--];
-  const std::size_t at_once = std::clamp<std::size_t>(most / of_one, 1, counts[cut]);
+  std::size_t entries_per_value = 1;
+  while (cut > 0 && entries_per_value * counts[cut] <= most) entries_per_value *= counts[cut--];
+  const std::size_t at_once = std::clamp<std::size_t>(most / entries_per_value, 1, counts[cut]);
   const auto end_of_slow = counts.begin() + static_cast<std::ptrdiff_t>(cut);
   const std::size_t slow = std::accumulate(counts.begin(), end_of_slow, std::size_t{1}, std::multiplies<>());
   std::vector<TableBox> boxes;
@@ -135,9 +135,9 @@ std::vector<TableBox> boxes_in_order(const PerAxis& counts, std::size_t most) {
   return boxes;
 }
 
-TableHead head_of(const TableHead& whole, const TableBox& box) {
+TableHead part_head(const TableHead& whole, const TableBox& box) {
   TableHead head = whole;
-  head.axes = part_of(whole.axes, box.first, box.count);
+  head.axes = axes_part(whole.axes, box.first, box.count);
   if (!head.wind_m_s.empty()) head.wind_m_s = slice(head.wind_m_s, box.first[Axis::kSigma], box.count[Axis::kSigma]);
   for (const TableCurve& described : kTableCurves) {
     std::vector<double>& used = (head.*described.curve).used;
@@ -146,7 +146,7 @@ TableHead head_of(const TableHead& whole, const TableBox& box) {
   return head;
 }
 
-ValueSums sums_of(const TableValues& part, const TableLayout& layout, const PerAxis& first) {
+ValueSums value_sums(const TableValues& part, const TableLayout& layout, const PerAxis& first) {
   ValueSums sums;
   for_each_variable(layout, [&](const auto& of, std::size_t width) {
     std::uint64_t& sum = sums.emplace_back(0);
@@ -158,9 +158,9 @@ ValueSums sums_of(const TableValues& part, const TableLayout& layout, const PerA
   return sums;
 }
 
-void add(ValueSums& sums, const ValueSums& of_part) {
-  sums.resize(of_part.size(), 0);
-  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += of_part[i];
+void add(ValueSums& sums, const ValueSums& part_sums) {
+  sums.resize(part_sums.size(), 0);
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += part_sums[i];
 }
 
 std::string values_hash(const TableLayout& layout, const ValueSums& sums) {
@@ -168,7 +168,7 @@ std::string values_hash(const TableLayout& layout, const ValueSums& sums) {
   std::uint64_t hash = kHashStart;
   for (const Axis axis : kAllAxes) {
     const std::vector<double>& values = head.axes[axis];
-    if (description_of(axis).has_labels) {  // hashes the texts: their numbers differ in a file with a part of the table
+    if (describe(axis).has_labels) {  // hashes the texts: their numbers differ in a file with a part of the table
       for (const double value : values) hash = hashed(hashed(hash, head.label(axis, value)), std::uint64_t{0});
     } else if (axis != Axis::kTemperature || !values.empty()) {  // an old file, which lacks this axis, keeps its hash
       hash = hashed(hash, std::span(values));
@@ -184,8 +184,7 @@ std::string values_hash(const TableLayout& layout, const ValueSums& sums) {
   }
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const char* const other = head.beta_deg.empty() ? "status" : "response";
-    hash = hashed(hash,
-                  std::string_view(i < layout.quantities.size() ? description_of(layout.quantities[i]).name : other));
+    hash = hashed(hash, std::string_view(i < layout.quantities.size() ? describe(layout.quantities[i]).name : other));
     hash = hashed(hash, sums[i]);
   }
   return fmt::format("placed64:{:016x}", hash);

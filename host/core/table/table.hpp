@@ -21,7 +21,7 @@ inline constexpr const char* kConventionsOfFiles = "CF-1.8";
 /// Attribute with the scene's n, k and E0. Each line of its text has a name, a wavelength in um and a value.
 inline constexpr const char* kSpectralData = "spectral_data";
 
-std::string spectral_data_of(const TableHead& head);
+std::string spectral_data_text(const TableHead& head);
 
 /// Moves n, k and E0 from the attribute kSpectralData to `head`'s curves. Errors: InputError that begins with `name`.
 void take_spectral_data(TableHead& head, const std::string& name);
@@ -34,7 +34,7 @@ const Content* find_attribute(const TableHead& head, std::string_view name) {
 
 /// Value of the CF attribute `coordinates`: names, separated by blanks, of coordinates that are no axes, such as
 /// index_n.
-std::string coordinates_of(const TableHead& head);
+std::string coordinate_names(const TableHead& head);
 
 /// The layout of a table: everything that is known before its values.
 struct TableLayout {
@@ -44,7 +44,7 @@ struct TableLayout {
   std::vector<ResponseVariable> responses = {};
 };
 
-TableLayout layout_of(const TableValues& table);
+TableLayout values_layout(const TableValues& table);
 
 /// Calls use(of, width) for each variable, in the order of the file. `of` is a function that returns the variable's
 /// column in a TableValues; `width` is the number of values per entry.
@@ -55,13 +55,13 @@ void for_each_variable(const TableLayout& layout, const Use& use) {
         [=](auto& table) -> auto& { return table[quantity]; }, std::size_t{1});
   for (const ResponseVariable variable : layout.responses)
     use(
-        [=](auto& table) -> auto& { return table.responses[variable]; }, layout.head.width_of(variable));
+        [=](auto& table) -> auto& { return table.responses[variable]; }, layout.head.values_per_entry(variable));
   if (layout.has_status)
     use(
         [](auto& table) -> auto& { return table.status; }, std::size_t{1});
 }
 
-ResultColumns columns_of(std::span<const PointResult> results, const Quantities& quantities);
+ResultColumns result_columns(std::span<const PointResult> results, const Quantities& quantities);
 
 /// A part of a table: on each axis, `count` values from position `first`.
 struct TableBox {
@@ -72,7 +72,7 @@ struct TableBox {
 /// Cuts a table into boxes, in the table's order. A box has at most `most` entries, but at least one.
 std::vector<TableBox> boxes_in_order(const PerAxis& counts, std::size_t most);
 
-TableHead head_of(const TableHead& whole, const TableBox& box);
+TableHead part_head(const TableHead& whole, const TableBox& box);
 
 /// Name of the attribute with the hash of a table's values, by which a reader detects damage.
 inline constexpr const char* kValuesHash = "values_hash";
@@ -80,9 +80,9 @@ inline constexpr const char* kValuesHash = "values_hash";
 /// One checksum per variable, in the order of for_each_variable. The table's checksum is the sum over its parts.
 using ValueSums = std::vector<std::uint64_t>;
 
-ValueSums sums_of(const TableValues& part, const TableLayout& layout, const PerAxis& first);
+ValueSums value_sums(const TableValues& part, const TableLayout& layout, const PerAxis& first);
 
-void add(ValueSums& sums, const ValueSums& of_part);
+void add(ValueSums& sums, const ValueSums& part_sums);
 
 /// Hash over the checksums of all values, the axes, and the optical curves (n, k and E0) that layout.head stores.
 std::string values_hash(const TableLayout& layout, const ValueSums& sums);

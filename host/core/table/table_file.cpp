@@ -30,7 +30,7 @@ std::vector<Axis> present_axes(const Axes& axes) {
 
 template <class Use>
 void each_coordinate(const Axes& axes, std::size_t position, const Use& use) {
-  const PerAxis on_axes = positions_on_axes(position, counts_of(axes));
+  const PerAxis on_axes = positions_on_axes(position, axis_counts(axes));
   for (const Axis axis : kAllAxes) {
     if (!axes[axis].empty()) use(axis, axes[axis][on_axes[axis]]);
   }
@@ -62,7 +62,7 @@ std::string value_text(const Attribute& attribute) {
 /// line, even if this is a comment.
 std::string csv_header(const TableLayout& layout) {
   std::string text;
-  for (const Axis axis : present_axes(layout.head.axes)) (text += description_of(axis).column) += ',';
+  for (const Axis axis : present_axes(layout.head.axes)) (text += describe(axis).column) += ',';
   text += result_header(layout.quantities, layout.has_status) + "\n";
   for (const Attribute& attribute : layout.head.attributes)
     text += "# " + attribute.name + ": " + value_text(attribute) + "\n";
@@ -72,7 +72,7 @@ std::string csv_header(const TableLayout& layout) {
 std::string csv_rows(const TableValues& part, const TableLayout& layout) {
   return result_rows(part, part.size(), layout.quantities, [&](std::string& text, std::size_t position) {
     each_coordinate(part.axes, position, [&](Axis axis, double value) {
-      if (description_of(axis).has_labels) {
+      if (describe(axis).has_labels) {
         text += '"' + layout.head.label(axis, value) + '"';
       } else {
         append_number(text, value);
@@ -88,13 +88,12 @@ std::string npy_header(const TableLayout& layout) {
   constexpr std::size_t kPreambleSize = 10;
   std::string fields, shape;
   for (const Axis axis : present_axes(layout.head.axes)) {
-    const AxisDescription& described = description_of(axis);
+    const AxisDescription& described = describe(axis);
     const std::string type = described.has_labels ? fmt::format("S{}", longest_label(layout.head, axis)) : "<f8";
     fields += fmt::format("('{}', '{}'), ", described.column, type);
     shape += fmt::format("{}{}", shape.empty() ? "" : ", ", layout.head.axes[axis].size());
   }
-  for (const Quantity quantity : layout.quantities)
-    fields += fmt::format("('{}', '<f8'), ", description_of(quantity).name);
+  for (const Quantity quantity : layout.quantities) fields += fmt::format("('{}', '<f8'), ", describe(quantity).name);
   if (layout.has_status) fields += "('status', '<u4'), ";
   std::string header = "{'descr': [" + fields + "], 'fortran_order': False, 'shape': (" + shape + "), }";
   const std::size_t unpadded = kPreambleSize + header.size() + 1;
@@ -116,7 +115,7 @@ std::string npy_rows(const TableValues& part, const TableLayout& layout) {
   std::string bytes;
   for (std::size_t position = 0; position < part.size(); ++position) {
     each_coordinate(part.axes, position, [&](Axis axis, double value) {
-      if (!description_of(axis).has_labels) return append_bytes(bytes, value);
+      if (!describe(axis).has_labels) return append_bytes(bytes, value);
       std::string label = layout.head.label(axis, value);
       label.resize(longest_label(layout.head, axis));
       bytes += label;
@@ -131,7 +130,7 @@ std::string npy_rows(const TableValues& part, const TableLayout& layout) {
 
 std::string result_header(const Quantities& quantities, bool has_status) {
   std::string header;
-  for (const Quantity quantity : quantities) (header += description_of(quantity).name) += ',';
+  for (const Quantity quantity : quantities) (header += describe(quantity).name) += ',';
   if (has_status) return header + "status";
   return header.substr(0, header.size() - 1);
 }
@@ -173,7 +172,7 @@ ResultCsv::ResultCsv(const std::filesystem::path& path, const std::string& colum
 void ResultCsv::append(std::span<const PointResult> results) {
   while (!results.empty()) {
     const std::span<const PointResult> block = results.first(std::min(kBlock, results.size()));
-    write(result_rows(columns_of(block, quantities_), block.size(), quantities_,
+    write(result_rows(result_columns(block, quantities_), block.size(), quantities_,
                       [&](std::string& text, std::size_t row) { start_(text, done_ + row); }));
     done_ += block.size();
     results = results.subspan(block.size());
@@ -184,7 +183,7 @@ void ResultCsv::commit() { file_ ? file_->commit() : write_text_atomically("-", 
 
 void ResultCsv::write(const std::string& text) { file_ ? file_->append(text) : void(text_ += text); }
 
-TableFormat format_of(const fs::path& path) {
+TableFormat table_format(const fs::path& path) {
   const std::string suffix = path.extension().string();
   if (suffix == ".nc") return TableFormat::kNetcdf;
   if (suffix == ".csv" || path == "-") return TableFormat::kCsv;
@@ -193,7 +192,7 @@ TableFormat format_of(const fs::path& path) {
 }
 
 void check_output_path(const fs::path& path) {
-  format_of(path);
+  table_format(path);
   check_writable(path);
 }
 
@@ -206,8 +205,8 @@ std::string table_rows(const TableValues& part, const TableLayout& layout, Table
 }
 
 void write_table(const TableValues& table, const fs::path& path) {
-  const TableFormat format = format_of(path);
-  const TableLayout layout = layout_of(table);
+  const TableFormat format = table_format(path);
+  const TableLayout layout = values_layout(table);
   if (format != TableFormat::kNetcdf && !layout.responses.empty())
     throw InputError(path.string() + ": the name of a response table must end in .nc");
   if (format != TableFormat::kNetcdf)

@@ -47,7 +47,7 @@ class ResultCsv {
 enum class TableFormat { kNetcdf, kCsv, kNpy };
 
 /// Errors: InputError for an unknown suffix.
-TableFormat format_of(const std::filesystem::path& path);
+TableFormat table_format(const std::filesystem::path& path);
 
 /// Refuses an unsuitable output path before the table is computed. Errors: InputError if the suffix is not .nc, .csv or
 /// .npy; IoError if the folder or file cannot be written. "-" is standard output.

@@ -57,7 +57,7 @@ std::optional<std::string> difference(const std::string& identity, const std::st
   return std::nullopt;
 }
 
-TableOutput::TableOutput(Job job) : job_(std::move(job)), format_(format_of(job_.path)) {
+TableOutput::TableOutput(Job job) : job_(std::move(job)), format_(table_format(job_.path)) {
   check_output_path(job_.path);
   if (is_resumable()) {
     check_writable(progress_path(job_.path));
@@ -107,10 +107,10 @@ std::size_t TableOutput::reuse_finished_parts(const std::string& lines) {
   while (parts_done_ < job_.parts.size() && taken < lines.size()) {
     if (job_.progress && !job_.progress(0, job_.layout.head.size()))
       throw Cancelled(partial_path(job_.path).string() + " is as it was: the same command with --resume goes on");
-    const std::optional<ValueSums> of_part = store_->measured(job_.parts[parts_done_]);
-    const auto part_note = first_text(std::string_view(lines).substr(taken), of_part ? part_hash(*of_part) : 0);
-    if (!of_part || !part_note) break;
-    add(sums_, *of_part);
+    const std::optional<ValueSums> part_sums = store_->measured(job_.parts[parts_done_]);
+    const auto part_note = first_text(std::string_view(lines).substr(taken), part_sums ? part_hash(*part_sums) : 0);
+    if (!part_sums || !part_note) break;
+    add(sums_, *part_sums);
     note_ = *part_note;
     ++parts_done_;
     taken = lines.find('\n', taken) + 1;
@@ -118,10 +118,10 @@ std::size_t TableOutput::reuse_finished_parts(const std::string& lines) {
   return parts_done_ > 0 ? taken : 0;
 }
 
-/// Start value of the hash in the progress line of part number parts_done_. `of_part`: checksums of the part.
-std::uint64_t TableOutput::part_hash(const ValueSums& of_part) const {
+/// Start value of the hash in the progress line of part number parts_done_. `part_sums`: checksums of the part.
+std::uint64_t TableOutput::part_hash(const ValueSums& part_sums) const {
   std::uint64_t hash = hashed(hashed(kHashStart, job_.identity), std::uint64_t{parts_done_});
-  for (const std::uint64_t sum : of_part) hash = hashed(hash, sum);
+  for (const std::uint64_t sum : part_sums) hash = hashed(hash, sum);
   return hash;
 }
 
@@ -131,12 +131,12 @@ void TableOutput::write(TableValues part, const PerAxis& first, const std::strin
     parts_done_ = 1;
     return;
   }
-  const ValueSums of_part = store_->write(part, first);
-  add(sums_, of_part);
+  const ValueSums part_sums = store_->write(part, first);
+  add(sums_, part_sums);
   if (is_resumable()) {
     if (!progress_) progress_.emplace(job_.path, progress_path(job_.path));
     const std::string start = progress_->size() == 0 ? progress_line(kHashStart, job_.identity) : "";
-    progress_->append(start + progress_line(part_hash(of_part), note));
+    progress_->append(start + progress_line(part_hash(part_sums), note));
   }
   ++parts_done_;
 }

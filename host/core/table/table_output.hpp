@@ -50,7 +50,7 @@ class TableOutput {
   bool is_resumable() const { return !job_.identity.empty() && job_.parts.size() > 1 && job_.path != "-"; }
   std::string earlier_parts();
   std::size_t reuse_finished_parts(const std::string& lines);
-  std::uint64_t part_hash(const ValueSums& of_part) const;
+  std::uint64_t part_hash(const ValueSums& part_sums) const;
   void write_rows();
 
   Job job_;

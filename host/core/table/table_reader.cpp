@@ -68,7 +68,7 @@ class Reader {
     return status == NC_NOERR ? std::optional(variable) : std::nullopt;
   }
 
-  std::vector<std::size_t> shape_of(int variable, const std::string& name) const {
+  std::vector<std::size_t> variable_shape(int variable, const std::string& name) const {
     int rank = 0;
     call(name, nc_inq_varndims, variable, &rank);
     std::vector<int> dimensions(static_cast<std::size_t>(rank));
@@ -78,7 +78,7 @@ class Reader {
     return shape;
   }
 
-  nc_type type_of(int variable, const std::string& name) const {
+  nc_type variable_type(int variable, const std::string& name) const {
     nc_type type = NC_NAT;
     call(name, nc_inq_vartype, variable, &type);
     return type;
@@ -102,7 +102,7 @@ class Reader {
 std::vector<double> read_numbers(const Reader& reader, const std::string& name, std::size_t most) {
   const std::optional<int> variable = reader.find(name);
   if (!variable) return {};
-  const std::vector<std::size_t> shape = reader.shape_of(*variable, name);
+  const std::vector<std::size_t> shape = reader.variable_shape(*variable, name);
   const std::size_t count = shape.empty() ? 1 : shape.front();
   if (shape.size() > 1) reader.fail(name + ": is not a list");
   if (count > most)
@@ -115,7 +115,7 @@ std::vector<double> read_numbers(const Reader& reader, const std::string& name, 
 
 std::vector<double> read_axis(const Reader& reader, const std::string& name, std::size_t most) {
   const std::optional<int> variable = reader.find(name);
-  if (variable && reader.shape_of(*variable, name).empty())
+  if (variable && reader.variable_shape(*variable, name).empty())
     reader.fail(name + ": has one value and no dimension, as in a part of a table");
   return read_numbers(reader, name, most);
 }
@@ -132,10 +132,10 @@ std::vector<std::string> take_texts(std::vector<char*>& stored) {
 std::vector<std::string> read_texts(const Reader& reader, const std::string& name, std::size_t most) {
   const std::optional<int> variable = reader.find(name);
   if (!variable) return {};
-  std::vector<std::size_t> shape = reader.shape_of(*variable, name);
-  const bool has_letters = reader.type_of(*variable, name) == NC_CHAR;
+  std::vector<std::size_t> shape = reader.variable_shape(*variable, name);
+  const bool has_letters = reader.variable_type(*variable, name) == NC_CHAR;
   if (has_letters && shape.size() == 1) shape.insert(shape.begin(), 1);
-  const bool is_list = has_letters ? shape.size() == 2 : reader.type_of(*variable, name) == NC_STRING;
+  const bool is_list = has_letters ? shape.size() == 2 : reader.variable_type(*variable, name) == NC_STRING;
   if (!is_list || shape.empty() || shape[0] > most) reader.fail(name + ": is not a list of texts");
   const std::size_t width = has_letters ? shape[1] : sizeof(char*);
   if (width > kMostStoredTextBytes) reader.fail(name + ": the text is too long");
@@ -159,7 +159,7 @@ std::vector<std::string> read_texts(const Reader& reader, const std::string& nam
 std::vector<std::string> read_labels(const Reader& reader, Axis axis, std::size_t most) {
   if (axis == Axis::kMaterial && reader.find(kMaterialName.name)) return read_texts(reader, kMaterialName.name, most);
   const std::vector<double> low = read_numbers(reader, kBandLow.name, most);
-  if (axis != Axis::kBand || low.empty()) return read_texts(reader, description_of(axis).name, most);
+  if (axis != Axis::kBand || low.empty()) return read_texts(reader, describe(axis).name, most);
   const std::vector<double> high = read_numbers(reader, kBandHigh.name, low.size());
   if (high.size() != low.size()) reader.fail(kBandHigh.name + std::string(": is cut short"));
   std::vector<std::string> labels;
@@ -234,14 +234,14 @@ struct TableReader::Impl {
     std::size_t most = kMostTableEntries;
     for (const Axis axis : kAllAxes) {
       std::vector<double>& values = head.axes[axis];
-      if (description_of(axis).has_labels) {
+      if (describe(axis).has_labels) {
         head.labels[axis] = read_labels(reader, axis, most);
         values.resize(head.labels[axis].size());
         std::iota(values.begin(), values.end(), 0.0);
       } else {
-        values = read_axis(reader, description_of(axis).name, most);
+        values = read_axis(reader, describe(axis).name, most);
       }
-      if (values.empty() && description_of(axis).is_required)
+      if (values.empty() && describe(axis).is_required)
         reader.fail("is not a table of dolp (no axis theta, sigma or q)");
       most /= std::max<std::size_t>(values.size(), 1);
     }
@@ -260,7 +260,7 @@ struct TableReader::Impl {
       if (!values.empty()) shape.push_back(values.size());
     }
     shape.insert(shape.end(), more.begin(), more.end());
-    if (reader.shape_of(*variable, name) != shape)
+    if (reader.variable_shape(*variable, name) != shape)
       reader.fail(fmt::format("is not a table of dolp ({} is not over its axes)", name));
     reader.check_claim(name, head.size() * value_bytes * (more.empty() ? 1 : more.front()));
     open.emplace_back(name, *variable);
@@ -269,14 +269,14 @@ struct TableReader::Impl {
 
   void find_variables() {
     for (const Quantity quantity : kAllQuantities) {
-      const QuantityDescription& described = description_of(quantity);
+      const QuantityDescription& described = describe(quantity);
       if (!find(described.name, sizeof(double))) continue;
       layout.quantities.push_back(quantity);
       if (described.has_stokes_units)
         head.stokes_units = find_text(reader, open.back().second, "units").value_or(head.stokes_units);
     }
     for (const ResponseVariable variable : kAllResponseVariables) {
-      const ResponseDescription& described = description_of(variable);
+      const ResponseDescription& described = describe(variable);
       std::vector<std::size_t> more;
       if (described.has_beta) more.push_back(head.beta_deg.size());
       if (!head.beta_deg.empty() && find(described.name, sizeof(double), more)) layout.responses.push_back(variable);
@@ -304,7 +304,7 @@ struct TableReader::Impl {
     const auto& [name, variable] = open[number];
     int rank = 0;
     reader.call(name, nc_inq_varndims, variable, &rank);
-    values.resize(size_of(box.count) * width);
+    values.resize(grid_size(box.count) * width);
     const int status = get_values(reader.file(), variable, Hyperslab(head, box, rank, width), values.data());
     if (status != NC_NOERR) reader.fail(name + ": cannot be read; the file is damaged");
   }
@@ -324,7 +324,7 @@ TableReader::~TableReader() = default;
 const TableLayout& TableReader::layout() const { return impl_->layout; }
 
 TableValues TableReader::read(const TableBox& box) const {
-  TableValues part{head_of(head(), box)};
+  TableValues part{part_head(head(), box)};
   std::size_t number = 0;
   for_each_variable(layout(), [&](const auto& of, std::size_t width) { impl_->read(number++, box, of(part), width); });
   return part;
@@ -339,8 +339,8 @@ void TableReader::check_hash(const ValueSums& sums) const {
       "not all values");
 }
 
-ValueSums TableReader::sums_of(const TableValues& part, const TableBox& box) const {
-  return dolp::sums_of(part, layout(), box.first);
+ValueSums TableReader::value_sums(const TableValues& part, const TableBox& box) const {
+  return dolp::value_sums(part, layout(), box.first);
 }
 
 TableValues TableReader::read_entries(std::span<const std::size_t> positions, const Progress& progress) const {
@@ -351,13 +351,13 @@ TableValues TableReader::read_entries(std::span<const std::size_t> positions, co
   for (const TableBox& box : boxes_in_order(head().counts(), at_once)) {
     if (progress && !progress(before, head().size())) throw Cancelled();
     const TableValues part = read(box);
-    add(sums, sums_of(part, box));
-    const std::size_t end = before + size_of(box.count);
+    add(sums, value_sums(part, box));
+    const std::size_t end = before + grid_size(box.count);
     for (; !positions.empty() && positions.front() < end; positions = positions.subspan(1)) {
       const std::size_t position = positions.front() - before;
       for_each_variable(layout(), [&](const auto& of, std::size_t width) {
-        const auto of_entry = std::span(of(part)).subspan(position * width, width);
-        of(entries).insert(of(entries).end(), of_entry.begin(), of_entry.end());
+        const auto entry_values = std::span(of(part)).subspan(position * width, width);
+        of(entries).insert(of(entries).end(), entry_values.begin(), entry_values.end());
       });
     }
     before = end;
@@ -377,7 +377,7 @@ std::vector<Attribute> read_attributes(const fs::path& path) {
     if (!curve.wavelength_um.empty()) curve.values = read_numbers(reader, described.name, kMostTableEntries);
     if (curve.values.size() != curve.wavelength_um.size()) reader.fail(described.name + std::string(": is cut short"));
   }
-  if (std::string data = spectral_data_of(head); !data.empty())
+  if (std::string data = spectral_data_text(head); !data.empty())
     head.attributes.push_back({kSpectralData, std::move(data)});
   return head.attributes;
 }
@@ -386,7 +386,7 @@ TableValues read_table(const fs::path& path) {
   const TableReader reader(path);
   const TableBox all{{}, reader.head().counts()};
   TableValues table = reader.read(all);
-  reader.check_hash(reader.sums_of(table, all));
+  reader.check_hash(reader.value_sums(table, all));
   return table;
 }
 

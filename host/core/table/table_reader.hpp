@@ -25,7 +25,7 @@ class TableReader {
   /// Reads the entries at the ascending `positions`, and checks the hash of the whole table. May also throw Cancelled.
   TableValues read_entries(std::span<const std::size_t> positions, const Progress& progress) const;
 
-  ValueSums sums_of(const TableValues& part, const TableBox& box) const;
+  ValueSums value_sums(const TableValues& part, const TableBox& box) const;
   /// Refuses a file that lacks a hash, or whose values changed since dolp wrote them. `sums`: checksums of the table.
   void check_hash(const ValueSums& sums) const;
 
@@ -34,8 +34,8 @@ class TableReader {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The attributes of a table, from which table_scene() restores the scene. Does not look at axes and values, so the file
-/// may hold a part of a table. Errors: InputError.
+/// The attributes of a table, from which table_scene() restores the scene. Does not look at axes and values, so the
+/// file may hold a part of a table. Errors: InputError.
 std::vector<Attribute> read_attributes(const std::filesystem::path& path);
 
 }  // namespace dolp

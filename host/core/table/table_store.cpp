@@ -41,8 +41,8 @@ bool has_large_variable(const TableLayout& layout) {
 std::string present_qualifiers(const TableLayout& layout, Quantity quantity) {
   if (!layout.head.beta_deg.empty()) return kResponseQualifier;
   std::vector<std::string_view> present;
-  for (const std::string_view name : split(description_of(quantity).ancillary, ' ')) {
-    const auto is_named = [name](Quantity other) { return name == description_of(other).name; };
+  for (const std::string_view name : split(describe(quantity).ancillary, ' ')) {
+    const auto is_named = [name](Quantity other) { return name == describe(other).name; };
     const bool is_status = layout.has_status && name == kStatusQualifier;
     if (is_status || std::ranges::any_of(layout.quantities, is_named)) present.push_back(name);
   }
@@ -123,7 +123,7 @@ struct TableStore::Impl {
   }
   int define_over_entries(const char* name, nc_type type, const std::vector<int>& over) {
     variables.push_back(define(name, type, over));
-    if (const std::string names = coordinates_of(layout.head); !names.empty())
+    if (const std::string names = coordinate_names(layout.head); !names.empty())
       put_text(variables.back(), "coordinates", names);
     return variables.back();
   }
@@ -161,7 +161,7 @@ void TableStore::Impl::create(const std::string& name) {
   check(file.open([&](int* id) { return nc__create(name.c_str(), NC_CLOBBER | format, 0, &buffer_bytes, id); }));
   put_attributes({{kConventions, kConventionsOfFiles}});
   put_attributes(layout.head.attributes);
-  if (const std::string data = spectral_data_of(layout.head); !data.empty()) put_attributes({{kSpectralData, data}});
+  if (const std::string data = spectral_data_text(layout.head); !data.empty()) put_attributes({{kSpectralData, data}});
   define_axes();
   define_coordinates();
   define_results();
@@ -189,11 +189,11 @@ void TableStore::Impl::define_axes() {
   for (const Axis axis : kAllAxes) {
     const std::vector<double>& values = layout.head.axes[axis];
     if (values.empty()) continue;
-    dimensions.push_back(define_dimension(description_of(axis).name, values.size()));
+    dimensions.push_back(define_dimension(describe(axis).name, values.size()));
     dimension[axis] = {dimensions.back()};
     if (axis == Axis::kMaterial) define_names(axis);
     if (axis == Axis::kBand) define_bands();
-    if (!description_of(axis).has_labels) define_numbers(description_of(axis), dimension[axis], values);
+    if (!describe(axis).has_labels) define_numbers(describe(axis), dimension[axis], values);
   }
 }
 
@@ -241,12 +241,12 @@ void TableStore::Impl::define_results() {
     define_numbers(kBeta, {over_beta.back()}, beta_deg);
   }
   for (const Quantity quantity : layout.quantities) {
-    const QuantityDescription& described = description_of(quantity);
-    define_result(described, dimensions, units_of(quantity, layout.head.stokes_units),
+    const QuantityDescription& described = describe(quantity);
+    define_result(described, dimensions, quantity_units(quantity, layout.head.stokes_units),
                   present_qualifiers(layout, quantity));
   }
   for (const ResponseVariable variable : layout.responses) {
-    const ResponseDescription& described = description_of(variable);
+    const ResponseDescription& described = describe(variable);
     define_result(described, described.has_beta ? over_beta : dimensions, "1",
                   described.has_beta ? kResponseQualifier : "");
   }
@@ -280,11 +280,11 @@ ValueSums TableStore::write(const TableValues& part, const PerAxis& first) {
     impl_->check(put_values(impl_->file, variable, at, values.data()));
   });
   impl_->call(nc_sync);
-  return sums_of(part, impl_->layout, first);
+  return value_sums(part, impl_->layout, first);
 }
 
 TableValues TableStore::read(const TableBox& box) const {
-  TableValues part{head_of(impl_->layout.head, box)};
+  TableValues part{part_head(impl_->layout.head, box)};
   for_each_variable(impl_->layout, [&](const auto& of, std::size_t width) { of(part).resize(part.size() * width); });
   impl_->each_variable(part, box, [&](int variable, const Hyperslab& at, auto& values) {
     impl_->check(get_values(impl_->file, variable, at, values.data()));
@@ -294,7 +294,7 @@ TableValues TableStore::read(const TableBox& box) const {
 
 std::optional<ValueSums> TableStore::measured(const TableBox& box) const {
   try {
-    return sums_of(read(box), impl_->layout, box.first);
+    return value_sums(read(box), impl_->layout, box.first);
   } catch (const IoError&) {  // for example if the disk is faulty
     return std::nullopt;
   }

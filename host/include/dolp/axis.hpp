@@ -45,7 +45,7 @@ inline constexpr std::array<AxisDescription, kAxisCount> kAxes = {{
 
 static_assert(kAxes.back().name != nullptr, "each axis has a row");
 
-constexpr const AxisDescription& description_of(Axis axis) { return kAxes[static_cast<std::size_t>(axis)]; }
+constexpr const AxisDescription& describe(Axis axis) { return kAxes[static_cast<std::size_t>(axis)]; }
 
 /// Description of the wind speed, which determines sigma. It is not an axis: wind speeds replace values of sigma in
 /// [grid] or in points. A table computed from wind speeds has them as a second coordinate along its axis sigma.

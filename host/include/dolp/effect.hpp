@@ -13,7 +13,7 @@ enum class EffectState : std::uint8_t {
   kNotNeeded,  ///< no kept effect uses this choice of the model, for example the masking without a specular part
 };
 
-constexpr const char* name_of(EffectState state) {
+constexpr const char* to_name(EffectState state) {
   constexpr const char* kNames[] = {"absent", "kept", "dropped", "not_needed"};
   return kNames[static_cast<std::uint8_t>(state)];
 }

@@ -18,7 +18,7 @@ namespace dolp {
 enum class Observable { kDolp, kQOverI, kEmissivityS, kEmissivityP };
 
 /// "dolp", "q_over_i" (signed), "emissivity_s", "emissivity_p".
-DOLP_EXPORT const char* name_of(Observable observable);
+DOLP_EXPORT const char* to_name(Observable observable);
 
 struct Measurement {
   Observable observable = Observable::kDolp;

@@ -93,12 +93,12 @@ inline constexpr std::array<QuantityDescription, kQuantityCount> kQuantities = {
 
 static_assert(kQuantities.back().name != nullptr, "each quantity has a row");
 
-constexpr const QuantityDescription& description_of(Quantity quantity) {
+constexpr const QuantityDescription& describe(Quantity quantity) {
   return kQuantities[static_cast<std::size_t>(quantity)];
 }
 
-inline std::string units_of(Quantity quantity, const std::string& stokes_units) {
-  return description_of(quantity).has_stokes_units ? stokes_units : "1";
+inline std::string quantity_units(Quantity quantity, const std::string& stokes_units) {
+  return describe(quantity).has_stokes_units ? stokes_units : "1";
 }
 
 /// The quantities in the order of their columns in CSV files of results at points.

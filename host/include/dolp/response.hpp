@@ -54,7 +54,7 @@ inline constexpr std::array<ResponseDescription, kResponseVariableCount> kRespon
     {"fingerprint", "hash of the entry's numbers, by which dolp.moments finds entries that were changed", false},
 }};
 
-constexpr const ResponseDescription& description_of(ResponseVariable variable) {
+constexpr const ResponseDescription& describe(ResponseVariable variable) {
   return kResponseVariables[static_cast<std::size_t>(variable)];
 }
 

@@ -53,8 +53,8 @@ struct TableHead {
     return size;
   }
   const std::string& label(Axis axis, double value) const { return labels[axis].at(static_cast<std::size_t>(value)); }
-  std::size_t width_of(ResponseVariable variable) const {
-    return description_of(variable).has_beta ? beta_deg.size() : 1;
+  std::size_t values_per_entry(ResponseVariable variable) const {
+    return describe(variable).has_beta ? beta_deg.size() : 1;
   }
   /// Position, in each column, of the entry with these indices on theta, sigma and q, and index 0 on all other axes.
   std::size_t position(std::size_t theta, std::size_t sigma_index, std::size_t q_index) const {
@@ -65,7 +65,8 @@ struct TableHead {
 /// A lookup table in memory, or a part of one. Shape: each column is an array over all axes, flattened in C order (the
 /// last axis varies fastest).
 struct TableValues : TableHead, ResultColumns {
-  /// Variables of a response table; empty in other tables. Each entry has width_of() consecutive values of a variable.
+  /// Variables of a response table; empty in other tables. Each entry has values_per_entry() consecutive values of a
+  /// variable.
   ResponseArray<std::vector<double>> responses;
 };
 

@@ -23,7 +23,7 @@ namespace {
 std::vector<Attribute> all_attributes(const SceneValues& scene, const TableLayout& layout, const RunOutcome& run,
                                       const std::string& history) {
   std::vector<Attribute> attributes = layout.head.attributes;
-  std::ranges::move(attributes_of(scene, run, history), std::back_inserter(attributes));
+  std::ranges::move(run_attributes(scene, run, history), std::back_inserter(attributes));
   return attributes;
 }
 
@@ -45,7 +45,7 @@ ReportBuilder response_report(const SceneValues& scene, const TableHead& head, c
   return report;
 }
 
-SceneValues surface_of(const SceneValues& scene) {
+SceneValues surface_scene(const SceneValues& scene) {
   const std::vector<Setting> settings = surface_settings();
   const auto last = std::span(scene.settings).last(std::min(scene.settings.size(), settings.size()));
   return std::ranges::equal(last, settings) ? scene : with_settings(scene, settings);
@@ -97,14 +97,14 @@ Evaluator::Impl& Evaluator::impl() {
   return *impl_;
 }
 
-Table Evaluator::table(const Scene& scene, const RunOptions& of_call) {
-  return impl().exclusively(scene, of_call, [&](const SceneValues& values, const RunOptions& options) {
+Table Evaluator::table(const Scene& scene, const RunOptions& call_options) {
+  return impl().exclusively(scene, call_options, [&](const SceneValues& values, const RunOptions& options) {
     Run run(values, grid_entries(values), options, impl_->maker(values));
     TableLayout layout = table_layout(values, run.plan(), run.entries().axes());
     choose_variables(layout, options.quantities);
     CollectedResults results(run.entries());
     const RunOutcome outcome = run.compute(results);
-    layout.head.attributes.push_back({kIdentity, identity_of(values, impl_->options.evaluator, options)});
+    layout.head.attributes.push_back({kIdentity, run_identity(values, impl_->options.evaluator, options)});
     layout.head.attributes = all_attributes(values, layout, outcome, options.history);
     TableValues table = table_part(layout, run.entries(), results.take());
     static_cast<TableHead&>(table) = std::move(layout.head);
@@ -113,8 +113,8 @@ Table Evaluator::table(const Scene& scene, const RunOptions& of_call) {
 }
 
 void Evaluator::table_parts(const Scene& scene, const std::function<void(const Table&)>& take,
-                            const RunOptions& of_call) {
-  impl().exclusively(scene, of_call, [&](const SceneValues& values, const RunOptions& options) {
+                            const RunOptions& call_options) {
+  impl().exclusively(scene, call_options, [&](const SceneValues& values, const RunOptions& options) {
     Run run(values, grid_entries(values), options, impl_->maker(values));
     TableLayout layout = table_layout(values, run.plan(), run.entries().axes());
     choose_variables(layout, options.quantities);
@@ -128,23 +128,23 @@ void Evaluator::table_parts(const Scene& scene, const std::function<void(const T
   });
 }
 
-Results Evaluator::evaluate(const Scene& scene, const std::vector<Column>& points, const RunOptions& of_call) {
-  return impl().exclusively(scene, of_call, [&](const SceneValues& values, const RunOptions& options) {
+Results Evaluator::evaluate(const Scene& scene, const std::vector<Column>& points, const RunOptions& call_options) {
+  return impl().exclusively(scene, call_options, [&](const SceneValues& values, const RunOptions& options) {
     Run run(values, point_entries(values, points_of_columns(points, PointsKind::kDirections)), options,
             impl_->maker(values));
     CollectedResults collected(run.entries());
     const RunOutcome outcome = run.compute(collected);
     TableLayout layout = table_layout(values, outcome.plan, run.entries().axes());
     layout.head.attributes = all_attributes(values, layout, outcome, options.history);
-    Results results = results_of(collected.take(), quantities_of(values), layout.head);
+    Results results = make_results(collected.take(), output_quantities(values), layout.head);
     results.integrand_evaluations = outcome.evaluation.evaluations;
     return results;
   });
 }
 
 std::vector<MuellerMatrix> Evaluator::mueller(const Scene& scene, const std::vector<Column>& points,
-                                              const RunOptions& of_call) {
-  return impl().exclusively(scene, of_call, [&](const SceneValues& values, const RunOptions& options) {
+                                              const RunOptions& call_options) {
+  return impl().exclusively(scene, call_options, [&](const SceneValues& values, const RunOptions& options) {
     const auto geometries = mueller_points(values, points_of_columns(points, PointsKind::kGeometries));
     report_start(options.progress, geometries.size());
     return evaluate_mueller(values, geometries, *impl_->beam_evaluator(), options.progress);
@@ -164,9 +164,9 @@ std::vector<Setting> surface_settings() {
   return settings;
 }
 
-Table Evaluator::response(const Scene& scene, const RunOptions& of_call) {
-  return impl().exclusively(scene, of_call, [&](const SceneValues& whole, const RunOptions& options) {
-    const SceneValues values = surface_of(whole);
+Table Evaluator::response(const Scene& scene, const RunOptions& call_options) {
+  return impl().exclusively(scene, call_options, [&](const SceneValues& whole, const RunOptions& options) {
+    const SceneValues values = surface_scene(whole);
     const TableLayout layout = response_layout(values);
     TableValues table{layout.head};
     const auto take = [&](const TableValues& part, const PerAxis&) {
@@ -180,10 +180,11 @@ Table Evaluator::response(const Scene& scene, const RunOptions& of_call) {
   });
 }
 
-Report Evaluator::write_response(const Scene& scene, const std::filesystem::path& path, const RunOptions& of_call) {
-  return impl().exclusively(scene, of_call, [&](const SceneValues& whole, const RunOptions& options) {
-    const SceneValues values = surface_of(whole);
-    check_output_is_no_input(path, files_of(whole));
+Report Evaluator::write_response(const Scene& scene, const std::filesystem::path& path,
+                                 const RunOptions& call_options) {
+  return impl().exclusively(scene, call_options, [&](const SceneValues& whole, const RunOptions& options) {
+    const SceneValues values = surface_scene(whole);
+    check_output_is_no_input(path, scene_files(whole));
     const TableLayout layout = response_layout(values);
     if (path.extension() != ".nc") throw InputError(path.string() + ": the name of a response table must end in .nc");
     TableOutput output({.path = path, .layout = layout});

@@ -27,7 +27,7 @@ namespace dolp {
 namespace {
 
 /// The precisions to check. If "auto" leaves a precision out, sets `left_out` to the reason.
-std::vector<Precision> precisions_of(const DeviceCheckOptions& options, std::string& left_out) {
+std::vector<Precision> checked_precisions(const DeviceCheckOptions& options, std::string& left_out) {
   const std::optional<Precision> wanted = named<Precision>(options.precision);
   if (!wanted) throw InputError("precision " + one_line(options.precision) + ": must be auto, float or double");
   if (*wanted != Precision::kAuto) return {*wanted};
@@ -40,7 +40,7 @@ std::vector<Precision> precisions_of(const DeviceCheckOptions& options, std::str
   return {Precision::kFloat};
 }
 
-BuiltInMaterial facts_of(const Material& material) {
+BuiltInMaterial to_facts(const Material& material) {
   const Spectrum range = known_range(material);
   return {material.name, range.min_um, range.max_um, material.source};
 }
@@ -48,7 +48,7 @@ BuiltInMaterial facts_of(const Material& material) {
 /// The quantities with these names; DOLP without names. Errors: InputError for a quantity that the table lacks.
 Quantities chosen_quantities(const Quantities& given, const std::vector<std::string>& names, const std::string& table) {
   std::vector<std::string> known;
-  for (const Quantity quantity : given) known.emplace_back(description_of(quantity).name);
+  for (const Quantity quantity : given) known.emplace_back(describe(quantity).name);
   Quantities chosen;
   for (const std::string& name : names.empty() ? std::vector<std::string>{"dolp"} : names) {
     const auto found = std::ranges::find(known, name);
@@ -74,18 +74,18 @@ std::vector<Effect> effects(const Scene& scene, const std::vector<Column>& point
   const SceneValues& values = scene.impl().scene;
   const SceneEntries entries = point_entries(values, points_of_columns(points, PointsKind::kDirections));
   const EffectPlan plan = plan_effects(values, entries, keep_all);
-  std::vector<Effect> all = effects_of(values, entries, plan);
+  std::vector<Effect> all = list_effects(values, entries, plan);
   add_influences(all, values, entries, plan);
   return all;
 }
 
 std::vector<BuiltInMaterial> materials() {
   std::vector<BuiltInMaterial> all;
-  for (const Material& material : built_in_materials()) all.push_back(facts_of(material));
+  for (const Material& material : built_in_materials()) all.push_back(to_facts(material));
   return all;
 }
 
-BuiltInMaterial material(const std::string& name) { return facts_of(named_material(name, one_line(name) + ": ")); }
+BuiltInMaterial material(const std::string& name) { return to_facts(named_material(name, one_line(name) + ": ")); }
 
 Report verify(const std::filesystem::path& path, const TableCheckOptions& options) {
   const auto start = std::chrono::steady_clock::now();
@@ -128,12 +128,12 @@ Report verify_device(const DeviceCheckOptions& options) {
   report.tolerance = options.tolerance;
   const std::vector<StoredCase> cases = hard_cases();
   report.cases = cases.size();
-  for (const Precision precision : precisions_of(options, report.left_out)) {
+  for (const Precision precision : checked_precisions(options, report.left_out)) {
     const std::unique_ptr<ModelEvaluator> evaluator =
         make_evaluator({options.evaluator, options.device}, precision == Precision::kDouble);
-    PrecisionReport& of_precision = report.precisions.emplace_back();
-    of_precision.outcomes = qualify(cases, *evaluator, {report.tolerance, precision}, options.progress);
-    of_precision.evaluation = evaluator->report();
+    PrecisionReport& new_report = report.precisions.emplace_back();
+    new_report.outcomes = qualify(cases, *evaluator, {report.tolerance, precision}, options.progress);
+    new_report.evaluation = evaluator->report();
   }
   return public_report(hard_case_report(report, options.all), report.failures() == 0);
 }

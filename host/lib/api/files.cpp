@@ -57,7 +57,7 @@ void add_left_out(ReportBuilder& report, const Points& points) {
   report.value("left_out", points.left_out);
 }
 
-ResultCsv csv_of(const std::filesystem::path& path, const Points& points, const Quantities& quantities) {
+ResultCsv points_csv(const std::filesystem::path& path, const Points& points, const Quantities& quantities) {
   return {path, points.header, quantities,
           [&points](std::string& text, std::size_t row) { (text += points.rows[row]) += ','; }};
 }
@@ -82,7 +82,7 @@ Report public_report(const ReportBuilder& report, bool is_good, const std::files
   return {report.text(), report.json_text(), is_good, output, report.rows()};
 }
 
-std::vector<std::string> files_of(const SceneValues& scene) {
+std::vector<std::string> scene_files(const SceneValues& scene) {
   std::vector<std::string> files = scene.files;
   files.push_back(scene.path_name);
   if (scene.known) files.push_back(scene.known->table);
@@ -98,12 +98,12 @@ void check_output_is_no_input(const std::filesystem::path& output, const std::ve
   }
 }
 
-Report Evaluator::write_table(const Scene& scene, const std::filesystem::path& path, const RunOptions& of_call,
+Report Evaluator::write_table(const Scene& scene, const std::filesystem::path& path, const RunOptions& call_options,
                               const Shard& shard) {
-  return impl().exclusively(scene, of_call, [&](const SceneValues& values, const RunOptions& options) {
+  return impl().exclusively(scene, call_options, [&](const SceneValues& values, const RunOptions& options) {
     const SceneEntries entries = shard_entries(values, shard);
     const TableJob job{shard_path(path, shard), shard, options, impl_->options.evaluator};
-    check_output_is_no_input(job.path, files_of(values));
+    check_output_is_no_input(job.path, scene_files(values));
     check_output_path(job.path);
     if (!shard.is_none() && is_there(values, job)) {
       ReportBuilder report;
@@ -120,14 +120,14 @@ Report Evaluator::write_table(const Scene& scene, const std::filesystem::path& p
 }
 
 Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& points_path,
-                               const std::filesystem::path& path, const RunOptions& of_call) {
-  return impl().exclusively(scene, of_call, [&](const SceneValues& values, const RunOptions& options) {
-    const Points points = load_points(points_path, PointsKind::kDirections, files_of(values), path);
+                               const std::filesystem::path& path, const RunOptions& call_options) {
+  return impl().exclusively(scene, call_options, [&](const SceneValues& values, const RunOptions& options) {
+    const Points points = load_points(points_path, PointsKind::kDirections, scene_files(values), path);
     check_labels_chosen(values, points);
     SceneEntries entries = point_entries(values, points);
     check_writable(path);
     Run run(values, std::move(entries), options, impl_->maker(values));
-    ResultCsv csv = csv_of(path, points, quantities_of(values));
+    ResultCsv csv = points_csv(path, points, output_quantities(values));
     double rows_s = 0.0;
     CallbackSink rows([&](const SceneEntries&, const std::vector<PointResult>& results) {
       const Clock::time_point start = Clock::now();
@@ -149,10 +149,10 @@ Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& 
 }
 
 Report Evaluator::write_mueller(const Scene& scene, const std::filesystem::path& points_path,
-                                const std::filesystem::path& path, const RunOptions& of_call) {
-  return impl().exclusively(scene, of_call, [&](const SceneValues& values, const RunOptions& options) {
+                                const std::filesystem::path& path, const RunOptions& call_options) {
+  return impl().exclusively(scene, call_options, [&](const SceneValues& values, const RunOptions& options) {
     const Clock::time_point start = Clock::now();
-    const Points points = load_points(points_path, PointsKind::kGeometries, files_of(values), path);
+    const Points points = load_points(points_path, PointsKind::kGeometries, scene_files(values), path);
     check_labels_chosen(values);
     const std::vector<MuellerPoint> geometries = mueller_points(values, points);
     check_writable(path);

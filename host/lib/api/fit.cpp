@@ -106,7 +106,7 @@ void check_starts(std::size_t starts) {
 }
 
 void check_outputs(const FitOptions& options, const SceneValues& scene, const std::vector<MeasuredData>& data) {
-  std::vector<std::string> inputs = files_of(scene);
+  std::vector<std::string> inputs = scene_files(scene);
   for (const MeasuredData& data_set : data) inputs.push_back(data_set.name);
   for (const std::filesystem::path& path : {options.output, options.plot}) {
     if (path.empty()) continue;
@@ -203,7 +203,7 @@ Json curves(const Best& best, const FitOptions& options, ModelEvaluator& evaluat
       const std::vector<double> values = model_values(best, fine, options, ModelError::kNone, evaluator);
       if (values.empty()) continue;
       all.push_back({{"data", data.name},
-                     {"quantity", name_of(kind.first)},
+                     {"quantity", to_name(kind.first)},
                      {"wavelength_um", kind.second ? Json(*kind.second) : Json(nullptr)},
                      {"theta_deg", zeniths},
                      {"model", values}});
@@ -248,8 +248,8 @@ void add_model_gap(ReportBuilder& report, const ModelGap& gap) {
 
 /// Fits the scene with each combination of compared settings. Adds all results to `models`, the best first. Calls
 /// `begin` at most once, to get the evaluator. Errors: InputError if with_settings() or Model refuses all combinations.
-Best best_of(std::vector<ComparedModel>& models, const SceneValues& scene, const std::vector<MeasuredData>& data,
-             const FitOptions& options, const std::function<ModelEvaluator*(const SceneValues&)>& begin) {
+Best fit_best(std::vector<ComparedModel>& models, const SceneValues& scene, const std::vector<MeasuredData>& data,
+              const FitOptions& options, const std::function<ModelEvaluator*(const SceneValues&)>& begin) {
   ModelEvaluator* evaluator = nullptr;
   Best best;
   const std::vector<Settings> compared = combinations(options);
@@ -282,7 +282,7 @@ Best best_of(std::vector<ComparedModel>& models, const SceneValues& scene, const
 
 void draw(ReportBuilder& report, const Best& best, const Scene& fitted, const FitOptions& options,
           ModelEvaluator& evaluator) {
-  add_contours(report, *best.model, *best.result, fit::contours_of(*best.model, evaluator, *best.result, options));
+  add_contours(report, *best.model, *best.result, fit::compute_contours(*best.model, evaluator, *best.result, options));
   const Spectrum& spectrum = fitted.impl().scene.spectrum;
   report.value("spectrum_um", Json{spectrum.min_um, spectrum.max_um});
   report.value("brackets", brackets(best, options, evaluator));
@@ -293,8 +293,8 @@ void draw(ReportBuilder& report, const Best& best, const Scene& fitted, const Fi
 
 }  // namespace
 
-Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, const FitOptions& of_call) {
-  return impl().exclusively(scene, of_call, [&](const SceneValues& values, const FitOptions& options) {
+Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, const FitOptions& call_options) {
+  return impl().exclusively(scene, call_options, [&](const SceneValues& values, const FitOptions& options) {
     const auto start = std::chrono::steady_clock::now();
     check_loss(options.loss, options.model_error, data);
     check_starts(options.starts);
@@ -303,7 +303,7 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
     report_start(options.progress, 1);
     std::vector<ComparedModel> models;
     ModelEvaluator* evaluator = nullptr;
-    Best best = best_of(models, values, data, options, [&](const SceneValues& first) {
+    Best best = fit_best(models, values, data, options, [&](const SceneValues& first) {
       check_outputs(options, first, data);
       return evaluator = impl_->begin(first);
     });

@@ -34,13 +34,13 @@ struct Table::Impl {
 
 Report public_report(const ReportBuilder& report, bool is_good = true, const std::filesystem::path& output = {});
 
-std::vector<std::string> files_of(const SceneValues& scene);
+std::vector<std::string> scene_files(const SceneValues& scene);
 
 /// Refuses an output file that would overwrite an input file; "-" (stdin, stdout) is no file. Errors: InputError.
 void check_output_is_no_input(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
 /// The results at points of a scene. Their units and attributes come from `head`, the head of a table of this scene.
-Results results_of(const std::vector<PointResult>& points, const Quantities& quantities, const TableHead& head);
+Results make_results(const std::vector<PointResult>& points, const Quantities& quantities, const TableHead& head);
 
 /// Makes points from columns. If a column has one value, all points use it. Errors: InputError for a wrong column.
 Points points_of_columns(const std::vector<Column>& columns, PointsKind kind);
@@ -77,15 +77,15 @@ struct Evaluator::Impl {
   /// Calls `body` while no other thread uses this object. After a DeviceError, the next call makes a new evaluator.
   /// Errors: InputError if the call comes from a callback of this object.
   template <class Options, class Body>
-  auto exclusively(const Scene& scene, Options of_call, const Body& body) {
+  auto exclusively(const Scene& scene, Options call_options, const Body& body) {
     if (in_callback == std::this_thread::get_id())
       throw InputError("an Evaluator cannot be called from its own callback; another Evaluator can");
     if (options.evaluator == "vulkan") check_no_fork();
     const std::lock_guard lock(mutex);
-    of_call.progress = guard_reentry(of_call.progress);
-    if constexpr (requires { of_call.phase; }) of_call.phase = guard_reentry(of_call.phase);
+    call_options.progress = guard_reentry(call_options.progress);
+    if constexpr (requires { call_options.phase; }) call_options.phase = guard_reentry(call_options.phase);
     try {
-      return body(scene.impl().scene, of_call);
+      return body(scene.impl().scene, call_options);
     } catch (const DeviceError&) {
       evaluator.reset();
       throw;

@@ -18,7 +18,7 @@ namespace {
 
 using Type = Key::Type;
 
-std::optional<KeyValue> value_of(const SceneValues& scene, std::string_view key, std::initializer_list<Type> types) {
+std::optional<KeyValue> find_value(const SceneValues& scene, std::string_view key, std::initializer_list<Type> types) {
   const SceneKey* const known = find_scene_key(key);
   if (!known)
     throw InputError(fmt::format("{}: is no key of a scene; the nearest is {}", one_line(key), key_hint(key)));
@@ -102,17 +102,17 @@ std::string Scene::toml(const std::filesystem::path& folder) const {
 }
 
 std::optional<double> Scene::number(std::string_view key) const {
-  const std::optional<KeyValue> value = value_of(impl_->scene, key, {Type::kNumber});
+  const std::optional<KeyValue> value = find_value(impl_->scene, key, {Type::kNumber});
   return value ? std::optional(value->number) : std::nullopt;
 }
 
 std::optional<std::string> Scene::word(std::string_view key) const {
-  const std::optional<KeyValue> value = value_of(impl_->scene, key, {Type::kWord, Type::kText, Type::kFlag});
+  const std::optional<KeyValue> value = find_value(impl_->scene, key, {Type::kWord, Type::kText, Type::kFlag});
   return value ? std::optional(value->text) : std::nullopt;
 }
 
 std::vector<double> Scene::numbers(std::string_view key) const {
-  const std::optional<KeyValue> value = value_of(impl_->scene, key, {Type::kAxis, Type::kPair, Type::kPairs});
+  const std::optional<KeyValue> value = find_value(impl_->scene, key, {Type::kAxis, Type::kPair, Type::kPairs});
   return value ? value->numbers : std::vector<double>{};
 }
 

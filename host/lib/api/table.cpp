@@ -18,7 +18,7 @@ namespace {
 
 void check_axes(const TableHead& table, const std::string& name) {
   for (const Axis axis : kAllAxes) {
-    const AxisDescription& described = description_of(axis);
+    const AxisDescription& described = describe(axis);
     if (described.is_required && table.axes[axis].empty())
       throw InputError(fmt::format("{}: the axis {} is missing", name, described.name));
     for (const double value : table.axes[axis]) {
@@ -50,7 +50,7 @@ void check_values(const TableValues& table, const std::string& name) {
     throw InputError(fmt::format("{}: {} has {} values; must be {}", name, variable, size, expected));
   };
   for (const Quantity quantity : table.quantities())
-    check_size(description_of(quantity).name, table[quantity].size(), table.size());
+    check_size(describe(quantity).name, table[quantity].size(), table.size());
   if (!table.status.empty()) check_size("status", table.status.size(), table.size());
   check_attributes(table.attributes, name);
   for (const TableCurve& described : kTableCurves) {
@@ -81,16 +81,16 @@ std::vector<Attribute> Table::file_attributes() const {
   const TableValues& table = impl_->table;
   std::vector<Attribute> attributes = {{kConventions, kConventionsOfFiles}};
   attributes.insert(attributes.end(), table.attributes.begin(), table.attributes.end());
-  if (const std::string data = spectral_data_of(table); !data.empty()) attributes.push_back({kSpectralData, data});
-  const TableLayout layout = layout_of(table);
-  attributes.push_back({kValuesHash, values_hash(layout, sums_of(table, layout, {}))});
+  if (const std::string data = spectral_data_text(table); !data.empty()) attributes.push_back({kSpectralData, data});
+  const TableLayout layout = values_layout(table);
+  attributes.push_back({kValuesHash, values_hash(layout, value_sums(table, layout, {}))});
   return attributes;
 }
 
 void Table::write(const std::filesystem::path& path) const { write_table(impl_->table, path); }
 
-Results results_of(const std::vector<PointResult>& points, const Quantities& quantities, const TableHead& head) {
-  return {{columns_of(points, quantities)}, quantities, head.stokes_units, head.attributes};
+Results make_results(const std::vector<PointResult>& points, const Quantities& quantities, const TableHead& head) {
+  return {{result_columns(points, quantities)}, quantities, head.stokes_units, head.attributes};
 }
 
 std::string to_csv(const std::vector<Column>& points, const Results& results) {
@@ -101,7 +101,7 @@ std::string to_csv(const std::vector<Column>& points, const Results& results) {
     throw InputError(fmt::format("{}: {} values for {} results", one_line(name), size, count));
   };
   for (const Column& column : points) check(column.name, column.values.size(), true);
-  for (const Quantity quantity : quantities) check(description_of(quantity).name, results[quantity].size(), false);
+  for (const Quantity quantity : quantities) check(describe(quantity).name, results[quantity].size(), false);
   std::string header;
   for (const Column& column : points) header += column.name + ',';
   return header + result_header(quantities) + '\n' +
@@ -118,7 +118,7 @@ Points points_of_columns(const std::vector<Column>& columns, PointsKind kind) {
   for (const Column& column : columns) {
     if (column.values.size() != 1) count = column.values.size();
   }
-  return points_of(columns, count, kind);
+  return make_points(columns, count, kind);
 }
 
 }  // namespace dolp

@@ -17,8 +17,8 @@ namespace {
 using GridNode = std::pair<int, int>;  // position of a node: steps along both axes from the best minimum
 
 std::optional<std::array<Eigen::Index, 2>> most_correlated(const Eigen::MatrixXd& correlation) {
-  const auto strength_of = [](double r) { return std::isnan(r) ? 0.0 : 1.0 + std::abs(r); };
-  const Eigen::MatrixXd strength = correlation.unaryExpr(strength_of);
+  const auto pair_strength = [](double r) { return std::isnan(r) ? 0.0 : 1.0 + std::abs(r); };
+  const Eigen::MatrixXd strength = correlation.unaryExpr(pair_strength);
   std::array<Eigen::Index, 2> pair{};
   const double largest = Eigen::MatrixXd(strength.triangularView<Eigen::StrictlyUpper>()).maxCoeff(&pair[0], &pair[1]);
   return largest > 0.0 ? std::optional(pair) : std::nullopt;
@@ -168,8 +168,8 @@ class GrowthMap {
 
 }  // namespace
 
-std::optional<Contours> contours_of(const Model& model, ModelEvaluator& evaluator, const FitResult& result,
-                                    const FitOptions& options) {
+std::optional<Contours> compute_contours(const Model& model, ModelEvaluator& evaluator, const FitResult& result,
+                                         const FitOptions& options) {
   const auto pair = most_correlated(result.correlation);
   if (!pair) return std::nullopt;
   if (options.phase) options.phase("parameter sets of the contours");

@@ -10,7 +10,7 @@ namespace {
 
 /// A loss and its derivative with respect to the squared residual. The constants in the losses are chosen so that fits
 /// to normally distributed errors have 95 % of the efficiency of least squares.
-std::pair<double, double> loss_of(double square, Loss loss) {
+std::pair<double, double> loss_and_weight(double square, Loss loss) {
   switch (loss) {
     case Loss::kSquares:
       break;
@@ -181,12 +181,12 @@ PrincipalAxes principal_axes(const Eigen::MatrixXd& symmetric) {
 double objective(const Eigen::VectorXd& residuals, Loss loss) {
   if (!residuals.allFinite()) return std::numeric_limits<double>::infinity();
   double sum = 0.0;
-  for (const double residual : residuals) sum += loss_of(residual * residual, loss).first;
+  for (const double residual : residuals) sum += loss_and_weight(residual * residual, loss).first;
   return sum;
 }
 
 Eigen::VectorXd loss_weights(const Eigen::VectorXd& residuals, Loss loss) {
-  return residuals.unaryExpr([loss](double residual) { return loss_of(residual * residual, loss).second; });
+  return residuals.unaryExpr([loss](double residual) { return loss_and_weight(residual * residual, loss).second; });
 }
 
 bool is_straight(const Linearisation& from, const Linearisation& to, double scale) {

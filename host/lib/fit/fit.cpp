@@ -51,12 +51,12 @@ struct Direction {
 };
 
 struct Covariance {
-  Eigen::MatrixXd of_coordinates;
+  Eigen::MatrixXd matrix;
   std::vector<Direction> unconstrained;
   std::size_t rank = 0;
 };
 
-Covariance covariance_of(const Minimum& minimum, Loss loss, double scale) {
+Covariance estimate_covariance(const Minimum& minimum, Loss loss, double scale) {
   constexpr double kNullShare = 1e-4;  // singular values below this share of the largest belong to null directions
   // Ignores a parameter whose whole range changes the residuals by less than this many standard deviations.
   constexpr double kLeastDeviations = 1e-3;
@@ -84,21 +84,21 @@ Covariance covariance_of(const Minimum& minimum, Loss loss, double scale) {
     if (is_null || singular < length * std::sqrt(scale)) result.unconstrained.push_back({along / length, is_null});
     if (is_null) {
       for (Eigen::Index j = 0; j < count; ++j)
-        if (std::abs(axis[j]) > kInDirection * largest) result.of_coordinates(j, j) = kInfinity;
+        if (std::abs(axis[j]) > kInDirection * largest) result.matrix(j, j) = kInfinity;
       continue;
     }
     ++result.rank;
-    result.of_coordinates += scale / (singular * singular) * along * along.transpose();
+    result.matrix += scale / (singular * singular) * along * along.transpose();
   }
   for (Eigen::Index j = 0; j < count; ++j) {
     if (!is_at_bound(minimum.where.at[j])) continue;
-    result.of_coordinates.row(j).setConstant(kNaN);
-    result.of_coordinates.col(j).setConstant(kNaN);
+    result.matrix.row(j).setConstant(kNaN);
+    result.matrix.col(j).setConstant(kNaN);
   }
   return result;
 }
 
-Eigen::MatrixXd correlation_of(const Eigen::MatrixXd& covariance) {
+Eigen::MatrixXd correlation_matrix(const Eigen::MatrixXd& covariance) {
   const auto known = [](double variance) { return variance > 0.0 && std::isfinite(variance) ? variance : kNaN; };
   const Eigen::VectorXd inverses = covariance.diagonal().unaryExpr(known).cwiseSqrt().cwiseInverse();
   Eigen::MatrixXd correlation = inverses.asDiagonal() * covariance * inverses.asDiagonal();
@@ -106,7 +106,7 @@ Eigen::MatrixXd correlation_of(const Eigen::MatrixXd& covariance) {
   return correlation;
 }
 
-std::string words_of(const Direction& direction, const std::vector<FitRange>& parameters) {
+std::string direction_text(const Direction& direction, const std::vector<FitRange>& parameters) {
   std::vector<std::string> rising, falling;
   const Eigen::VectorXd& along = direction.along;
   for (Eigen::Index j = 0; j < along.size(); ++j) {
@@ -139,7 +139,7 @@ void set_error(FitParameter& fitted, const FitRange& range, double deviation, bo
   }
 }
 
-FitInterval interval_of(const FitRange& parameter, const std::vector<CoordinateInterval>& intervals) {
+FitInterval parameter_interval(const FitRange& parameter, const std::vector<CoordinateInterval>& intervals) {
   FitInterval interval;
   interval.is_empty = intervals.empty();
   for (const CoordinateInterval& piece : intervals) {
@@ -227,7 +227,7 @@ class Fit {
 
   /// The covariance matrix. With a model error its elements are NaN, because residuals are 0 everywhere in a bracket.
   Covariance find_covariance() const {
-    if (!model_.has_model_error()) return covariance_of(minima_.front(), options_.loss, result_.scale);
+    if (!model_.has_model_error()) return estimate_covariance(minima_.front(), options_.loss, result_.scale);
     const Eigen::Index count = minima_.front().where.at.size();
     return {Eigen::MatrixXd::Constant(count, count, kNaN), {}, static_cast<std::size_t>(count)};
   }
@@ -244,7 +244,7 @@ class Fit {
       fitted.key = range.key;
       fitted.value = range.at(best.where.at[index]);
       fitted.is_at_bound = is_at_bound(best.where.at[index]);
-      set_error(fitted, range, std::sqrt(covariance_.of_coordinates(index, index)), has_scale());
+      set_error(fitted, range, std::sqrt(covariance_.matrix(index, index)), has_scale());
       if (model_.has_model_error())
         fitted.why_no_error = "with a model error the value is one of many that fit as well";
     }
@@ -258,9 +258,9 @@ class Fit {
     for (std::size_t j = 0; j < result_.parameters.size(); ++j) {
       FitParameter& parameter = result_.parameters[j];
       (is_scaled ? parameter.scaled_68.emplace() : parameter.interval_68) =
-          interval_of(model_.parameters()[j], profiles->intervals[j][0]);
+          parameter_interval(model_.parameters()[j], profiles->intervals[j][0]);
       (is_scaled ? parameter.scaled_95.emplace() : parameter.interval_95) =
-          interval_of(model_.parameters()[j], profiles->intervals[j][1]);
+          parameter_interval(model_.parameters()[j], profiles->intervals[j][1]);
     }
     if (!is_scaled) std::ranges::copy(profiles->points, std::back_inserter(result_.valley_points));
     return true;
@@ -277,7 +277,7 @@ class Fit {
     if (near.empty())
       return Profiles{.intervals =
                           std::vector<std::array<std::vector<CoordinateInterval>, 2>>(result_.parameters.size())};
-    Profiles profiles = profiles_of(profile_, near, options);
+    Profiles profiles = compute_profiles(profile_, near, options);
     if (may_restart && profiles.lower && take(*profiles.lower)) return std::nullopt;
     return profiles;
   }
@@ -297,7 +297,7 @@ class Fit {
   void describe() {
     const Minimum& best = minima_.front();
     const Prediction prediction = fine_.predict({best.where.at}).front();
-    result_.correlation = correlation_of(covariance_.of_coordinates);
+    result_.correlation = correlation_matrix(covariance_.matrix);
     result_.chi_square = best.objective;
     result_.degrees_of_freedom = freedom();
     if (freedom() > 0) {
@@ -332,7 +332,7 @@ class Fit {
         is_open = is_open || (std::abs(direction.along[static_cast<Eigen::Index>(j)]) >= kInDirection &&
                               !interval.low && !interval.high);
       }
-      const std::string words = words_of(direction, model_.parameters());
+      const std::string words = direction_text(direction, model_.parameters());
       const bool is_new = std::ranges::find(result_.degeneracies, words) == result_.degeneracies.end();
       if (is_open && is_new) result_.degeneracies.push_back(words);
     }

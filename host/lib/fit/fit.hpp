@@ -55,7 +55,7 @@ inline constexpr std::array kContourLevels = {2.2957, 5.9915};
 /// Computes Contours for the two most correlated parameters. Empty if no correlation is known. The grid lies along the
 /// principal axes of their covariance, and spreads from the best minimum until it encloses the outer contour. If this
 /// costs more than the fit, the grid becomes coarser or stays incomplete. Errors: errors of the evaluator; Cancelled.
-std::optional<Contours> contours_of(const Model& model, ModelEvaluator& evaluator, const FitResult& result,
-                                    const FitOptions& options);
+std::optional<Contours> compute_contours(const Model& model, ModelEvaluator& evaluator, const FitResult& result,
+                                         const FitOptions& options);
 
 }  // namespace dolp::fit

@@ -25,10 +25,10 @@ constexpr double kLikelyPercent = 0.9;  // a DOLP of at least this is probably i
 const std::vector<CsvColumn>& known_columns() {
   static const std::vector<CsvColumn> columns = {{"theta_deg", kZenithDegRange},
                                                  {"theta_i_deg", kZenithDegRange},
-                                                 {name_of(Observable::kDolp), kFractionOfOneRange},
-                                                 {name_of(Observable::kQOverI), kFractionOfOneRange},
-                                                 {name_of(Observable::kEmissivityS), kFractionOfOneRange},
-                                                 {name_of(Observable::kEmissivityP), kFractionOfOneRange},
+                                                 {to_name(Observable::kDolp), kFractionOfOneRange},
+                                                 {to_name(Observable::kQOverI), kFractionOfOneRange},
+                                                 {to_name(Observable::kEmissivityS), kFractionOfOneRange},
+                                                 {to_name(Observable::kEmissivityP), kFractionOfOneRange},
                                                  {"uncertainty", kUncertaintyRange},
                                                  {"wavelength_um", kWavelengthUmRange}};
   return columns;
@@ -56,7 +56,7 @@ void add_row(MeasuredData& data, const CsvReader& row, const CsvColumns& columns
   for (std::size_t cell = 0; cell < columns.cells().size(); ++cell) {
     if (!columns.cells()[cell]) continue;
     const std::string& name = known_columns()[*columns.cells()[cell]].name;
-    const auto observable = std::ranges::find_if(kObservables, [&](Observable kind) { return name == name_of(kind); });
+    const auto observable = std::ranges::find_if(kObservables, [&](Observable kind) { return name == to_name(kind); });
     if (observable == kObservables.end()) continue;
     if (*observable == Observable::kDolp && columns.number_at(row, cell) < 0.0) {
       row.fail(
@@ -83,7 +83,7 @@ std::vector<std::string> remarks_on(const MeasuredData& data) {
   }
   if (highest_dolp >= kLikelyPercent) {
     remarks.push_back(fmt::format("{}: {} rises to {}; is it in percent? 1 is fully polarised", data.name,
-                                  name_of(data.measurements.front().observable), highest_dolp));
+                                  to_name(data.measurements.front().observable), highest_dolp));
   }
   if (least_um > kLikelyNanometres) {
     remarks.push_back(fmt::format("{}: wavelength_um is at least {}; is it in nanometres?", data.name, least_um));
@@ -101,7 +101,7 @@ std::size_t keys_begin(const std::string& argument) {
   return std::string::npos;
 }
 
-std::vector<std::string> pieces_of(std::string_view text) {
+std::vector<std::string> split_settings(std::string_view text) {
   std::vector<std::string> pieces(1);
   int depth = 0;
   bool is_quoted = false;
@@ -141,7 +141,7 @@ void check_key(const std::string& key, const std::string& origin) {
 
 }  // namespace
 
-const char* name_of(Observable observable) {
+const char* to_name(Observable observable) {
   constexpr std::array<const char*, kObservables.size()> kNames = {"dolp", "q_over_i", "emissivity_s", "emissivity_p"};
   return kNames[static_cast<std::size_t>(observable)];
 }
@@ -151,7 +151,7 @@ MeasuredData MeasuredData::from_csv(const std::string& csv, const std::string& n
   data.name = input_name(name);
   data.settings = std::move(settings);
   CsvReader row(csv, data.name, kDataFile);
-  const CsvColumns columns = CsvColumns::first_of(row, known_columns());
+  const CsvColumns columns = CsvColumns::read_names(row, known_columns());
   check_columns(row, columns);
   data.zenith_column = columns.has("theta_deg") ? "theta_deg" : "theta_i_deg";
   data.has_uncertainties = columns.has("uncertainty");
@@ -167,7 +167,7 @@ MeasuredData MeasuredData::read(const std::string& argument) {
   if (path.empty()) throw InputError(fmt::format("data {}: must be FILE or FILE:KEY=VALUE,...", one_line(argument)));
   std::vector<Setting> settings;
   if (colon != std::string::npos) {
-    settings = settings_from_text(pieces_of(std::string_view(argument).substr(colon + 1)), "data " + path + ':');
+    settings = settings_from_text(split_settings(std::string_view(argument).substr(colon + 1)), "data " + path + ':');
   }
   return from_csv(read_text(path, input_name(path) + ": "), path, std::move(settings));
 }

@@ -26,17 +26,17 @@ constexpr std::array<std::string_view, 5> kPointKeys = {"surface.n", "surface.k"
 bool is_point_key(const std::string& key) { return std::ranges::find(kPointKeys, key) != kPointKeys.end(); }
 
 template <class ValueOf>
-Eigen::VectorXd each(const std::vector<FitRange>& parameters, ValueOf value_of) {
+Eigen::VectorXd each(const std::vector<FitRange>& parameters, ValueOf range_value) {
   Eigen::VectorXd values(static_cast<Eigen::Index>(parameters.size()));
-  std::ranges::transform(parameters, values.begin(), value_of);
+  std::ranges::transform(parameters, values.begin(), range_value);
   return values;
 }
 
-Eigen::VectorXd starts_of(const std::vector<FitRange>& parameters) {
+Eigen::VectorXd start_values(const std::vector<FitRange>& parameters) {
   return each(parameters, [](const FitRange& range) { return range.start.value_or(range.at(0.5)); });
 }
 
-Eigen::RowVector2d components_of(Observable observable, const PointResult& point) {
+Eigen::RowVector2d observed_components(Observable observable, const PointResult& point) {
   const Eigen::RowVector2d q_u(point[Quantity::kStokesQ] / point[Quantity::kStokesI],
                                point[Quantity::kStokesU] / point[Quantity::kStokesI]);
   switch (observable) {
@@ -52,7 +52,7 @@ Eigen::RowVector2d components_of(Observable observable, const PointResult& point
   return {};
 }
 
-EmissionModel other_end_of(const SceneValues& scene) {
+EmissionModel other_bracket_end(const SceneValues& scene) {
   const std::string origin = "model error of the bracket: ";
   if (!scene.emission) throw InputError(origin + "needs the table [emission]");
   try {
@@ -76,7 +76,7 @@ bool is_polarisation(Observable observable) {
   return observable == Observable::kDolp || observable == Observable::kQOverI;
 }
 
-double error_of(Observable observable, const PointResult& point) {
+double point_error(Observable observable, const PointResult& point) {
   return is_polarisation(observable) ? point[Quantity::kErrorEstimate]
                                      : 2.0 * point[Quantity::kRhoErrorEstimate] * point[Quantity::kRhoI];
 }
@@ -88,11 +88,11 @@ Model::Model(const SceneValues& scene, std::vector<MeasuredData> data, std::vect
     : data_(std::move(data)), parameters_(std::move(parameters)), error_(error) {
   for (const MeasuredData& data_set : data_) count_ += data_set.measurements.size();
   check();
-  scene_of(scene, data_.front(), {}, each(parameters_, &FitRange::low));
-  scene_of(scene, data_.front(), {}, each(parameters_, &FitRange::high));
+  data_scene(scene, data_.front(), {}, each(parameters_, &FitRange::low));
+  data_scene(scene, data_.front(), {}, each(parameters_, &FitRange::high));
   Eigen::Index first_row = 0;
   for (const MeasuredData& measured : data_) {
-    groups_.push_back(group_of(scene, measured, first_row));
+    groups_.push_back(make_group(scene, measured, first_row));
     first_row += static_cast<Eigen::Index>(measured.measurements.size());
   }
 }
@@ -135,21 +135,21 @@ std::vector<Setting> Model::settings(const Eigen::VectorXd& values) const {
   return settings;
 }
 
-SceneValues Model::scene_of(const SceneValues& scene, const MeasuredData& data, const std::vector<Setting>& extra,
-                            const Eigen::VectorXd& values) const {
+SceneValues Model::data_scene(const SceneValues& scene, const MeasuredData& data, const std::vector<Setting>& extra,
+                              const Eigen::VectorXd& values) const {
   std::vector<Setting> all = data.settings;
   for (const auto& more : {extra, settings(values)}) all.insert(all.end(), more.begin(), more.end());
   return with_settings(scene, all);
 }
 
-Model::Group Model::group_of(const SceneValues& scene, const MeasuredData& data, Eigen::Index first_row) const {
+Model::Group Model::make_group(const SceneValues& scene, const MeasuredData& data, Eigen::Index first_row) const {
   Group group{.data = &data, .first_row = first_row};
   std::set<double> wavelengths;
   for (const Measurement& measurement : data.measurements) {
     if (measurement.wavelength_um) wavelengths.insert(*measurement.wavelength_um);
   }
   group.wavelength_um.assign(wavelengths.begin(), wavelengths.end());
-  if (wavelengths.empty()) group.scene = scene_of(scene, data, {}, starts_of(parameters_));
+  if (wavelengths.empty()) group.scene = data_scene(scene, data, {}, start_values(parameters_));
   const auto sets_spectrum = [](const Setting& setting) { return setting.key.starts_with("spectrum."); };
   if (!wavelengths.empty() && (std::ranges::any_of(data.settings, sets_spectrum) || varies("spectrum.wavelength_um"))) {
     throw InputError(data.name + ": column \"wavelength_um\" and a spectrum key contradict each other");
@@ -159,13 +159,13 @@ Model::Group Model::group_of(const SceneValues& scene, const MeasuredData& data,
     if (at_um != group.wavelength_um.back() && at_um != group.wavelength_um.front()) continue;
     const Setting wavelength{"spectrum.wavelength_um", at_um,
                              fmt::format("{}: wavelength_um = {}", data.name, format_number(at_um))};
-    group.scene = scene_of(scene, data, {wavelength}, starts_of(parameters_));
+    group.scene = data_scene(scene, data, {wavelength}, start_values(parameters_));
   }
   const std::shared_ptr<const Material>& tabulated = group.scene.surface.material.tabulated;
   for (const double at_um : group.wavelength_um)
     group.indices.push_back(tabulated ? tabulated->at(at_um) : OpticalConstants{});
   check_group(group);
-  if (has_model_error()) group.other_end = other_end_of(group.scene);
+  if (has_model_error()) group.other_end = other_bracket_end(group.scene);
   return group;
 }
 
@@ -213,7 +213,7 @@ void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>
   for (const auto& [common, sets] : calls) {
     std::vector<SceneEntry> points;
     for (const std::size_t set : sets) add_points(points, group, with(group.scene, values[set]));
-    const SceneEntries entries(std::move(points), variants_of(axes_of({}, {}, {}, group.wavelength_um)));
+    const SceneEntries entries(std::move(points), grid_variants(make_axes({}, {}, {}, group.wavelength_um)));
     SceneValues scene = with(group.scene, values[sets.back()]);
     scene.accuracy.tolerance = tolerance;
     const std::vector<PointResult> results = evaluate_scene(scene, entries, evaluator, progress);
@@ -230,12 +230,12 @@ void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>
       Prediction& prediction = predictions[sets[i / measurements.size()]];
       auto components = prediction.components.row(row);
       double& error = prediction.error[row];
-      components = components_of(measured.observable, results[i]);
-      error = error_of(measured.observable, results[i]);
+      components = observed_components(measured.observable, results[i]);
+      error = point_error(measured.observable, results[i]);
       prediction.status |= results[i].status;
       if (!group.other_end) continue;
-      components << nearest_between(components, components_of(measured.observable, others[i]), measured), 0.0;
-      error = std::max(error, error_of(measured.observable, others[i]));
+      components << nearest_between(components, observed_components(measured.observable, others[i]), measured), 0.0;
+      error = std::max(error, point_error(measured.observable, others[i]));
       prediction.status |= others[i].status;
     }
   }

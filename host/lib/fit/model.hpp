@@ -62,12 +62,12 @@ class Model {
 
   void check() const;
   bool varies(const std::string& key) const;
-  Group group_of(const SceneValues& scene, const MeasuredData& data, Eigen::Index first_row) const;
+  Group make_group(const SceneValues& scene, const MeasuredData& data, Eigen::Index first_row) const;
   void check_group(const Group& group) const;
   void add_points(std::vector<SceneEntry>& points, const Group& group, const SceneValues& scene) const;
   /// The scene with settings of the data, `extra` settings and parameters. Errors: InputError that names the setting.
-  SceneValues scene_of(const SceneValues& scene, const MeasuredData& data, const std::vector<Setting>& extra,
-                       const Eigen::VectorXd& values) const;
+  SceneValues data_scene(const SceneValues& scene, const MeasuredData& data, const std::vector<Setting>& extra,
+                         const Eigen::VectorXd& values) const;
   SceneValues with(const SceneValues& scene, const Eigen::VectorXd& values) const;
   void predict_group(const Group& group, const std::vector<Eigen::VectorXd>& values, double tolerance,
                      ModelEvaluator& evaluator, const Progress& progress, std::vector<Prediction>& predictions) const;

@@ -25,7 +25,7 @@ class Side {
   Side(Minimum start, Eigen::Index parameter, int direction, double most, double least, const ProfileOptions& options)
       : parameter_(parameter), direction_(direction), most_(most), least_(least), options_(&options) {
     start.held = {parameter};
-    points_.push_back({0.0, root_of(start), std::move(start)});
+    points_.push_back({0.0, root_growth(start), std::move(start)});
     settle();
   }
 
@@ -62,7 +62,7 @@ class Side {
       finish(distance_);
       return;
     }
-    const double root = root_of(found);
+    const double root = root_growth(found);
     points_.insert(points_.begin() + (first_beyond(distance_) - points_.cbegin()), {distance_, root, std::move(found)});
     settle();
   }
@@ -73,7 +73,7 @@ class Side {
   double coordinate(double distance) const {
     return points_.front().found.where.at[parameter_] + direction_ * distance;
   }
-  double root_of(const Minimum& found) const {
+  double root_growth(const Minimum& found) const {
     const double growth = (found.objective - options_->from) / options_->scale;
     return std::isfinite(growth) ? std::sqrt(std::max(0.0, growth)) : 1e6;
   }
@@ -327,7 +327,7 @@ class Profiler {
 
 }  // namespace
 
-Profiles profiles_of(Residuals& residuals, const std::vector<Minimum>& minima, const ProfileOptions& options) {
+Profiles compute_profiles(Residuals& residuals, const std::vector<Minimum>& minima, const ProfileOptions& options) {
   return Profiler(residuals, minima, options).run();
 }
 

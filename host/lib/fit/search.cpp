@@ -64,7 +64,7 @@ std::vector<Minimum> choose_starts(Residuals& residuals, const SearchOptions& op
   return starts;
 }
 
-double scale_of(const SearchOptions& options, const Minimum& minimum) {
+double noise_scale(const SearchOptions& options, const Minimum& minimum) {
   if (options.has_uncertainties) return options.scale;
   const auto freedom = static_cast<double>(minimum.where.residuals.size() - minimum.where.at.size());
   return minimum.objective / std::max(1.0, freedom);
@@ -94,7 +94,7 @@ bool falls(double from, std::span<const Linearisation> points, Loss loss, double
 
 /// True if the objective falls() on the straight line from one minimum to another, or on the valley floor beside it.
 bool leads_down(Residuals& residuals, const Minimum& from, const Minimum& to, const SearchOptions& options) {
-  const double scale = scale_of(options, to);
+  const double scale = noise_scale(options, to);
   const Eigen::VectorXd line = to.where.at - from.where.at;
   if (line.squaredNorm() == 0.0) return true;
   std::vector<Eigen::VectorXd> points;
@@ -118,7 +118,7 @@ std::vector<Minimum> distinct(std::vector<Minimum> all, Residuals& residuals, co
   std::vector<Minimum> kept;
   for (Minimum& candidate : all) {
     const auto is_near = [&](const Minimum& lower) {
-      return is_straight(candidate.where, lower.where, scale_of(options, lower));
+      return is_straight(candidate.where, lower.where, noise_scale(options, lower));
     };
     const auto is_above = [&](const Minimum& lower) { return leads_down(residuals, candidate, lower, options); };
     if (std::ranges::none_of(kept, is_near) && std::ranges::none_of(kept, is_above))
@@ -140,7 +140,7 @@ std::vector<Minimum> descend_apart(Residuals& residuals, std::vector<Minimum> st
     for (Minimum& end : ends) {
       const auto leads_to = [&](const Minimum& minimum) {
         return minimum.objective <= end.objective && minimum.where.at != end.where.at &&
-               is_straight(end.where, minimum.where, scale_of(options, minimum));
+               is_straight(end.where, minimum.where, noise_scale(options, minimum));
       };
       if (!std::isfinite(end.objective) || std::ranges::any_of(passed, leads_to)) continue;
       passed.push_back(end);
@@ -159,8 +159,8 @@ std::vector<Minimum> find_minima(Residuals& coarse, Residuals& fine, const Searc
   std::vector<Minimum> far =
       distinct(descend_apart(coarse, choose_starts(coarse, options), options, round), coarse, options);
   if (far.empty()) return far;
-  const double scale = std::max(scale_of(options, far.front()), fine.tolerance() * fine.tolerance());
-  const double most = far.front().objective + kFarAbove * scale_of(options, far.front());
+  const double scale = std::max(noise_scale(options, far.front()), fine.tolerance() * fine.tolerance());
+  const double most = far.front().objective + kFarAbove * noise_scale(options, far.front());
   const auto end_of_near = std::ranges::find_if(far, [&](const Minimum& minimum) { return minimum.objective > most; });
   std::vector<Minimum> near;
   for (auto minimum = far.begin(); minimum != end_of_near; ++minimum) near.push_back({.where = {minimum->where.at}});

@@ -55,6 +55,6 @@ struct Profiles {
 /// the growth (see ProfileOptions) reaches one of `rises`. There the interval ends. Beyond this end, a bent valley may
 /// have another branch. To find it, descents begin beyond the end, near known points of the valley. If the growth where
 /// such a descent ends is below the rise, the profile continues there. Errors: errors of the evaluator; Cancelled.
-Profiles profiles_of(Residuals& residuals, const std::vector<Minimum>& minima, const ProfileOptions& options);
+Profiles compute_profiles(Residuals& residuals, const std::vector<Minimum>& minima, const ProfileOptions& options);
 
 }  // namespace dolp::fit

@@ -23,64 +23,65 @@ constexpr double kTooGood = 0.999;  // above this p-value, the uncertainties loo
 constexpr double kAlike = 1.3;
 constexpr double kPossible = 4.0;
 
-Json json_of(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+Json value_json(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
-Json json_of(const Eigen::VectorXd& values) { return std::vector<double>(values.begin(), values.end()); }
+Json value_json(const Eigen::VectorXd& values) { return std::vector<double>(values.begin(), values.end()); }
 
-Json json_of(const Eigen::MatrixXd& matrix) {
+Json value_json(const Eigen::MatrixXd& matrix) {
   Json rows = Json::array();
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) rows.push_back(json_of(Eigen::VectorXd(matrix.row(i).transpose())));
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i)
+    rows.push_back(value_json(Eigen::VectorXd(matrix.row(i).transpose())));
   return rows;
 }
 
-Json json_of(const FitInterval& interval) {
-  return interval.is_empty ? Json(nullptr) : Json::array({json_of(interval.low), json_of(interval.high)});
+Json value_json(const FitInterval& interval) {
+  return interval.is_empty ? Json(nullptr) : Json::array({value_json(interval.low), value_json(interval.high)});
 }
 
-std::string text_of(const std::optional<double>& value, const char* none) {
+std::string to_text(const std::optional<double>& value, const char* none) {
   return value ? fmt::format("{:.6g}", *value) : none;
 }
 
-std::string text_of(const FitInterval& interval) {
+std::string to_text(const FitInterval& interval) {
   return interval.is_empty ? "none"
-                           : fmt::format("{} .. {}", text_of(interval.low, "open"), text_of(interval.high, "open"));
+                           : fmt::format("{} .. {}", to_text(interval.low, "open"), to_text(interval.high, "open"));
 }
 
 struct NamedInterval {
   std::string key, name;
   const FitInterval& interval;
 };
-std::vector<NamedInterval> intervals_of(const FitParameter& parameter) {
+std::vector<NamedInterval> named_intervals(const FitParameter& parameter) {
   return {{"68", "68 %", parameter.interval_68}, {"95", "95 %", parameter.interval_95}};
 }
 
 Json parameter_json(const FitParameter& parameter) {
   Json json = {
-      {"key", parameter.key}, {"value", parameter.value}, {"standard_error", json_of(parameter.standard_error)}};
-  for (const auto& [key, name, interval] : intervals_of(parameter)) json["interval_" + key] = json_of(interval);
+      {"key", parameter.key}, {"value", parameter.value}, {"standard_error", value_json(parameter.standard_error)}};
+  for (const auto& [key, name, interval] : named_intervals(parameter)) json["interval_" + key] = value_json(interval);
   json["at_bound"] = parameter.is_at_bound;
   if (!parameter.standard_error) json["why_no_error"] = parameter.why_no_error;
-  for (const auto& [key, name, interval] : intervals_of(parameter)) {
+  for (const auto& [key, name, interval] : named_intervals(parameter)) {
     if (interval.pieces.size() < 2) continue;
-    for (const auto& [low, high] : interval.pieces) json["pieces_" + key].push_back(json_of(FitInterval{low, high}));
+    for (const auto& [low, high] : interval.pieces) json["pieces_" + key].push_back(value_json(FitInterval{low, high}));
   }
   if (parameter.scaled_68)
-    json.update({{"scaled_68", json_of(*parameter.scaled_68)}, {"scaled_95", json_of(*parameter.scaled_95)}});
+    json.update({{"scaled_68", value_json(*parameter.scaled_68)}, {"scaled_95", value_json(*parameter.scaled_95)}});
   return json;
 }
 
 void add_remarks(ReportBuilder& report, const FitParameter& parameter, const FitResult& result) {
   report.row_if(!parameter.standard_error, "no error", "{}: {}", parameter.key, parameter.why_no_error);
-  for (const auto& [key, name, interval] : intervals_of(parameter)) {
+  for (const auto& [key, name, interval] : named_intervals(parameter)) {
     std::vector<std::string> pieces;
-    for (const auto& [low, high] : interval.pieces) pieces.push_back(text_of(FitInterval{low, high}));
+    for (const auto& [low, high] : interval.pieces) pieces.push_back(to_text(FitInterval{low, high}));
     report.row_if(pieces.size() > 1, "pieces", "{}: the {} interval has gaps: {}", parameter.key, name,
                   fmt::format("{}", fmt::join(pieces, " and ")));
   }
   if (!parameter.scaled_68) return;
   report.row("scaled", "{}: uncertainties {:.3g} times as large give 68 % {}, 95 % {}", parameter.key,
-             std::sqrt(result.reduced_chi_square.value()), text_of(*parameter.scaled_68),
-             text_of(*parameter.scaled_95));
+             std::sqrt(result.reduced_chi_square.value()), to_text(*parameter.scaled_68),
+             to_text(*parameter.scaled_95));
 }
 
 void add_parameters(ReportBuilder& report, const FitResult& result) {
@@ -97,7 +98,7 @@ void add_parameters(ReportBuilder& report, const FitResult& result) {
   for (const FitParameter& fitted : result.parameters) {
     report.line("  {:<{}}  {:>11.6g}  {:>11}  {:^25}  {:^25}{}", fitted.key, width, fitted.value,
                 fitted.standard_error ? fmt::format("{:.2g}", *fitted.standard_error) : "none",
-                text_of(fitted.interval_68), text_of(fitted.interval_95), fitted.is_at_bound ? "  at its bound" : "");
+                to_text(fitted.interval_68), to_text(fitted.interval_95), fitted.is_at_bound ? "  at its bound" : "");
   }
   for (const FitParameter& parameter : result.parameters) add_remarks(report, parameter, result);
   const bool has_errors = std::ranges::any_of(
@@ -108,7 +109,7 @@ void add_parameters(ReportBuilder& report, const FitResult& result) {
 }
 
 void add_correlations(ReportBuilder& report, const FitResult& result) {
-  report.value("correlation", json_of(result.correlation));
+  report.value("correlation", value_json(result.correlation));
   for (Eigen::Index i = 0; i < result.correlation.rows(); ++i) {
     for (Eigen::Index j = 0; j < i; ++j) {
       const double correlation = result.correlation(i, j);
@@ -181,17 +182,17 @@ void add_minima(ReportBuilder& report, const FitResult& result) {
 }
 
 void add_points(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
-  report.value("residuals", json_of(result.residuals));
+  report.value("residuals", value_json(result.residuals));
   Json points = Json::array();
   Eigen::Index row = 0;
   for (const MeasuredData& data : model.data()) {
     for (const Measurement& measurement : data.measurements) {
       points.push_back({{"data", data.name},
-                        {"quantity", name_of(measurement.observable)},
+                        {"quantity", to_name(measurement.observable)},
                         {"theta_deg", measurement.theta_deg},
-                        {"wavelength_um", json_of(measurement.wavelength_um)},
+                        {"wavelength_um", value_json(measurement.wavelength_um)},
                         {"measured", measurement.value},
-                        {"uncertainty", json_of(measurement.uncertainty)},
+                        {"uncertainty", value_json(measurement.uncertainty)},
                         {"model", result.predicted[row]},
                         {"residual", result.residuals[row]}});
       ++row;
@@ -200,13 +201,13 @@ void add_points(ReportBuilder& report, const fit::Model& model, const FitResult&
   report.value("points", points);
 }
 
-std::vector<std::string> settings_of(const ComparedModel& model) {
+std::vector<std::string> setting_texts(const ComparedModel& model) {
   std::vector<std::string> texts;
   for (const Setting& setting : model.settings) texts.push_back(setting.text());
   return texts;
 }
 
-std::string model_text(const ComparedModel& model) { return fmt::format("{}", fmt::join(settings_of(model), " ")); }
+std::string model_text(const ComparedModel& model) { return fmt::format("{}", fmt::join(setting_texts(model), " ")); }
 
 std::string why_no_contours(const FitResult& result, const std::optional<fit::Contours>& drawn) {
   if (result.parameters.size() < 2) return "";
@@ -246,7 +247,7 @@ void add_alike(ReportBuilder& report, const std::vector<ComparedModel>& models, 
   for (const ComparedModel& model : models) {
     if (!model.result || model.result->aic > least_aic + kPossible) continue;
     possible.push_back(&*model.result);
-    if (model.result->aic <= least_aic + kAlike) alike.push_back(settings_of(model));
+    if (model.result->aic <= least_aic + kAlike) alike.push_back(setting_texts(model));
   }
   if (alike.size() < 2) alike.clear();
   report.row_if(!alike.empty(), "alike", "the data cannot tell the first {} models apart: delta AIC is at most {}",
@@ -256,9 +257,11 @@ void add_alike(ReportBuilder& report, const std::vector<ComparedModel>& models, 
     const FitInterval at_68 = hull(possible, j, &FitParameter::interval_68);
     const FitInterval at_95 = hull(possible, j, &FitParameter::interval_95);
     report.row_if(possible.size() > 1, "range", "{}: over the {} models of delta AIC up to {}, 68 % {}, 95 % {}", name,
-                  possible.size(), kPossible, text_of(at_68), text_of(at_95));
-    ranges.push_back(
-        {{"key", name}, {"models", possible.size()}, {"interval_68", json_of(at_68)}, {"interval_95", json_of(at_95)}});
+                  possible.size(), kPossible, to_text(at_68), to_text(at_95));
+    ranges.push_back({{"key", name},
+                      {"models", possible.size()},
+                      {"interval_68", value_json(at_68)},
+                      {"interval_95", value_json(at_95)}});
   }
   report.value("alike", alike);
   report.value("ranges", ranges);
@@ -296,9 +299,9 @@ void add_contours(ReportBuilder& report, const fit::Model& model, const FitResul
       "contours",
       Json{{"keys", {model.parameters()[drawn->parameters[0]].key, model.parameters()[drawn->parameters[1]].key}},
            {"levels", fit::kContourLevels},
-           {"x", json_of(drawn->values[0])},
-           {"y", json_of(drawn->values[1])},
-           {"growth", json_of(drawn->growth)},
+           {"x", value_json(drawn->values[0])},
+           {"y", value_json(drawn->values[1])},
+           {"growth", value_json(drawn->growth)},
            {"evaluations", drawn->evaluations}});
 }
 
@@ -315,7 +318,7 @@ void add_comparison(ReportBuilder& report, const std::vector<ComparedModel>& mod
   }
   report.line("  {:<{}}  {:>10}  {:>9}  {:>9}", "model", width, "chi_square", "delta AIC", "delta BIC");
   for (const ComparedModel& model : models) {
-    Json json = {{"overrides", settings_of(model)}};
+    Json json = {{"overrides", setting_texts(model)}};
     if (model.result) {
       const FitResult& result = *model.result;
       report.line("  {:<{}}  {:>10.5g}  {:>9.2f}  {:>9.2f}", model_text(model), width, result.chi_square,

@@ -35,7 +35,7 @@ struct PlannedRun {
 };
 
 /// The device that a run would use. If there is none, a device with the lowest limits that Vulkan allows.
-Device device_of(const std::string& choice, const SceneValues& scene, PlannedRun& planned) {
+Device find_device(const std::string& choice, const SceneValues& scene, PlannedRun& planned) {
   const bool in_double = scene.accuracy.precision == Precision::kDouble;
   const DeviceList list = list_devices();
   try {
@@ -52,19 +52,19 @@ Device device_of(const std::string& choice, const SceneValues& scene, PlannedRun
   }
 }
 
-void add_dispatches(PlannedRun& planned, const vulkan::DispatchCount& of_request) {
-  planned.dispatches.dispatches += of_request.dispatches;
-  planned.dispatches.tile_invocations = std::max(planned.dispatches.tile_invocations, of_request.tile_invocations);
-  planned.dispatches.row_width = std::max(planned.dispatches.row_width, of_request.row_width);
-  planned.dispatches.rows += of_request.rows;
-  planned.dispatches.block_shapes = std::max(planned.dispatches.block_shapes, of_request.block_shapes);
-  planned.dispatches.device_bytes = std::max(planned.dispatches.device_bytes, of_request.device_bytes);
+void add_dispatches(PlannedRun& planned, const vulkan::DispatchCount& request_count) {
+  planned.dispatches.dispatches += request_count.dispatches;
+  planned.dispatches.tile_invocations = std::max(planned.dispatches.tile_invocations, request_count.tile_invocations);
+  planned.dispatches.row_width = std::max(planned.dispatches.row_width, request_count.row_width);
+  planned.dispatches.rows += request_count.rows;
+  planned.dispatches.block_shapes = std::max(planned.dispatches.block_shapes, request_count.block_shapes);
+  planned.dispatches.device_bytes = std::max(planned.dispatches.device_bytes, request_count.device_bytes);
 }
 
 void add_pipeline(PlannedRun& planned, const char* kernel, Precision precision, const std::string& more = {}) {
   const Surface& surface = planned.scene.surface;
-  const std::string text = fmt::format("{}, {}: distribution {}, masking {}{}", kernel, name_of(precision),
-                                       name_of(surface.distribution), name_of(surface.masking), more);
+  const std::string text = fmt::format("{}, {}: distribution {}, masking {}{}", kernel, to_name(precision),
+                                       to_name(surface.distribution), to_name(surface.masking), more);
   if (std::ranges::find(planned.pipelines, text) == planned.pipelines.end()) planned.pipelines.push_back(text);
 }
 
@@ -83,11 +83,11 @@ void add_request(PlannedRun& planned, const MomentsRequest& request, const Devic
 PlannedRun planned_run(const SceneValues& scene, const std::string& device, EffectPlan plan) {
   PlannedRun planned;
   planned.scene = scene;
-  const Device limits = device_of(device, scene, planned);
+  const Device limits = find_device(device, scene, planned);
   const std::size_t without_a_run = peak_resident_bytes();  // peak memory of scene and driver, before the prediction
   const SceneEntries entries = grid_entries(scene);
   planned.plan = with_spectra(std::move(plan), scene, entries);
-  planned.effects = effects_of(scene, entries, planned.plan);
+  planned.effects = list_effects(scene, entries, planned.plan);
   planned.influences = add_influences(planned.effects, scene, entries, planned.plan);
   planned.run = predict_run(scene, entries, planned.plan, limits.has_double,
                             [&](const MomentsRequest& request) { add_request(planned, request, limits); });
@@ -109,7 +109,7 @@ PlannedRun planned_run(const SceneValues& scene, const std::string& device, Effe
 
 constexpr int kLabelWidth = 11;
 
-std::string state_text(EffectState state) { return state == EffectState::kNotNeeded ? "not needed" : name_of(state); }
+std::string state_text(EffectState state) { return state == EffectState::kNotNeeded ? "not needed" : to_name(state); }
 
 std::string influence_text(const Effect& row) {
   if (!row.bound && !row.influence) return "-";
@@ -124,7 +124,7 @@ ReportBuilder effect_report(const Effect& row) {
   report.line("  {:<14} {:<11} {:>11}  {}{}", key("name", row.name), state_text(row.state), influence_text(row),
               key("reason", row.reason), row.needs.empty() ? "" : fmt::format(" [{}]", row.needs));
   report.values(
-      {{"asked_for", row.state != EffectState::kAbsent}, {"state", name_of(row.state)}, {"needs", row.needs}});
+      {{"asked_for", row.state != EffectState::kAbsent}, {"state", to_name(row.state)}, {"needs", row.needs}});
   report.value("bound", row.bound);
   report.value("influence_estimate", row.influence);
   return report;
@@ -178,7 +178,7 @@ void add_attempts(ReportBuilder& report, const PlannedRun& plan, bool is_idle) {
   const RunPrediction& run = plan.run;
   report.row_if(
       !is_idle, "attempts", "first: {} at tolerance {:g}, {} moments, {} values of f; {:.3g} % again, tighter",
-      key("first_attempt/precision", name_of(run.first.precision)), key("first_attempt/tolerance", run.first.tolerance),
+      key("first_attempt/precision", to_name(run.first.precision)), key("first_attempt/tolerance", run.first.tolerance),
       key("moments", run.moments), key("beams", run.beams), kPoints * run.again_share);
   report.value("further_attempts/share", run.again_share);
   report.row_if(run.interpolated > 0 && run.moments > 0, "interpolate",
@@ -237,7 +237,7 @@ void add_between(ReportBuilder& report, const PlannedRun& plan) {
   for (const AxisForecast& axis : plan.between.axes) {
     ReportBuilder& row = axes.emplace_back(kLabelWidth);
     const bool is_known = axis.needed_values > 0;
-    row.row("between", "along {}: {} between {} values{}", key("axis", description_of(axis.axis).name),
+    row.row("between", "along {}: {} between {} values{}", key("axis", describe(axis.axis).name),
             error_text(axis.error), key("values", axis.values),
             is_known ? fmt::format("; about {} values keep it within the tolerance", axis.needed_values) : "");
     row.value("median", axis.error.compared > 0 ? std::optional(axis.error.median) : std::nullopt);
@@ -254,7 +254,7 @@ std::string grid_text(const Axes& grid) {
   for (const Axis axis : kAllAxes) {
     if (grid[axis].empty()) continue;
     counts += fmt::format("{}{}", counts.empty() ? "" : " x ", grid[axis].size());
-    names += fmt::format("{}{}", names.empty() ? "" : " x ", description_of(axis).name);
+    names += fmt::format("{}{}", names.empty() ? "" : " x ", describe(axis).name);
   }
   return fmt::format("{} ({})", counts, names);
 }
@@ -263,12 +263,12 @@ ReportBuilder::Json effects_json(const std::vector<Effect>& effects, const Effec
   ReportBuilder::Json json;
   for (const EffectState state :
        {EffectState::kKept, EffectState::kDropped, EffectState::kNotNeeded, EffectState::kAbsent}) {
-    json[name_of(state)] = ReportBuilder::Json::array();
+    json[to_name(state)] = ReportBuilder::Json::array();
   }
   for (const Effect& row : effects) {
-    ReportBuilder::Json of_row = {{"name", row.name}, {"reason", row.reason}};
-    if (row.state == EffectState::kDropped) of_row["bound"] = row.bound.value_or(0.0);
-    json[name_of(row.state)].push_back(of_row);
+    ReportBuilder::Json row_json = {{"name", row.name}, {"reason", row.reason}};
+    if (row.state == EffectState::kDropped) row_json["bound"] = row.bound.value_or(0.0);
+    json[to_name(row.state)].push_back(row_json);
   }
   json["keep_all"] = plan.keep_all;
   json["allowed_share_of_tolerance"] = kDroppedShare;
@@ -280,7 +280,7 @@ ReportBuilder plan_report(const SceneValues& scene, const std::string& device, E
   const PlannedRun plan = planned_run(scene, device, std::move(effects));
   ReportBuilder report(kLabelWidth);
   add_title(report, scene);
-  report.row("scene", "{}, {} = {} entries, spectral samples: {}", name_of(scene.geometry.mode), grid_text(scene.grid),
+  report.row("scene", "{}, {} = {} entries, spectral samples: {}", to_name(scene.geometry.mode), grid_text(scene.grid),
              key("entries", plan.run.entries), key("spectral_samples", plan.run.spectral_samples));
   report.line("");
   add_effects(report, plan);

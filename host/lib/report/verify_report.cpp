@@ -20,14 +20,13 @@ constexpr std::size_t kMostFailureLines = 20;
 std::string position_text(const std::vector<AxisValue>& position) {
   std::vector<std::string> texts;
   for (const auto& [axis, number, label] : position)
-    texts.push_back(
-        fmt::format("{} {}", description_of(axis).name, label.empty() ? fmt::format("{:g}", number) : label));
+    texts.push_back(fmt::format("{} {}", describe(axis).name, label.empty() ? fmt::format("{:g}", number) : label));
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
 void add_position(ReportBuilder::Json& json, const std::vector<AxisValue>& position) {
   for (const auto& [axis, number, label] : position) {
-    ReportBuilder::Json& coordinate = json[description_of(axis).column];
+    ReportBuilder::Json& coordinate = json[describe(axis).column];
     label.empty() ? coordinate = number : coordinate = label;
   }
 }
@@ -86,8 +85,8 @@ ReportBuilder case_report(const CaseOutcome& outcome) {
               key("dolp/error", outcome.dolp.error), key("dolp/estimate", outcome.dolp.estimate), verdict);
   report.value("rho/reference_error", outcome.rho.reference);
   report.value("dolp/reference_error", outcome.dolp.reference);
-  report.values({{"distribution", name_of(stored.distribution)},
-                 {"masking", name_of(stored.masking)},
+  report.values({{"distribution", to_name(stored.distribution)},
+                 {"masking", to_name(stored.masking)},
                  {"theta_deg", stored.theta_deg},
                  {"sigma", stored.shape.sigma},
                  {"q", stored.shape.q},
@@ -105,7 +104,7 @@ void add_group(ReportBuilder& report, const char* precision, const std::vector<c
   const bool is_rho = worst.rho.ratio() >= worst.dolp.ratio() || std::isinf(worst.dolp.estimate);
   const ErrorCheck& check = is_rho ? worst.rho : worst.dolp;
   report.line("  {:<6} {:<8} {:<8} {} cases, {} say they miss; nearest to its estimate: {} of {}, {:.1e} of {:.1e}",
-              precision, name_of(worst.stored.distribution), name_of(worst.stored.masking), group.size(),
+              precision, to_name(worst.stored.distribution), to_name(worst.stored.masking), group.size(),
               std::ranges::count_if(group, &CaseOutcome::misses_tolerance), is_rho ? "rho" : "dolp", worst.stored.name,
               check.error, check.estimate);
 }
@@ -170,25 +169,25 @@ Quality quality_in(const Device& device, std::size_t position, Precision precisi
 ReportBuilder quality_report(const Quality& quality) {
   ReportBuilder report;
   if (quality.outcomes.empty()) {
-    report.line("   {:<6} not measured: {}", name_of(quality.precision), key("why_not", quality.why_not));
+    report.line("   {:<6} not measured: {}", to_name(quality.precision), key("why_not", quality.why_not));
     return report;
   }
-  const auto error_of = [](const CaseOutcome& outcome) {
+  const auto outcome_error = [](const CaseOutcome& outcome) {
     return std::isnan(outcome.rho.error) ? kInfinity : outcome.rho.error;
   };
-  const CaseOutcome& worst = *std::ranges::max_element(quality.outcomes, {}, error_of);
+  const CaseOutcome& worst = *std::ranges::max_element(quality.outcomes, {}, outcome_error);
   const auto missed = std::ranges::count_if(quality.outcomes, &CaseOutcome::misses_tolerance);
   const bool is_sound =
       std::ranges::all_of(quality.outcomes, [](const CaseOutcome& checked) { return checked.complaint.empty(); });
   report.line(
       "   {:<6} true error of rho at most {:.1e} in {} ordinary cases; with tolerance {:g}, {} of them get status 2 or "
       "16, because the stated bound, larger than the error, misses it{}",
-      name_of(quality.precision), key("worst_rho_error", worst.rho.error), key("cases", quality.outcomes.size()),
+      to_name(quality.precision), key("worst_rho_error", worst.rho.error), key("cases", quality.outcomes.size()),
       key("tolerance", tolerance_in(quality.precision)), key("missed_tolerance", missed),
       is_sound ? "" : "; SOME ERRORS EXCEED THEIR ESTIMATES, see dolp verify --hard-cases");
   const StoredCase& stored = worst.stored;
   report.value("worst_case",
-               fmt::format("{} {} {}", name_of(stored.distribution), name_of(stored.masking), stored.name));
+               fmt::format("{} {} {}", to_name(stored.distribution), to_name(stored.masking), stored.name));
   report.value("sound", is_sound);
   return report;
 }
@@ -217,7 +216,7 @@ ReportBuilder device_report(const Device& device, std::size_t position) {
                  {"heap_bytes", device.memory_bytes},
                  {"timestamps", device.timestamps}});
   for (const Quality& quality : {in_float, in_double}) {
-    report.add((std::string("quality/") + name_of(quality.precision)).c_str(), quality_report(quality));
+    report.add((std::string("quality/") + to_name(quality.precision)).c_str(), quality_report(quality));
   }
   return report;
 }
@@ -233,12 +232,12 @@ ReportBuilder between_report(const std::vector<InterpolationError>& errors, std:
   for (const InterpolationError& found : errors) {
     ReportBuilder& row = rows.emplace_back();
     const ErrorSummary& error = found.error;
-    row.row(description_of(found.quantity).name, "{:<6} median {:.1e}, 95 % {:.1e}, largest {:.1e}{}",
+    row.row(describe(found.quantity).name, "{:<6} median {:.1e}, 95 % {:.1e}, largest {:.1e}{}",
             key("method", found.method), key("median", error.median), key("p95", error.p95),
             key("largest", error.largest), found.at.empty() ? "" : " at " + position_text(found.at));
     ReportBuilder::Json at = ReportBuilder::Json::object();
     add_position(at, found.at);
-    row.values({{"quantity", description_of(found.quantity).name}, {"compared", error.compared}, {"at", at}});
+    row.values({{"quantity", describe(found.quantity).name}, {"compared", error.compared}, {"at", at}});
   }
   report.add("between", rows);
   return report;

@@ -70,11 +70,11 @@ Moments grazing_limit_moments(const FacetOptics& index, double q) {
   std::ranges::sort(ends);
   // The integrand is not smooth near x = cos(phi) = 0. There sin(psi), with psi = pi/2 - phi, has a smaller rounding
   // error than cos(phi). So the integral is over psi.
-  const auto integral = [&](auto&& of_cosine) {
+  const auto integral = [&](auto&& cosine_factor) {
     // Boost refuses nodes that round to an end of the interval, unless the integrand has this unused second parameter.
     const auto integrand = [&](double psi, double) {
       const double x = std::sin(psi);
-      return x > kSmallestCosine ? std::pow(x, 4.0 - 2.0 * q) * of_cosine(x) : 0.0;
+      return x > kSmallestCosine ? std::pow(x, 4.0 - 2.0 * q) * cosine_factor(x) : 0.0;
     };
     Estimate sum;
     for (std::size_t i = 0; i + 1 < ends.size(); ++i) {

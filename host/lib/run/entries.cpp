@@ -22,8 +22,8 @@ void check_columns(const SceneValues& scene, const Points& points) {
   }
   for (const Axis axis : {Axis::kN, Axis::kK}) {
     if (points[axis] && points[Axis::kMaterial])
-      throw InputError(fmt::format("{}: columns \"material\" and \"{}\" cannot be combined", points.where(),
-                                   description_of(axis).column));
+      throw InputError(
+          fmt::format("{}: columns \"material\" and \"{}\" cannot be combined", points.where(), describe(axis).column));
   }
   const Material& material = scene.surface.material;
   const bool is_dispersive = !material.is_constant() || (points[Axis::kWavelength] && material.tabulated);
@@ -44,8 +44,7 @@ std::vector<std::pair<Axis, std::vector<double>>> variant_columns(const SceneVal
     if (!points[axis] || points.size() == 0) continue;
     if (axis == Axis::kTemperature && !scene.emission)
       throw InputError(points.where() + ": column \"temperature_K\" needs [emission] in the scene");
-    columns.emplace_back(axis,
-                         description_of(axis).has_labels ? label_positions(points, axis, scene.labels) : *points[axis]);
+    columns.emplace_back(axis, describe(axis).has_labels ? label_positions(points, axis, scene.labels) : *points[axis]);
   }
   return columns;
 }
@@ -111,23 +110,23 @@ void check_labels_chosen(const SceneValues& scene, const Points& points) {
     const std::vector<std::string>& labels = scene.labels[axis];
     if (labels.size() < 2 || points[axis]) continue;
     const char* const key = axis == Axis::kMaterial ? "surface.material=NAME" : "spectrum.band_um=[FROM, TO]";
-    throw InputError(fmt::format("{}: grid.{} has {} values; choose one with --set {}{}", scene.path_name,
-                                 description_of(axis).column, labels.size(), key,
-                                 points.name.empty() ? ""
-                                                     : fmt::format(", or add the column \"{}\" to {}",
-                                                                   description_of(axis).column, points.name)));
+    throw InputError(fmt::format(
+        "{}: grid.{} has {} values; choose one with --set {}{}", scene.path_name, describe(axis).column, labels.size(),
+        key,
+        points.name.empty() ? ""
+                            : fmt::format(", or add the column \"{}\" to {}", describe(axis).column, points.name)));
   }
 }
 
 SceneEntries grid_entries(const SceneValues& scene) {
-  const PerAxis counts = counts_of(scene.grid);
+  const PerAxis counts = axis_counts(scene.grid);
   double size = 1.0;
   for (const std::size_t count : counts) size *= static_cast<double>(count);
   if (size > static_cast<double>(kMostTableEntries)) {
     throw InputError(fmt::format("{}: grid: {} entries; at most {} in one table", scene.path_name,
                                  fmt::join(counts, " x "), kMostTableEntries));
   }
-  return SceneEntries::of_grid(scene.grid, scene.surface.material.constant);
+  return SceneEntries::grid(scene.grid, scene.surface.material.constant);
 }
 
 SceneEntries point_entries(const SceneValues& scene, const Points& points) {

@@ -45,13 +45,13 @@ SceneEntries spread_entries(const SceneEntries& entries) {
   std::vector<std::size_t> positions;
   const PerAxis& counts = entries.counts();
   AxisArray<std::vector<std::size_t>> values;
-  PerAxis of_axis{};
+  PerAxis value_counts{};
   for (const Axis axis : kAllAxes) {
     values[axis] = spread_positions(counts[axis], most_values(axis));
-    of_axis[axis] = values[axis].size();
+    value_counts[axis] = values[axis].size();
   }
-  for (std::size_t i = 0; i < size_of(of_axis); ++i) {
-    const PerAxis chosen = positions_on_axes(i, of_axis);
+  for (std::size_t i = 0; i < grid_size(value_counts); ++i) {
+    const PerAxis chosen = positions_on_axes(i, value_counts);
     std::size_t position = 0;
     for (const Axis axis : kAllAxes) position = position * counts[axis] + values[axis][chosen[axis]];
     positions.push_back(position);
@@ -65,7 +65,7 @@ struct Sample {
   std::vector<double> weights;  ///< weights of the wavelengths in the integral over a band; {1} without a band
 };
 
-Sample sample_of(const SceneValues& scene, const SceneEntries& entries, const SpectralRules& rules) {
+Sample draw_sample(const SceneValues& scene, const SceneEntries& entries, const SpectralRules& rules) {
   Sample sample{scene, spread_entries(entries), {1.0}};
   // Float is enough for an estimate. Repeating inaccurate entries in double could take longer than the whole table.
   sample.scene.accuracy = {.tolerance = kTolerance, .precision = Precision::kFloat};
@@ -99,7 +99,7 @@ Sample sample_of(const SceneValues& scene, const SceneEntries& entries, const Sp
   return sample;
 }
 
-PointResult sum_of(std::span<const PointResult> results, std::span<const double> weights) {
+PointResult weighted_sum(std::span<const PointResult> results, std::span<const double> weights) {
   if (results.size() == 1) return results.front();
   PointResult sum;
   for (const Quantity stokes : {kStokesI, kStokesQ, kStokesU}) sum[stokes] = 0.0;
@@ -135,19 +135,19 @@ class RememberingEvaluator final : public ModelEvaluator {
   std::vector<std::pair<MomentsRequest, std::vector<Moments>>> known_;
 };
 
-std::vector<PointResult> results_of(const Sample& sample, ModelEvaluator& evaluator, const EffectPlan& plan) {
+std::vector<PointResult> sample_results(const Sample& sample, ModelEvaluator& evaluator, const EffectPlan& plan) {
   const std::vector<PointResult> all = evaluate_scene(sample.scene, sample.entries, evaluator, {}, plan);
   std::vector<PointResult> sums;
   const std::size_t count = sample.weights.size();
   for (std::size_t i = 0; i < all.size(); i += count) {
-    sums.push_back(sum_of(std::span(all).subspan(i, count), sample.weights));
+    sums.push_back(weighted_sum(std::span(all).subspan(i, count), sample.weights));
   }
   return sums;
 }
 
-std::vector<PointResult> results_of(const Sample& sample) {
+std::vector<PointResult> sample_results(const Sample& sample) {
   CpuEvaluator evaluator;
-  return results_of(sample, evaluator, keep_everything(sample.scene));
+  return sample_results(sample, evaluator, keep_everything(sample.scene));
 }
 
 double polarisation_change(const PointResult& a, const PointResult& b) {
@@ -200,16 +200,16 @@ std::string Looked::text() const {
 
 Influences add_influences(std::vector<Effect>& rows, const SceneValues& scene, const SceneEntries& entries,
                           const EffectPlan& plan) {
-  const Sample sample = sample_of(scene, entries, *with_spectra(plan, scene, entries).rules);
+  const Sample sample = draw_sample(scene, entries, *with_spectra(plan, scene, entries).rules);
   const EffectPlan all = with_spectra(plan_to_keep(sample.scene, {}), sample.scene, sample.entries);
   RememberingEvaluator evaluator;
-  const std::vector<PointResult> whole = results_of(sample, evaluator, all);
+  const std::vector<PointResult> whole = sample_results(sample, evaluator, all);
   for (Effect& row : rows) {
     if (row.state != EffectState::kKept || !row.part || row.influence) continue;
     EffectPlan others = plan_to_keep(sample.scene, without({}, *row.part));
     others.rules = all.rules;
     if (others.kept.moments && others.kept.surroundings && others.kept.profile) others.sky = all.sky;
-    row.influence = largest_change(whole, results_of(sample, evaluator, others), polarisation_change);
+    row.influence = largest_change(whole, sample_results(sample, evaluator, others), polarisation_change);
   }
   Influences influences{looked_at(sample)};
   for (const PointResult& result : whole) influences.model_change.add(result);
@@ -220,11 +220,11 @@ Influences add_influences(std::vector<Effect>& rows, const SceneValues& scene, c
 std::optional<ScatteringGap> scattering_gap(const SceneValues& scene, const SceneEntries& entries,
                                             const EffectPlan& plan) {
   if (!has_gap(scene, plan)) return {};
-  Sample sample = sample_of(scene, entries, *plan.rules);
+  Sample sample = draw_sample(scene, entries, *plan.rules);
   sample.scene.emission->model = EmissionModel::kMoments;
-  const std::vector<PointResult> kirchhoff = results_of(sample);
+  const std::vector<PointResult> kirchhoff = sample_results(sample);
   sample.scene.emission->model = EmissionModel::kDirect;
-  const std::vector<PointResult> direct = results_of(sample);
+  const std::vector<PointResult> direct = sample_results(sample);
   const std::optional<double> dolp = largest_change(
       kirchhoff, direct, [](const PointResult& a, const PointResult& b) { return std::abs(a[kDolp] - b[kDolp]); });
   return dolp ? std::optional(ScatteringGap{*dolp, looked_at(sample)}) : std::nullopt;

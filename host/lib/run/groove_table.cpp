@@ -28,7 +28,7 @@ struct Scale {
   std::function<double(double)> to, from;
 };
 
-Scale scale_of(Axis axis) {
+Scale axis_scale(Axis axis) {
   const auto same = [](double x) { return x; };
   if (axis == Axis::kTheta) return {6, same, same};
   if (axis == Axis::kN) return {4, [](double n) { return std::log(n); }, [](double x) { return std::exp(x); }};
@@ -89,7 +89,7 @@ GrooveTable::GrooveTable(const SceneValues& scene, const SceneEntries& grid, con
       for (double& theta_deg : values) theta_deg = moment_zenith_deg(scene, theta_deg);
     }
     if (values.empty()) values = {axis == Axis::kN ? grid.index().n : grid.index().k};
-    axes_[axis] = polynomial_nodes(values, scale_of(axis));
+    axes_[axis] = polynomial_nodes(values, axis_scale(axis));
   }
   const std::vector<double>& wavelengths = axes[Axis::kWavelength];
   axes_[Axis::kWavelength] = linear_nodes(wavelengths.empty() ? std::vector{0.0} : wavelengths, kWavelengthNodes);

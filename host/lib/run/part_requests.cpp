@@ -13,7 +13,7 @@
 namespace dolp {
 namespace {
 
-BeamAngles angles_of(const SceneValues& scene, double theta_deg) {
+BeamAngles beam_angles(const SceneValues& scene, double theta_deg) {
   const Geometry& geometry = scene.geometry;
   return {theta_deg, zenith_before_limit_deg(scene.surface.masking, geometry.view_zenith_deg),
           geometry.relative_azimuth_deg};
@@ -24,8 +24,8 @@ SlopeShape normalised(const SceneValues& scene, const SlopeShape& shape) {
 }
 
 Treatment treatment(const SceneValues& scene, const SceneEntry& entry) {
-  return treatment_of(scene.surface.distribution, scene.surface.masking, moment_zenith_deg(scene, entry.theta_deg),
-                      entry.shape);
+  return choose_treatment(scene.surface.distribution, scene.surface.masking, moment_zenith_deg(scene, entry.theta_deg),
+                          entry.shape);
 }
 
 constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();  // position of a value without requests
@@ -72,7 +72,7 @@ std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const Scene
 std::vector<FacetOptics> indices_of_grid(const EffectPlan& plan, const SceneEntries& entries) {
   const PerAxis& counts = entries.whole();
   if (counts[Axis::kTheta] * counts[Axis::kSigma] * counts[Axis::kQ] < kLeastEntries) return {};
-  const SceneEntries whole = SceneEntries::of_grid(entries.whole_axes(), entries.index());
+  const SceneEntries whole = SceneEntries::grid(entries.whole_axes(), entries.index());
   std::vector<FacetOptics> indices;
   if (whole.has_own_index()) {
     PerAxis on_axes{};
@@ -87,10 +87,10 @@ std::vector<FacetOptics> indices_of_grid(const EffectPlan& plan, const SceneEntr
     }
     return indices;
   }
-  for (const std::vector<FacetOptics>& of_variant : spectral_indices(plan, whole)) {
-    if (indices.size() < of_variant.size() ||
-        !std::ranges::equal(of_variant, std::span(indices).last(of_variant.size())))
-      indices.insert(indices.end(), of_variant.begin(), of_variant.end());
+  for (const std::vector<FacetOptics>& variant_optics : spectral_indices(plan, whole)) {
+    if (indices.size() < variant_optics.size() ||
+        !std::ranges::equal(variant_optics, std::span(indices).last(variant_optics.size())))
+      indices.insert(indices.end(), variant_optics.begin(), variant_optics.end());
   }
   return indices;
 }
@@ -106,11 +106,11 @@ bool wants_moments(const SceneValues& scene, const SceneEntry& entry, const Effe
 }
 
 bool wants_beam(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan) {
-  return plan.needs_beams && !is_mirror(entry.shape) && has_facet(angles_of(scene, entry.theta_deg));
+  return plan.needs_beams && !is_mirror(entry.shape) && has_facet(beam_angles(scene, entry.theta_deg));
 }
 
 Scattered beam_without_evaluator(const SceneValues& scene, double theta_deg) {
-  const BeamAngles angles = angles_of(scene, theta_deg);
+  const BeamAngles angles = beam_angles(scene, theta_deg);
   const bool is_undefined = !has_facet(angles) || is_specular(angles);
   const double glare = is_undefined ? std::numeric_limits<double>::quiet_NaN() : 0.0;
   return {.i = glare, .q = glare};
@@ -158,7 +158,7 @@ std::size_t PartRequests::index_set(const SceneEntries& grid, const PerAxis& on_
   return (variant * counts[Axis::kN] + on_axes[Axis::kN]) * counts[Axis::kK] + on_axes[Axis::kK];
 }
 
-std::vector<FacetOptics> PartRequests::samples_of(const SceneEntries& grid, std::size_t set) const {
+std::vector<FacetOptics> PartRequests::index_set_samples(const SceneEntries& grid, std::size_t set) const {
   if (!grid.has_own_index()) return samples_[set];
   const std::size_t n_values = grid.counts()[Axis::kN];
   const std::size_t k_values = grid.counts()[Axis::kK];
@@ -219,11 +219,11 @@ void PartRequests::request_indices(const SceneEntries& grid, const std::vector<c
   std::uint32_t first = 0;
   for (std::size_t set = 0; set < is_used.size(); ++set) {
     if (is_used[set] == 0) continue;
-    std::vector<FacetOptics> of_set = samples_of(grid, set);
-    if (of_set != last) {
+    std::vector<FacetOptics> next_samples = index_set_samples(grid, set);
+    if (next_samples != last) {
       first = static_cast<std::uint32_t>(moments_.optics.size());
-      moments_.optics.insert(moments_.optics.end(), of_set.begin(), of_set.end());
-      last = std::move(of_set);
+      moments_.optics.insert(moments_.optics.end(), next_samples.begin(), next_samples.end());
+      last = std::move(next_samples);
     }
     index_set_offset_[set] = first;
   }
@@ -234,23 +234,23 @@ void PartRequests::mark_wanted(const Selection& selection) {
   for (std::size_t i = 0; i < selection.size(); ++i) {
     const SceneEntry entry = selection[i];
     if (!wants_moments(scene_, entry, plan_)) continue;
-    const MomentsSpan span = moments_of(i);
+    const MomentsSpan span = member_moments(i);
     const std::size_t samples = span.stride == 0 ? 1 : samples_[entry.variant].size();
     for (std::size_t j = 0; j < samples; ++j) moments_.wanted[span.first + j * span.stride] = 1;
   }
   if (moments_.wanted_count() == moments_.size()) moments_.wanted.clear();
 }
 
-PartRequests::MomentsSpan PartRequests::moments_of(std::size_t member) const {
+PartRequests::MomentsSpan PartRequests::member_moments(std::size_t member) const {
   if (!spans_of_points_.empty()) return spans_of_points_[member];
   const SceneEntries& grid = selection_.part;
   const PerAxis on_axes = grid.axis_positions(selection_.position(member));
-  const std::size_t of_index = moments_.theta_deg.size() * moments_.shapes();
+  const std::size_t entries_per_index = moments_.theta_deg.size() * moments_.shapes();
   const std::size_t shape = sigma_at_[on_axes[Axis::kSigma]] * moments_.q.size() + q_at_[on_axes[Axis::kQ]];
-  const std::size_t of_theta = theta_at_[on_axes[Axis::kTheta]] * moments_.shapes();
+  const std::size_t theta_offset = theta_at_[on_axes[Axis::kTheta]] * moments_.shapes();
   const bool has_one_index = grid.has_own_index() && !has_films();
-  return {index_set_offset_[index_set(grid, on_axes)] * of_index + of_theta + shape,
-          has_one_index ? std::size_t{0} : of_index};
+  return {index_set_offset_[index_set(grid, on_axes)] * entries_per_index + theta_offset + shape,
+          has_one_index ? std::size_t{0} : entries_per_index};
 }
 
 std::optional<std::size_t> PartRequests::requested_direction(std::size_t member) const {
@@ -278,9 +278,9 @@ void PartRequests::request_points(const Selection& selection) {
     const auto [known_span, is_new] =
         known.try_emplace({zenith_deg, shape.sigma, shape.q, key.n, key.k, films_at}, MomentsSpan{});
     if (is_new) {
-      const std::vector<FacetOptics> of_entry = with_index(samples_[entry.variant], entry.index);
+      const std::vector<FacetOptics> entry_optics = with_index(samples_[entry.variant], entry.index);
       known_span->second = {moments_.size(), entry.index && !has_films() ? std::size_t{0} : std::size_t{1}};
-      for (const FacetOptics& sample : of_entry) moments_.append({zenith_deg, shape, sample});
+      for (const FacetOptics& sample : entry_optics) moments_.append({zenith_deg, shape, sample});
     }
     spans_of_points_.push_back(known_span->second);
   }
@@ -290,15 +290,15 @@ void PartRequests::request_beams(const Selection& selection) {
   const bool is_grid = selection.part.is_grid();
   const auto q_count = static_cast<std::uint32_t>(selection.part.q().size());
   if (is_grid) {
-    for (const double theta_deg : selection.part.theta_deg()) beams_.angles.push_back(angles_of(scene_, theta_deg));
+    for (const double theta_deg : selection.part.theta_deg()) beams_.angles.push_back(beam_angles(scene_, theta_deg));
     for (const double sigma : selection.part.sigma()) {
       for (const double q : selection.part.q()) beams_.shapes.push_back({sigma, q});
     }
   }
   std::vector<std::uint32_t> first_index;
-  for (const std::vector<FacetOptics>& of_wavelength : samples_) {
+  for (const std::vector<FacetOptics>& wavelength_optics : samples_) {
     first_index.push_back(static_cast<std::uint32_t>(beams_.optics.size()));
-    beams_.optics.insert(beams_.optics.end(), of_wavelength.begin(), of_wavelength.end());
+    beams_.optics.insert(beams_.optics.end(), wavelength_optics.begin(), wavelength_optics.end());
   }
   first_beam_.reserve(selection.size());
   for (std::size_t i = 0; i < selection.size(); ++i) {
@@ -313,15 +313,15 @@ void PartRequests::request_beams(const Selection& selection) {
           static_cast<std::uint32_t>(on_axes[Axis::kSigma]) * q_count + static_cast<std::uint32_t>(on_axes[Axis::kQ]);
     } else {
       wanted.angles = wanted.shape = static_cast<std::uint32_t>(beams_.angles.size());
-      beams_.angles.push_back(angles_of(scene_, entry.theta_deg));
+      beams_.angles.push_back(beam_angles(scene_, entry.theta_deg));
       beams_.shapes.push_back(entry.shape);
     }
     for (std::uint32_t j = 0; j < samples_[entry.variant].size(); ++j) {
       wanted.index = first_index[entry.variant] + j;
       if (entry.index) {
-        FacetOptics of_entry = samples_[entry.variant][j];
-        of_entry.index = *entry.index;
-        if (beams_.optics.back() != of_entry) beams_.optics.push_back(std::move(of_entry));
+        FacetOptics entry_optics = samples_[entry.variant][j];
+        entry_optics.index = *entry.index;
+        if (beams_.optics.back() != entry_optics) beams_.optics.push_back(std::move(entry_optics));
         wanted.index = static_cast<std::uint32_t>(beams_.optics.size() - 1);
       }
       beams_.entries.push_back(wanted);

@@ -67,19 +67,19 @@ class PartRequests {
     std::size_t first = 0;
     std::size_t stride = 0;
   };
-  MomentsSpan moments_of(std::size_t member) const;
+  MomentsSpan member_moments(std::size_t member) const;
   /// For a grid: the direction whose moments a member uses, as a position in moments().theta_deg. Nullopt if nothing is
   /// requested for its zenith.
   std::optional<std::size_t> requested_direction(std::size_t member) const;
   /// The position in beams() of the first beam of a member. A member has one beam per wavelength.
-  std::size_t beams_of(std::size_t member) const { return first_beam_[member]; }
+  std::size_t first_beam(std::size_t member) const { return first_beam_[member]; }
 
  private:
   void request_grid(const Selection& selection);
   void request_indices(const SceneEntries& grid, const std::vector<char>& is_used);
   void mark_wanted(const Selection& selection);
   std::size_t index_set(const SceneEntries& grid, const PerAxis& on_axes) const;
-  std::vector<FacetOptics> samples_of(const SceneEntries& grid, std::size_t set) const;
+  std::vector<FacetOptics> index_set_samples(const SceneEntries& grid, std::size_t set) const;
   bool has_films() const { return !samples_.front().front().is_bare(); }
   void request_points(const Selection& selection);
   void request_beams(const Selection& selection);

@@ -28,7 +28,7 @@ SceneEntries entries_of_drawn_directions(const SceneEntries& grid, std::size_t c
     const bool is_whole = has_responses && axis != Axis::kTemperature;
     if (!is_whole) axes[axis] = {axes[axis][axes[axis].size() / 2]};
   }
-  return SceneEntries::of_grid(axes, grid.index());
+  return SceneEntries::grid(axes, grid.index());
 }
 
 /// The work of all requests for moments or for beams. A run makes the requests of the first refinement level first.
@@ -80,7 +80,7 @@ class CountingEvaluator final : public ModelEvaluator {
   Count beams_;
 };
 
-double scale_of(std::size_t all, const Count& counted) {
+double count_ratio(std::size_t all, const Count& counted) {
   return counted.first == 0 ? 0.0 : static_cast<double>(all) / static_cast<double>(counted.first);
 }
 
@@ -175,8 +175,8 @@ void count_work(RunPrediction& run, const SceneValues& scene, const SceneEntries
   const CountedPart sample = counted_sample(run, counted_scene(run, scene, entries, plan), entries);
   const Count& moments = sample.moments;
   const Count& beams = sample.beams;
-  const double moments_scale = scale_of(run.moments, moments);
-  const double beams_scale = scale_of(run.beams, beams);
+  const double moments_scale = count_ratio(run.moments, moments);
+  const double beams_scale = count_ratio(run.beams, beams);
   run.counted_entries = sample.entries.size();
   if (run.counts_directions) run.counted_directions = sample.entries.theta_deg().size();
   run.first_evaluations = moments_scale * moments.first_evaluations;

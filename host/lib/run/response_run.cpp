@@ -78,7 +78,7 @@ struct Weights {
 /// Weights of an entry. `columns` are its moments with a Chebyshev polynomial T_m instead of the reflectance. The error
 /// estimate i_apart of a column is the difference of two quadrature rules, which may be too small by chance. So the
 /// bound of a column is at least `whole_error`, the bound for 1 instead of T_m, which holds because |T_m| <= 1.
-Weights weights_of(const std::vector<ColumnMoments>& columns, double whole_error) {
+Weights response_weights(const std::vector<ColumnMoments>& columns, double whole_error) {
   Weights own{Eigen::ArrayXd::Zero(kBetaAngles), Eigen::ArrayXd::Zero(kBetaAngles)};
   for (std::size_t m = 0; m < columns.size(); ++m) {
     const ColumnMoments& sum = columns[m];
@@ -87,15 +87,15 @@ Weights weights_of(const std::vector<ColumnMoments>& columns, double whole_error
     own.i += sum.i * share;
     own.q += sum.q * share / nodes().sin2;
     // q_apart may be too small, too, and q has no bound like whole_error. So i and q get the sum of both bounds.
-    const double of_i = std::abs(sum.i_apart) + sum.relative_error * std::abs(sum.i) + sum.error;
-    const double of_q = std::abs(sum.q_apart) + sum.relative_error * std::abs(sum.q) + sum.error;
-    own.error += std::ldexp(std::max(of_i, whole_error) + of_q, -static_cast<int>(m));
+    const double i_error = std::abs(sum.i_apart) + sum.relative_error * std::abs(sum.i) + sum.error;
+    const double q_error = std::abs(sum.q_apart) + sum.relative_error * std::abs(sum.q) + sum.error;
+    own.error += std::ldexp(std::max(i_error, whole_error) + q_error, -static_cast<int>(m));
   }
   return own;
 }
 
 /// The moments of a mirror. They need no integral, because beta (the angle of incidence) is theta on all of the mirror.
-Moments mirror_of(const MomentsRequest& request, const Direction& direction, const SlopeShape& shape) {
+Moments mirror_response(const MomentsRequest& request, const Direction& direction, const SlopeShape& shape) {
   Surface surface;
   surface.distribution = request.distribution;
   Moments mirror = closed_form(surface, direction, shape, kUnusedIndex, nullptr);
@@ -112,8 +112,8 @@ bool has_emission(Masking masking) { return keeps_projected_area(masking); }
 /// Stores the weights of an entry in `to` if they have a smaller error bound than the weights in `to`.
 void take_better(const Moments& reflected, const Moments* direct, double cosine, std::size_t entry,
                  EntryResponses& to) {
-  const Weights weights = weights_of(reflected.columns, reflected.albedo_error);
-  const Weights emitted = direct ? weights_of(direct->columns, direct->direct_i_error) : Weights{};
+  const Weights weights = response_weights(reflected.columns, reflected.albedo_error);
+  const Weights emitted = direct ? response_weights(direct->columns, direct->direct_i_error) : Weights{};
   const double error = std::max(weights.error, emitted.error) / cosine;
   double& known = to.responses[ResponseVariable::kResponseError][entry];
   if (!(error < known)) return;
@@ -130,13 +130,13 @@ void take_better(const Moments& reflected, const Moments* direct, double cosine,
   store(ResponseVariable::kEmissionQ, emitted.q);
 }
 
-EntryResponses nothing_of(const MomentsRequest& request) {
+EntryResponses empty_responses(const MomentsRequest& request) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   EntryResponses none;
   for (const ResponseVariable variable : kAllResponseVariables) {
     const bool is_emission = variable == ResponseVariable::kEmissionI || variable == ResponseVariable::kEmissionQ;
     if (is_emission && !has_emission(request.masking)) continue;
-    none.responses[variable].assign(request.size() * (description_of(variable).has_beta ? kBetaAngles : 1), kNan);
+    none.responses[variable].assign(request.size() * (describe(variable).has_beta ? kBetaAngles : 1), kNan);
   }
   none.albedo.assign(request.size(), kNan);
   return none;
@@ -147,12 +147,12 @@ std::vector<char> set_closed_forms(const MomentsRequest& request, EntryResponses
   std::vector<char> wanted(request.size(), 1);
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     const MomentsPoint point = request[i];
-    const Direction direction = direction_of(request.distribution, request.masking, point.theta_deg, point.shape);
+    const Direction direction = make_direction(request.distribution, request.masking, point.theta_deg, point.shape);
     wanted[i] = direction.treatment == Treatment::kIntegrated && direction.cos_theta > 0.0 ? 1 : 0;
     double& error = to.responses[ResponseVariable::kResponseError][i];
     if (wanted[i] != 0 || direction.treatment == Treatment::kMirror) error = std::numeric_limits<double>::infinity();
     if (direction.treatment != Treatment::kMirror) continue;
-    const Moments mirror = mirror_of(request, direction, point.shape);
+    const Moments mirror = mirror_response(request, direction, point.shape);
     take_better(mirror, has_emission(request.masking) ? &mirror : nullptr, direction.cos_theta, i, to);
   }
   return wanted;
@@ -234,16 +234,16 @@ double response_distance(std::span<const double> a, std::span<const double> b, b
   return distance;
 }
 
-EntryResponses responses_of(MomentsRequest request, const Accuracy& accuracy, ModelEvaluator& evaluator,
-                            const Progress& progress) {
-  EntryResponses all = nothing_of(request);
+EntryResponses compute_responses(MomentsRequest request, const Accuracy& accuracy, ModelEvaluator& evaluator,
+                                 const Progress& progress) {
+  EntryResponses all = empty_responses(request);
   request.wanted = set_closed_forms(request, all);
   for (double& theta : request.theta_deg) theta = zenith_before_limit_deg(request.masking, theta);
   const bool wants_direct = has_emission(request.masking);
   request.precision = first_level(accuracy, evaluator.has_double()).precision;
   request.may_interpolate = accuracy.may_interpolate && !evaluator.computes_each_entry();
   request.tolerance = accuracy.tolerance;
-  Work of_host;
+  Work host_work;
   double share = kFirstShare;
   for (int level = 0; level < kMostLevels && request.wanted_count() > 0; ++level, share *= kFinerBy) {
     const auto evaluated = [&](Response::Of of) {
@@ -252,12 +252,12 @@ EntryResponses responses_of(MomentsRequest request, const Accuracy& accuracy, Mo
       pass.wants_direct = of == Response::Of::kDirect;
       pass.response->of = of;
       const std::size_t size = request.size();
-      const Progress of_pass = [&, size](std::size_t done, std::size_t total) {
+      const Progress pass_progress = [&, size](std::size_t done, std::size_t total) {
         const std::size_t own = size * done / std::max<std::size_t>(total, 1);
         const std::size_t half = pass.wants_direct ? (size + own) / 2 : wants_direct ? own / 2 : own;
         return !progress || progress(level == 0 ? half : size, size);
       };
-      return planned_moments(MomentsPlan(pass), evaluator, of_pass, of_host);
+      return planned_moments(MomentsPlan(pass), evaluator, pass_progress, host_work);
     };
     const std::vector<Moments> reflected = evaluated(Response::Of::kReflected);
     const std::vector<Moments> direct = wants_direct ? evaluated(Response::Of::kDirect) : std::vector<Moments>();
@@ -278,31 +278,31 @@ ResponseOutcome run_responses(const SceneValues& scene, const TableLayout& layou
   const auto start = std::chrono::steady_clock::now();
   const Axes& axes = layout.head.axes;
   ResponseOutcome outcome;
-  const std::size_t of_theta = axes[Axis::kSigma].size() * axes[Axis::kQ].size();
-  const std::size_t at_once = std::max<std::size_t>(1, kColumnsAtOnce / (kBetaAngles * of_theta));
+  const std::size_t entries_per_theta = axes[Axis::kSigma].size() * axes[Axis::kQ].size();
+  const std::size_t at_once = std::max<std::size_t>(1, kColumnsAtOnce / (kBetaAngles * entries_per_theta));
   const Progress& progress = options.progress;
   report_start(progress, layout.head.size());
   for (std::size_t first = 0; first < axes[Axis::kTheta].size(); first += at_once) {
     TableBox box{{}, layout.head.counts()};
     box.first[Axis::kTheta] = first;
     box.count[Axis::kTheta] = std::min(at_once, axes[Axis::kTheta].size() - first);
-    TableValues part{head_of(layout.head, box)};
+    TableValues part{part_head(layout.head, box)};
     MomentsRequest request = response_request(scene.surface);
     request.theta_deg = part.axes[Axis::kTheta];
     request.sigma = part.axes[Axis::kSigma];
     request.q = part.axes[Axis::kQ];
-    EntryResponses of_part = responses_of(request, scene.accuracy, evaluator, [&](std::size_t done, std::size_t) {
+    EntryResponses computed = compute_responses(request, scene.accuracy, evaluator, [&](std::size_t done, std::size_t) {
       return !progress || progress(outcome.entries + done, layout.head.size());
     });
     for (std::size_t i = 0; i < part.size(); ++i) {
-      const double relative = of_part.responses[ResponseVariable::kResponseError][i] / of_part.albedo[i];
-      outcome.missed += misses(of_part, i, scene.accuracy.tolerance) ? 1 : 0;
+      const double relative = computed.responses[ResponseVariable::kResponseError][i] / computed.albedo[i];
+      outcome.missed += misses(computed, i, scene.accuracy.tolerance) ? 1 : 0;
       if (relative > outcome.worst_error) outcome.worst_error = relative;
     }
     outcome.entries += part.size();
-    part.responses = std::move(of_part.responses);
-    part[Quantity::kAlbedo] = std::move(of_part.albedo);
-    const SceneEntries entries = SceneEntries::of_grid(part.axes, kUnusedIndex);
+    part.responses = std::move(computed.responses);
+    part[Quantity::kAlbedo] = std::move(computed.albedo);
+    const SceneEntries entries = SceneEntries::grid(part.axes, kUnusedIndex);
     for (std::size_t i = 0; i < part.size(); ++i)
       part.responses[ResponseVariable::kFingerprint][i] = entry_fingerprint(part, entries[i], i);
     take(std::move(part), box.first);

@@ -22,8 +22,8 @@ struct EntryResponses {
 
 /// Computes the weights and their error bounds. Weights are NaN where rho has no value. Entries whose response_error
 /// exceeds the tolerance times the albedo are computed again with finer quadrature.
-EntryResponses responses_of(MomentsRequest request, const Accuracy& accuracy, ModelEvaluator& evaluator,
-                            const Progress& progress);
+EntryResponses compute_responses(MomentsRequest request, const Accuracy& accuracy, ModelEvaluator& evaluator,
+                                 const Progress& progress);
 
 MomentsRequest response_request(const Surface& surface);
 

@@ -112,7 +112,7 @@ class Remarks {
   void add_sorted_axes() {
     std::vector<const char*> columns = {kWind.column};
     for (const Axis axis : kAllAxes) {
-      if (!description_of(axis).has_labels) columns.push_back(description_of(axis).column);
+      if (!describe(axis).has_labels) columns.push_back(describe(axis).column);
     }
     for (const char* const column : columns) {
       const std::string key = std::string("grid.") + column;

@@ -87,7 +87,7 @@ class MemberResults {
       variant_ = entry.variant;
     }
     const Radiometry::Optics& optics = entry.index ? own_optics_ : radiometry.optics();
-    const std::span<const Moments> moments = moments_of(member, entry, direction, optics.facets);
+    const std::span<const Moments> moments = member_moments(member, entry, direction, optics.facets);
     const bool is_bistatic = context_.scene.geometry.mode == Mode::kBistatic;
     if (is_bistatic) fill_beams(member, entry);
     PointResult result =
@@ -114,17 +114,17 @@ class MemberResults {
   const Direction& view_direction(const SceneEntry& entry) {
     const Surface& surface = context_.scene.surface;
     const double theta_deg = moment_zenith_deg(context_.scene, entry.theta_deg);
-    const Treatment treatment = treatment_of(surface.distribution, surface.masking, theta_deg, entry.shape);
+    const Treatment treatment = choose_treatment(surface.distribution, surface.masking, theta_deg, entry.shape);
     if (!has_direction_ || theta_deg != direction_.theta_deg || treatment != direction_.treatment) {
-      direction_ = direction_of(surface.distribution, surface.masking, theta_deg, entry.shape);
+      direction_ = make_direction(surface.distribution, surface.masking, theta_deg, entry.shape);
       has_direction_ = true;
     }
     return direction_;
   }
 
   /// The moments of an entry: from the evaluator, from closed forms, or zeros if the plan needs no moments.
-  std::span<const Moments> moments_of(std::size_t member, const SceneEntry& entry, const Direction& direction,
-                                      std::span<const FacetOptics> indices) {
+  std::span<const Moments> member_moments(std::size_t member, const SceneEntry& entry, const Direction& direction,
+                                          std::span<const FacetOptics> indices) {
     if (!context_.plan.kept.moments) return moments_;  // all zero, because nothing writes to moments_ in this case
     if (direction.treatment != Treatment::kIntegrated) {
       for (std::size_t j = 0; j < moments_.size(); ++j) {
@@ -132,7 +132,7 @@ class MemberResults {
       }
       return moments_;
     }
-    const PartRequests::MomentsSpan span = requests_.moments_of(member);
+    const PartRequests::MomentsSpan span = requests_.member_moments(member);
     if (span.stride == 1 || moments_.size() == 1) {
       return std::span(evaluated_.moments).subspan(span.first, moments_.size());
     }
@@ -146,7 +146,7 @@ class MemberResults {
       std::ranges::fill(beams_, beam_without_evaluator(context_.scene, entry.theta_deg));
       return;
     }
-    const std::size_t first = requests_.beams_of(member);
+    const std::size_t first = requests_.first_beam(member);
     for (std::size_t j = 0; j < beams_.size(); ++j) beams_[j] = scattered(evaluated_.beams[first + j]);
   }
 
@@ -166,7 +166,7 @@ class MemberResults {
 };
 
 /// Progress of a step within a larger task of `total` items. `before` items are done when the step starts.
-Progress part_of(const Progress& progress, std::size_t before, std::size_t total) {
+Progress offset_progress(const Progress& progress, std::size_t before, std::size_t total) {
   return [&progress, before, total](std::size_t done, std::size_t) { return progress(before + done, total); };
 }
 
@@ -178,24 +178,26 @@ EvaluatorResults run_requests(const RunContext& context, const PartRequests& req
   if (total == 0) return {};
   EvaluatorResults evaluated;
   if (moments > 0) {
-    evaluated.moments = planned_moments(plan, *context.evaluator, part_of(progress, 0, total), context.summary.work);
+    evaluated.moments =
+        planned_moments(plan, *context.evaluator, offset_progress(progress, 0, total), context.summary.work);
   }
   if (beams == 0) return evaluated;
   const EvaluationReport before = context.evaluator->report();
   const auto start = std::chrono::steady_clock::now();
-  evaluated.beams = context.evaluator->scatter(requests.beams(), part_of(progress, moments, total));
+  evaluated.beams = context.evaluator->scatter(requests.beams(), offset_progress(progress, moments, total));
   context.summary.work.transfer_s += transfer_time(before, context.evaluator->report(), seconds_since(start));
   return evaluated;
 }
 
-std::vector<PointResult> results_of(const RunContext& context, const Selection& selection, const PartRequests& requests,
-                                    const MomentsPlan& plan, const Progress& progress) {
+std::vector<PointResult> selection_results(const RunContext& context, const Selection& selection,
+                                           const PartRequests& requests, const MomentsPlan& plan,
+                                           const Progress& progress) {
   const EvaluatorResults evaluated = run_requests(context, requests, plan, progress);
   const auto start = std::chrono::steady_clock::now();
   std::vector<PointResult> results(selection.size());
   parallel_ranges(results.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
-    MemberResults result_of(context, selection, requests, evaluated);
-    for (std::size_t i = first; i < last; ++i) results[i] = result_of(i);
+    MemberResults member_result(context, selection, requests, evaluated);
+    for (std::size_t i = first; i < last; ++i) results[i] = member_result(i);
   });
   context.summary.radiometry_s += seconds_since(start);
   return results;
@@ -207,7 +209,7 @@ std::vector<PointResult> computed_at(const RunContext& context, const Selection&
   const PartRequests requests(context.scene, context.spectra.indices, context.plan, selection, level);
   const MomentsPlan plan(requests.moments());
   context.summary.response_basis_s += seconds_since(start);
-  return results_of(context, selection, requests, plan, progress);
+  return selection_results(context, selection, requests, plan, progress);
 }
 
 bool is_better(const PointResult& a, const PointResult& b) {
@@ -275,7 +277,7 @@ FirstResults first_results(const RunContext& context, const SceneEntries& part, 
   const PartRequests requests(context.scene, context.spectra.indices, context.plan, {part}, first.level);
   const MomentsPlan plan(requests.moments());
   context.summary.response_basis_s += seconds_since(start);
-  first.results = results_of(context, {part}, requests, plan, progress);
+  first.results = selection_results(context, {part}, requests, plan, progress);
   const std::vector<char> saves = plan.saving_directions();
   for (std::size_t i = 0; !saves.empty() && i < part.size(); i += part.entries_per_direction()) {
     const std::optional<std::size_t> direction = requests.requested_direction(i);
@@ -342,7 +344,7 @@ std::vector<std::size_t> positions_in(const RunContext& context, const SceneEntr
                                       std::span<const std::size_t> checked) {
   std::vector<std::size_t> positions;
   for (const std::size_t in_whole : checked) {
-    const std::optional<std::size_t> position = part.position_of(in_whole);
+    const std::optional<std::size_t> position = part.find_position(in_whole);
     if (position && wants_moments(context.scene, part[*position], context.plan)) positions.push_back(*position);
   }
   return positions;
@@ -368,10 +370,10 @@ std::vector<PointResult> part_results(const RunContext& context, const SceneEntr
   const std::vector<PointResult> again = recompute_for_check(context, part, first.level, positions);
   refine(context, part, first, progress);
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    SelfCheck of_entry;
-    of_entry.add(results[positions[i]], again[i]);
-    check.add(of_entry);
-    if (of_entry.worst_ratio <= 1.0) continue;
+    SelfCheck entry_check;
+    entry_check.add(results[positions[i]], again[i]);
+    check.add(entry_check);
+    if (entry_check.worst_ratio <= 1.0) continue;
     const std::size_t direction = positions[i] / part.entries_per_direction();
     for (PointResult& result :
          std::span(results).subspan(direction * part.entries_per_direction(), part.entries_per_direction()))
@@ -409,9 +411,9 @@ Run::Run(const SceneValues& scene, SceneEntries entries, const RunOptions& optio
          const EvaluatorMaker& make_evaluator)
     : scene_(scene), entries_(std::move(entries)), progress_(options.progress) {
   const SceneEntries whole =
-      entries_.is_grid() ? SceneEntries::of_grid(entries_.whole_axes(), entries_.index()) : entries_;
+      entries_.is_grid() ? SceneEntries::grid(entries_.whole_axes(), entries_.index()) : entries_;
   outcome_.plan = plan_effects(scene, whole, options.keep_all);
-  outcome_.effects = effects_of(scene, whole, outcome_.plan);
+  outcome_.effects = list_effects(scene, whole, outcome_.plan);
   outcome_.spectral_rule_s = wall_s();
   report_start(progress_, entries_.size());
   if (wants_evaluator(scene, entries_, outcome_.plan)) evaluator_ = make_evaluator();
@@ -440,7 +442,7 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
                      ModelEvaluator* evaluator, Sink& sink, const Progress& progress) {
   const EffectPlan plan = with_spectra(given, scene, entries);
   const std::size_t samples = plan.rules->most_samples(entries);
-  const std::size_t whole = entries.is_grid() ? size_of(entries.whole()) : entries.size();
+  const std::size_t whole = entries.is_grid() ? grid_size(entries.whole()) : entries.size();
   std::vector<std::size_t> checked;
   if (entries.is_grid() && plan.kept.moments)
     checked = checked_positions(whole, checked_count(whole * samples), scene_seed(scene));

@@ -28,7 +28,7 @@ const Material& recorded_material(const Axes& axes, const SceneValues& scene) {
 
 void fill_curves(TableHead& head, const SceneValues& scene) {
   const std::vector<double> one_um = {scene.spectrum.min_um};
-  const auto curve_of = [&](const SpectralTable& tabulated, double constant) -> Curve {
+  const auto scene_curve = [&](const SpectralTable& tabulated, double constant) -> Curve {
     if (tabulated.wavelength_um.empty()) return {one_um, {constant}, {}};
     return {tabulated.wavelength_um, tabulated.value, {}};
   };
@@ -36,13 +36,13 @@ void fill_curves(TableHead& head, const SceneValues& scene) {
       head.axes[Axis::kN].empty() && head.axes[Axis::kK].empty() && head.axes[Axis::kMaterial].empty();
   if (has_one_material && !scene.surface.reflectance) {
     const Material& material = recorded_material(head.axes, scene);
-    head.index_n = curve_of(material.n, material.constant.n);
-    head.index_k = curve_of(material.k, material.constant.k);
+    head.index_n = scene_curve(material.n, material.constant.n);
+    head.index_k = scene_curve(material.k, material.constant.k);
   }
   if (scene.source && scene.source->kind == Source::Kind::kFlat)
     head.irradiance = {one_um, {scene.source->irradiance}, {}};
   if (scene.source && scene.source->kind == Source::Kind::kTabulated)
-    head.irradiance = curve_of(scene.source->table, 0.0);
+    head.irradiance = scene_curve(scene.source->table, 0.0);
   fill_used(head, scene);
 }
 
@@ -125,7 +125,8 @@ std::vector<Attribute> RunRecord::attributes(const std::string& command_line) co
           {"wall_time_s", wall_s}};
 }
 
-std::vector<Attribute> attributes_of(const SceneValues& scene, const RunOutcome& run, const std::string& command_line) {
+std::vector<Attribute> run_attributes(const SceneValues& scene, const RunOutcome& run,
+                                      const std::string& command_line) {
   const RunRecord record{run.evaluation,
                          effects_text(run.effects, run.plan),
                          rule_text(scene.accuracy.tolerance, run.evaluation),
@@ -146,7 +147,7 @@ std::string rule_text(double tolerance, const EvaluationReport& evaluation) {
   return text;
 }
 
-Quantities quantities_of(const SceneValues& scene, const EffectPlan* plan) {
+Quantities output_quantities(const SceneValues& scene, const EffectPlan* plan) {
   const auto is_given = [&](QuantityNeeds needs) {
     switch (needs) {
       case QuantityNeeds::kNothing:
@@ -164,7 +165,7 @@ Quantities quantities_of(const SceneValues& scene, const EffectPlan* plan) {
   };
   Quantities given;
   for (const Quantity quantity : kAllQuantities) {
-    if (is_given(description_of(quantity).needs)) given.push_back(quantity);
+    if (is_given(describe(quantity).needs)) given.push_back(quantity);
   }
   return given;
 }
@@ -190,43 +191,44 @@ TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const
   const Dispersion& formula = recorded_material(axes, scene).n.formula;
   if (formula.number != 0 && !scene.materials) head.attributes.push_back({"index_n_formula", formula_text(formula)});
   const StoredRows rows = axes[Axis::kWavelength].empty() ? StoredRows::kOfSpectrum : StoredRows::kAll;
-  const std::initializer_list<Attribute> of_data = {{"coating", coating_text(scene, rows)},
-                                                    {"materials", axis_materials_text(scene, rows)},
-                                                    {"reflectance", reflectance_text(scene.surface)},
-                                                    {"surroundings_profile", profile_text(scene)}};
-  std::ranges::copy_if(of_data, std::back_inserter(head.attributes),
+  const std::initializer_list<Attribute> data_attributes = {{"coating", coating_text(scene, rows)},
+                                                            {"materials", axis_materials_text(scene, rows)},
+                                                            {"reflectance", reflectance_text(scene.surface)},
+                                                            {"surroundings_profile", profile_text(scene)}};
+  std::ranges::copy_if(data_attributes, std::back_inserter(head.attributes),
                        [](const Attribute& data) { return !std::get<std::string>(data.value).empty(); });
-  layout.quantities = quantities_of(scene, &plan);
+  layout.quantities = output_quantities(scene, &plan);
   return layout;
 }
 
 void choose_variables(TableLayout& layout, const std::vector<std::string>& names) {
   if (names.empty()) return;
   std::vector<std::string> allowed;
-  for (const Quantity quantity : layout.quantities) allowed.emplace_back(description_of(quantity).name);
+  for (const Quantity quantity : layout.quantities) allowed.emplace_back(describe(quantity).name);
   allowed.emplace_back(kStatusQualifier);
   for (const std::string& name : names) {
     if (std::ranges::find(allowed, name) == allowed.end())
       throw InputError(fmt::format("quantities: {}: must be one of {}", one_line(name), join(allowed)));
   }
   const auto is_chosen = [&](const char* name) { return std::ranges::find(names, name) != names.end(); };
-  std::erase_if(layout.quantities, [&](Quantity quantity) { return !is_chosen(description_of(quantity).name); });
+  std::erase_if(layout.quantities, [&](Quantity quantity) { return !is_chosen(describe(quantity).name); });
   layout.has_status = is_chosen(kStatusQualifier);
 }
 
-std::string identity_of(const SceneValues& scene, const std::string& evaluator, const RunOptions& options) {
+std::string run_identity(const SceneValues& scene, const std::string& evaluator, const RunOptions& options) {
   const std::set<std::string> names(options.quantities.begin(), options.quantities.end());
   return fmt::format(
       "program dolp {} ({}); evaluator {}; precision {}; keep_all {}; quantities {}; scene {}; data fnv1a64:{:016x}",
-      program_version(), program_commit(), evaluator, name_of(scene.accuracy.precision), options.keep_all ? "yes" : "no",
-      names.empty() ? "all" : fmt::format("{}", fmt::join(names, ",")), scene_hash(scene), data_hash(scene));
+      program_version(), program_commit(), evaluator, to_name(scene.accuracy.precision),
+      options.keep_all ? "yes" : "no", names.empty() ? "all" : fmt::format("{}", fmt::join(names, ",")),
+      scene_hash(scene), data_hash(scene));
 }
 
 TableValues table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results) {
   TableValues table;
   table.axes = part.axes();
   table.labels = layout.head.labels;
-  static_cast<ResultColumns&>(table) = columns_of(results, layout.quantities);
+  static_cast<ResultColumns&>(table) = result_columns(results, layout.quantities);
   if (!layout.has_status) table.status.clear();
   return table;
 }

@@ -17,7 +17,7 @@ inline constexpr const char* kModelChange = "model_change";           ///< attri
 inline constexpr const char* kModelChangeDolp = "model_change_dolp";  ///< attribute with ModelChange::dolp_points
 
 /// The quantities in the results of a scene. With a plan: only the quantities that the run computes.
-Quantities quantities_of(const SceneValues& scene, const EffectPlan* plan = nullptr);
+Quantities output_quantities(const SceneValues& scene, const EffectPlan* plan = nullptr);
 
 /// The layout of the table over `axes` (a grid or a part of it), with all attributes that are known before the run.
 TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const Axes& axes);
@@ -30,7 +30,7 @@ void fill_used(TableHead& head, const SceneValues& scene);
 
 /// Attribute with everything on which a table's values depend, except the device. difference() compares two such texts.
 inline constexpr const char* kIdentity = "identity";
-std::string identity_of(const SceneValues& scene, const std::string& evaluator, const RunOptions& options);
+std::string run_identity(const SceneValues& scene, const std::string& evaluator, const RunOptions& options);
 
 TableValues table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results);
 
@@ -43,7 +43,7 @@ struct RunRecord {
 
   std::vector<Attribute> attributes(const std::string& command_line) const;
 };
-std::vector<Attribute> attributes_of(const SceneValues& scene, const RunOutcome& run, const std::string& command_line);
+std::vector<Attribute> run_attributes(const SceneValues& scene, const RunOutcome& run, const std::string& command_line);
 std::string history_text(const std::string& command_line);
 
 /// Describes the quadrature and the interpolation in words, for reports and the attribute "rule".

@@ -48,8 +48,8 @@ Axes scene_axes(TableHead table, const SceneValues& scene, const std::string& na
 
 std::string shard_text(const Shard& shard) { return fmt::format("{}/{}", shard.number, shard.count); }
 
-std::string identity_of(const SceneValues& scene, const TableJob& job) {
-  return identity_of(scene, job.evaluator, job.options);
+std::string run_identity(const SceneValues& scene, const TableJob& job) {
+  return run_identity(scene, job.evaluator, job.options);
 }
 
 /// Text that must be equal in all parts of a file: identity, shard and device. Shards may have different devices.
@@ -58,7 +58,7 @@ std::string identity_of_file(const std::string& identity, const Shard& shard, co
                      one_line(evaluation.driver));
 }
 
-std::vector<TableBox> boxes_of(const SceneEntries& entries, const std::vector<SceneEntries>& parts) {
+std::vector<TableBox> part_boxes(const SceneEntries& entries, const std::vector<SceneEntries>& parts) {
   std::vector<TableBox> boxes;
   for (const SceneEntries& part : parts) boxes.push_back({part.first_in(entries), part.counts()});
   return boxes;
@@ -123,19 +123,19 @@ void with_rest(const TableOutput& output, const Body& body) {
   }
 }
 
-std::string text_of(const TableHead& head, const char* name) {
+std::string head_text(const TableHead& head, const char* name) {
   const auto* text = find_attribute<std::string>(head, name);
   return text ? *text : "";
 }
 
-double number_of(const TableHead& head, const char* name) {
+double head_number(const TableHead& head, const char* name) {
   const auto* number = find_attribute<double>(head, name);
   return number && *number >= 0.0 ? *number : 0.0;
 }
 
-std::optional<Shard> shard_of(const TableHead& head) {
+std::optional<Shard> head_shard(const TableHead& head) {
   Shard shard;
-  const std::string text = text_of(head, kShard);
+  const std::string text = head_text(head, kShard);
   const int found = std::sscanf(text.c_str(), "%zu/%zu", &shard.number, &shard.count);
   const bool is_shard = found == 2 && shard.number >= 1 && shard.number <= shard.count;
   return is_shard ? std::optional(shard) : std::nullopt;
@@ -151,11 +151,11 @@ Axes axes_of_shard(const SceneValues& scene, const Shard& shard, const std::stri
 
 void add_run(RunRecord& whole, const TableHead& shard) {
   const double most = static_cast<double>(kMostTableEntries);
-  whole.check.entries += static_cast<std::size_t>(std::min(number_of(shard, "self_check_entries"), most));
-  whole.check.worst_ratio = std::max(whole.check.worst_ratio, number_of(shard, "self_check_worst_ratio"));
-  whole.model_change.add(ModelChange{number_of(shard, kModelChange), number_of(shard, kModelChangeDolp)});
-  whole.wall_s += number_of(shard, "wall_time_s");
-  const std::string device = text_of(shard, "device");
+  whole.check.entries += static_cast<std::size_t>(std::min(head_number(shard, "self_check_entries"), most));
+  whole.check.worst_ratio = std::max(whole.check.worst_ratio, head_number(shard, "self_check_worst_ratio"));
+  whole.model_change.add(ModelChange{head_number(shard, kModelChange), head_number(shard, kModelChangeDolp)});
+  whole.wall_s += head_number(shard, "wall_time_s");
+  const std::string device = head_text(shard, "device");
   std::string& devices = whole.evaluation.device;
   if (devices.find(device) == std::string::npos) devices += (devices.empty() ? "" : "; ") + device;
 }
@@ -173,7 +173,7 @@ void merge_shard(TableOutput& output, const TableReader& reader, const SceneEntr
   ValueSums sums;
   for (const TableBox& box : boxes_in_order(shard.counts(), kMergedAtOnce)) {
     TableValues part = reader.read(box);
-    add(sums, reader.sums_of(part, box));
+    add(sums, reader.value_sums(part, box));
     PerAxis first = shard.first();
     for (std::size_t axis = 0; axis < first.size(); ++axis) first[axis] += box.first[axis];
     output.write(std::move(part), first, "");
@@ -185,10 +185,10 @@ void merge_shard(TableOutput& output, const TableReader& reader, const SceneEntr
 
 fs::path shard_path(const fs::path& path, const Shard& shard) {
   if (shard.is_none() || path == "-") return path;
-  fs::path of_shard = path;
+  fs::path shard_file = path;
   const std::string suffix = path.extension().string();
-  of_shard.replace_extension();
-  return of_shard.string() + fmt::format(".{}-of-{}", shard.number, shard.count) + suffix;
+  shard_file.replace_extension();
+  return shard_file.string() + fmt::format(".{}-of-{}", shard.number, shard.count) + suffix;
 }
 
 SceneEntries shard_entries(const SceneValues& scene, const Shard& shard) {
@@ -201,7 +201,7 @@ SceneEntries shard_entries(const SceneValues& scene, const Shard& shard) {
   if (!find_cuts(count, shard.count, 0, cuts)) {
     std::vector<std::string> values;
     for (const Axis axis : kCutAxes)
-      if (count[axis] > 1) values.push_back(fmt::format("{} of {}", count[axis], description_of(axis).name));
+      if (count[axis] > 1) values.push_back(fmt::format("{} of {}", count[axis], describe(axis).name));
     throw InputError(fmt::format("shard {}: the values of the axes, {}, cannot be cut into {} parts", shard_text(shard),
                                  values.empty() ? "1 of theta" : fmt::format("{}", fmt::join(values, ", ")),
                                  shard.count));
@@ -221,14 +221,14 @@ SceneEntries shard_entries(const SceneValues& scene, const Shard& shard) {
 
 RunOutcome write_table(const SceneValues& scene, const TableJob& job, const EvaluatorMaker& make_evaluator) {
   Run run(scene, shard_entries(scene, job.shard), job.options, make_evaluator);
-  const std::string identity = identity_of(scene, job);
+  const std::string identity = run_identity(scene, job);
   TableLayout layout = table_layout(scene, run.plan(), run.entries().axes());
   choose_variables(layout, job.options.quantities);
   layout.head.attributes.push_back({kIdentity, identity});
   if (!job.shard.is_none()) layout.head.attributes.push_back({kShard, shard_text(job.shard)});
   TableOutput output({.path = job.path,
                       .layout = layout,
-                      .parts = boxes_of(run.entries(), run.parts()),
+                      .parts = part_boxes(run.entries(), run.parts()),
                       .identity = identity_of_file(identity, job.shard, run.evaluation()),
                       .is_resumed = job.options.resume,
                       .progress = job.options.progress});
@@ -238,7 +238,7 @@ RunOutcome write_table(const SceneValues& scene, const TableJob& job, const Eval
     outcome = run.compute(sink);
     sink.finish();
     const auto start = std::chrono::steady_clock::now();
-    output.finish(attributes_of(scene, outcome, job.options.history));
+    output.finish(run_attributes(scene, outcome, job.options.history));
     outcome.file_s = sink.waited_s() + seconds_since(start);
   });
   outcome.wall_s = run.wall_s();
@@ -247,12 +247,13 @@ RunOutcome write_table(const SceneValues& scene, const TableJob& job, const Eval
 
 bool is_there(const SceneValues& scene, const TableJob& job) {
   std::error_code error;
-  if (job.path == "-" || format_of(job.path) != TableFormat::kNetcdf || !fs::is_regular_file(job.path, error))
+  if (job.path == "-" || table_format(job.path) != TableFormat::kNetcdf || !fs::is_regular_file(job.path, error))
     return false;
   try {
     const TableReader reader(job.path);
     const TableHead& head = reader.head();
-    if (difference(text_of(head, kIdentity), identity_of(scene, job)) || text_of(head, kShard) != shard_text(job.shard))
+    if (difference(head_text(head, kIdentity), run_identity(scene, job)) ||
+        head_text(head, kShard) != shard_text(job.shard))
       return false;
     // Reading all values checks their hash. It throws if a value has changed since it was written.
     static_cast<void>(reader.read_entries({}, job.options.progress));
@@ -282,7 +283,7 @@ ShardSet::ShardSet(const std::vector<std::string>& paths) {
 }
 
 void ShardSet::begin(const TableReader& first, const std::string& path) {
-  const std::optional<Shard> shard = shard_of(first.head());
+  const std::optional<Shard> shard = head_shard(first.head());
   if (!shard) return;
   scene_ = table_scene(first.head(), path);
   layout_ = first.layout();
@@ -295,13 +296,13 @@ void ShardSet::begin(const TableReader& first, const std::string& path) {
 std::size_t ShardSet::checked_number(const TableReader& reader, const std::string& path) const {
   const TableHead& head = reader.head();
   const TableHead& first = layout_.head;
-  const std::optional<Shard> shard = shard_of(head);
+  const std::optional<Shard> shard = head_shard(head);
   if (!shard) throw InputError(path + ": is no shard of a table (attribute shard)");
-  const std::string identity = text_of(head, kIdentity);
+  const std::string identity = head_text(head, kIdentity);
   if (identity.empty()) throw InputError(path + ": has no text attribute " + kIdentity);
-  if (const auto differs = difference(identity, text_of(first, kIdentity)))
+  if (const auto differs = difference(identity, head_text(first, kIdentity)))
     throw InputError(fmt::format("{}: is a shard of another table: it has {}", path, *differs));
-  const bool has_same_curves = spectral_data_of(head) == spectral_data_of(first);
+  const bool has_same_curves = spectral_data_text(head) == spectral_data_text(first);
   if (shard->count != count_ || reader.layout().quantities != layout_.quantities ||
       reader.layout().has_status != layout_.has_status || head.stokes_units != first.stokes_units || !has_same_curves) {
     throw InputError(fmt::format("{}: is shard {}, of another table than {}: it has other variables or units", path,
@@ -317,10 +318,10 @@ std::size_t ShardSet::merge(const fs::path& path, const std::string& command_lin
   layout.head.attributes = without_run(layout_.head.attributes);
   TableOutput output({.path = path, .layout = std::move(layout)});
   const TableHead& first = layout_.head;
-  RunRecord run{{}, text_of(first, "effects"), text_of(first, "rule")};
-  run.evaluation.driver = text_of(first, "driver");
-  run.evaluation.evaluator = text_of(first, "evaluator");
-  run.evaluation.precision = text_of(first, "precision");
+  RunRecord run{{}, head_text(first, "effects"), head_text(first, "rule")};
+  run.evaluation.driver = head_text(first, "driver");
+  run.evaluation.evaluator = head_text(first, "evaluator");
+  run.evaluation.precision = head_text(first, "precision");
   for (const auto& [number, own_path] : paths_) {
     const TableReader reader(own_path);
     const std::size_t is_now = checked_number(reader, own_path);

@@ -192,7 +192,7 @@ std::string settings_text(const std::vector<Setting>& settings) {
   return text;
 }
 
-std::vector<Setting> settings_of(const std::string& text) {
+std::vector<Setting> override_settings(const std::string& text) {
   std::vector<std::string> arguments;
   if (text.empty()) return {};
   for (const std::string_view line : split(text, '\n')) {
@@ -243,13 +243,13 @@ double scene_position(const TableHead& table, Axis axis, double value, const Sce
   const auto found = std::ranges::find(known, label);
   if (found == known.end())
     throw InputError(fmt::format("{}: {} = \"{}\": is not among those that were computed: {}", name,
-                                 description_of(axis).name, one_line(label), join(known)));
+                                 describe(axis).name, one_line(label), join(known)));
   return static_cast<double>(found - known.begin());
 }
 
 void use_scene_labels(TableHead& table, const SceneValues& scene, const std::string& name) {
   for (const Axis axis : kAllAxes) {
-    if (!description_of(axis).has_labels) continue;
+    if (!describe(axis).has_labels) continue;
     for (double& value : table.axes[axis]) value = scene_position(table, axis, value, scene, name);
     table.labels[axis] = scene.labels[axis];
   }
@@ -268,8 +268,8 @@ SceneValues table_scene(const TableHead& table, const std::string& name, NamedDa
                                         : std::make_shared<KnownData>(KnownData{.table = name, .may_open_files = true});
   SceneValues scene;
   try {
-    scene =
-        parse_scene(*text, path ? *path : name, overrides ? settings_of(*overrides) : std::vector<Setting>{}, known);
+    scene = parse_scene(*text, path ? *path : name, overrides ? override_settings(*overrides) : std::vector<Setting>{},
+                        known);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: attribute \"scene\": {}", name, error.what()));
   }

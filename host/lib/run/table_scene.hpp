@@ -12,7 +12,7 @@ namespace dolp {
 
 /// The text of the attribute "scene_overrides": settings KEY=VALUE, each on a new line. VALUE may contain line ends.
 std::string settings_text(const std::vector<Setting>& settings);
-std::vector<Setting> settings_of(const std::string& text);
+std::vector<Setting> override_settings(const std::string& text);
 
 /// The text of the attribute "scene_hash": 64-bit FNV-1a hash of the scene's text and settings, to compare tables.
 std::string scene_hash(const SceneValues& scene);

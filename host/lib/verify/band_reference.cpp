@@ -96,7 +96,7 @@ std::vector<KronrodNode> kronrod_nodes() {
   return all;
 }
 
-Integrals total_of(const std::vector<BandPiece>& intervals, Integrals BandPiece::*part) {
+Integrals sum_pieces(const std::vector<BandPiece>& intervals, Integrals BandPiece::*part) {
   Integrals sum = Integrals::Zero();
   for (const BandPiece& interval : intervals) sum += interval.*part;
   return sum;
@@ -104,13 +104,13 @@ Integrals total_of(const std::vector<BandPiece>& intervals, Integrals BandPiece:
 
 /// The error of the quadrature: the error of DOLP or the error of the mean rho, whichever is larger.
 double quadrature_error(const Integrals& value, const Integrals& error) {
-  const double of_means = error.segment(kWeight + 1, 2).sum() / std::abs(value[kWeight + 1]);
-  return std::max(error.head(kWeight).sum() / std::abs(value[0]), of_means + error[kWeight] / value[kWeight]);
+  const double mean_error = error.segment(kWeight + 1, 2).sum() / std::abs(value[kWeight + 1]);
+  return std::max(error.head(kWeight).sum() / std::abs(value[0]), mean_error + error[kWeight] / value[kWeight]);
 }
 
 /// Splits the interval with the largest error: at one of PointIntegral::breaks if one lies in it, else in the middle.
 void split_worst(PointIntegral& point) {
-  const Integrals value = total_of(point.intervals, &BandPiece::value);
+  const Integrals value = sum_pieces(point.intervals, &BandPiece::value);
   const auto worst = std::ranges::max_element(
       point.intervals, {}, [&](const BandPiece& interval) { return quadrature_error(value, interval.error); });
   const BandPiece old = *worst;
@@ -165,8 +165,8 @@ void integrate_new(const SceneValues& scene, std::vector<PointIntegral*>& points
 }
 
 PointResult band_result(const PointIntegral& point) {
-  const Integrals value = total_of(point.intervals, &BandPiece::value);
-  const Integrals error = total_of(point.intervals, &BandPiece::error);
+  const Integrals value = sum_pieces(point.intervals, &BandPiece::value);
+  const Integrals error = sum_pieces(point.intervals, &BandPiece::error);
   PointResult result = point.last;
   Eigen::Index i = 0;
   for (const Quantity quantity : kIntegrated) result[quantity] = value[i++];
@@ -189,12 +189,12 @@ PointResult band_result(const PointIntegral& point) {
 
 std::vector<PointResult> integrate_band(const SceneValues& scene, const SceneEntries& points, ModelEvaluator& evaluator,
                                         const Progress& progress) {
-  std::vector<std::vector<double>> breaks_of;
+  std::vector<std::vector<double>> variant_breaks;
   for (const SceneVariant& variant : points.variants())
-    breaks_of.push_back(band_breaks_um(with_variant(scene, variant)));
+    variant_breaks.push_back(band_breaks_um(with_variant(scene, variant)));
   std::vector<PointIntegral> integrals;
   for (const SceneEntry& entry : points.all()) {
-    const std::vector<double>& breaks = breaks_of[entry.variant];
+    const std::vector<double>& breaks = variant_breaks[entry.variant];
     PointIntegral& point =
         integrals.emplace_back(PointIntegral{entry, points.variants()[entry.variant], breaks, {}, 0, {}});
     const std::size_t count = std::min(kFirstIntervals, breaks.size() - 1);
@@ -204,14 +204,14 @@ std::vector<PointResult> integrate_band(const SceneValues& scene, const SceneEnt
   }
   std::vector<PointIntegral*> unfinished;
   for (PointIntegral& point : integrals) unfinished.push_back(&point);
-  const Progress of_points = [&](std::size_t, std::size_t) {
+  const Progress point_progress = [&](std::size_t, std::size_t) {
     return !progress || progress(points.size() - unfinished.size(), points.size());
   };
   while (!unfinished.empty()) {
-    integrate_new(scene, unfinished, evaluator, of_points);
+    integrate_new(scene, unfinished, evaluator, point_progress);
     std::erase_if(unfinished, [&](PointIntegral* point) {
-      const double error = quadrature_error(total_of(point->intervals, &BandPiece::value),
-                                            total_of(point->intervals, &BandPiece::error));
+      const double error = quadrature_error(sum_pieces(point->intervals, &BandPiece::value),
+                                            sum_pieces(point->intervals, &BandPiece::error));
       const bool is_finished =
           !(error > kQuadratureShare * scene.accuracy.tolerance) || point->intervals.size() >= kMostIntervals;
       if (!is_finished) split_worst(*point);
@@ -220,13 +220,13 @@ std::vector<PointResult> integrate_band(const SceneValues& scene, const SceneEnt
   }
   std::vector<PointResult> results;
   for (const PointIntegral& point : integrals) results.push_back(band_result(point));
-  std::vector<std::size_t> of_rule;
+  std::vector<std::size_t> rule_entries;
   for (std::size_t i = 0; i < results.size(); ++i)
-    if (std::isnan(results[i][kDolp]) || !std::isnan(results[i][kDolpLow])) of_rule.push_back(i);
-  if (of_rule.empty()) return results;
-  const std::vector<PointResult> others = evaluate_scene(scene, points.chosen(of_rule), evaluator, progress);
-  for (std::size_t i = 0; i < of_rule.size(); ++i) {
-    PointResult& result = results[of_rule[i]];
+    if (std::isnan(results[i][kDolp]) || !std::isnan(results[i][kDolpLow])) rule_entries.push_back(i);
+  if (rule_entries.empty()) return results;
+  const std::vector<PointResult> others = evaluate_scene(scene, points.chosen(rule_entries), evaluator, progress);
+  for (std::size_t i = 0; i < rule_entries.size(); ++i) {
+    PointResult& result = results[rule_entries[i]];
     if (std::isnan(result[kDolp])) result = others[i];
     result[kDolpLow] = others[i][kDolpLow];
     result[kDolpHigh] = others[i][kDolpHigh];

@@ -176,7 +176,7 @@ PointsBetween::PointsBetween(const TableHead& table, std::size_t count, std::uin
   for (const Axis axis : kAllAxes) {
     if (table.axes[axis].empty()) continue;
     const SortedAxis sorted(table.axes[axis]);
-    const bool has_cells = !description_of(axis).has_labels && sorted.values.size() > 1;
+    const bool has_cells = !describe(axis).has_labels && sorted.values.size() > 1;
     std::vector<double>& column = points_[axis].emplace();
     for (std::size_t point = 0; point < count; ++point) {
       const std::size_t place = random_below(sorted.values.size() - (has_cells ? 1 : 0), engine);
@@ -225,7 +225,7 @@ std::vector<InterpolationError> PointsBetween::errors(const TableValues& entries
       for (const Axis axis : kAllAxes) {
         if (!points_[axis] || error.error.compared == 0) continue;
         const double value = (*points_[axis])[error.error.where];
-        const bool is_label = description_of(axis).has_labels;
+        const bool is_label = describe(axis).has_labels;
         error.at.push_back({axis, value, is_label ? labels_[axis][static_cast<std::size_t>(value)] : ""});
       }
     }
@@ -237,7 +237,7 @@ InterpolationForecast forecast_interpolation(const SceneValues& scene, const Eff
                                              double per_entry) {
   std::vector<Axis> axes;
   for (const Axis axis : kAllAxes) {
-    if (scene.grid[axis].size() > 1 && !description_of(axis).has_labels) axes.push_back(axis);
+    if (scene.grid[axis].size() > 1 && !describe(axis).has_labels) axes.push_back(axis);
   }
   Forecast forecast(scene, plan);
   InterpolationForecast result;

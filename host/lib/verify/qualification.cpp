@@ -33,7 +33,7 @@ Choice choice(const CsvReader& row, std::size_t column) {
   const std::optional<Choice> found = named<Choice>(word);
   if (!found) {
     row.fail(fmt::format("{} = {}: must be one of {}", kCaseColumns[column], one_line(word),
-                         fmt::join(words_of(Choice{}), ", ")));
+                         fmt::join(choice_names(Choice{}), ", ")));
   }
   return *found;
 }
@@ -80,7 +80,7 @@ double quotient_error(double above_error, double quotient, double below, double 
              : kInfinity;
 }
 
-Expected expected_of(const StoredCase& stored) {
+Expected expected_result(const StoredCase& stored) {
   const Moments& m = stored.moments;
   const double cosine = reference::zenith_from_deg(stored.theta_deg).cos;
   Expected expected;
@@ -109,8 +109,8 @@ std::string complaint_about(const char* quantity, const ErrorCheck& check, bool 
   return {};
 }
 
-CaseOutcome outcome_of(const StoredCase& stored, const PointResult& result, double tolerance) {
-  const Expected expected = expected_of(stored);
+CaseOutcome case_outcome(const StoredCase& stored, const PointResult& result, double tolerance) {
+  const Expected expected = expected_result(stored);
   CaseOutcome outcome{.stored = stored};
   outcome.status = result.status;
   outcome.promises_dolp = promises_dolp(result.status);
@@ -170,7 +170,7 @@ SceneValues emission_scene(Distribution distribution, Masking masking, double to
   scene.surface.sigma = 0.3;
   scene.emission = Emission{300.0, EmissionModel::kMoments};
   scene.spectrum = {10.6, 10.6};
-  scene.grid = axes_of({60.0}, {0.3}, {2.0});
+  scene.grid = make_axes({60.0}, {0.3}, {2.0});
   scene.accuracy.tolerance = tolerance;
   return scene;
 }
@@ -193,7 +193,7 @@ std::vector<CaseOutcome> qualify(const std::vector<StoredCase>& cases, ModelEval
     finished += positions.size();
     for (std::size_t j = 0; j < positions.size(); ++j) {
       const std::size_t i = positions[j];
-      outcomes[i] = outcome_of(cases[i], results[j], accuracy.tolerance);
+      outcomes[i] = case_outcome(cases[i], results[j], accuracy.tolerance);
     }
   }
   return outcomes;

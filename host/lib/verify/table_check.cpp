@@ -119,28 +119,28 @@ double absolute(double relative, double value) { return std::isinf(relative) ? r
 /// bound of rho also limits it: an error d of rho_I changes I by at most d * terms.radiation. The errors of a sky, a
 /// beam and direct emission are in this second limit by the bound of DOLP, which contains their error of Q and I.
 double radiation_bound(const Estimates& estimates, const PointResult& reference, const BoundTerms& terms) {
-  const double of_dolp = absolute(estimates.dolp, reference[Quantity::kStokesI]);
-  const double of_rho = terms.depends_on_rho ? absolute(estimates.rho, reference[Quantity::kRhoI]) : 0.0;
+  const double dolp_bound = absolute(estimates.dolp, reference[Quantity::kStokesI]);
+  const double rho_bound = terms.depends_on_rho ? absolute(estimates.rho, reference[Quantity::kRhoI]) : 0.0;
   const double dropped = terms.dropped * std::max(1.0, std::abs(reference[Quantity::kRhoI]));
-  const double by_rho = of_dolp + dropped + (of_rho + terms.rounding) * terms.radiation;
-  const double by_dolp = of_dolp / std::abs(reference[Quantity::kDolp]);
+  const double by_rho = dolp_bound + dropped + (rho_bound + terms.rounding) * terms.radiation;
+  const double by_dolp = dolp_bound / std::abs(reference[Quantity::kDolp]);
   return by_rho < by_dolp || reference[Quantity::kDolp] == 0.0 ? by_rho : by_dolp;
 }
 
 double error_bound(Bound bound, const Estimates& estimates, const PointResult& reference, const BoundTerms& terms) {
-  const double of_rho = absolute(estimates.rho, reference[Quantity::kRhoI]);
-  const double of_dolp = absolute(estimates.dolp, reference[Quantity::kStokesI]);
+  const double rho_bound = absolute(estimates.rho, reference[Quantity::kRhoI]);
+  const double dolp_bound = absolute(estimates.dolp, reference[Quantity::kStokesI]);
   switch (bound) {
     case Bound::kDolp:
       return estimates.dolp;
     case Bound::kReflectance:
-      return of_rho;
+      return rho_bound;
     case Bound::kPolarisedRadiation:
-      return of_dolp;
+      return dolp_bound;
     case Bound::kRadiation:
       return radiation_bound(estimates, reference, terms);
     case Bound::kEmissivity:
-      return 2.0 * (terms.model == EmissionModel::kMoments ? of_rho : of_dolp / terms.emitted) + terms.rounding;
+      return 2.0 * (terms.model == EmissionModel::kMoments ? rho_bound : dolp_bound / terms.emitted) + terms.rounding;
     case Bound::kAlbedo:
       return absolute(estimates.rho / estimates.specular_share + terms.albedo_rounding, reference[Quantity::kAlbedo]);
   }
@@ -169,10 +169,10 @@ double allowed_error(Bound bound, std::uint32_t status, double tolerance, const 
   return is_dolp ? tolerance : kInfinity;
 }
 
-void add(TableCheck& check, QuantityCheck& of_quantity, const CheckedValue& value) {
-  ++of_quantity.compared;
-  if (std::isinf(value.stated)) ++of_quantity.unstated;
-  if (of_quantity.compared == 1 || value.ratio() > of_quantity.worst.ratio()) of_quantity.worst = value;
+void add(TableCheck& check, QuantityCheck& quantity_check, const CheckedValue& value) {
+  ++quantity_check.compared;
+  if (std::isinf(value.stated)) ++quantity_check.unstated;
+  if (quantity_check.compared == 1 || value.ratio() > quantity_check.worst.ratio()) quantity_check.worst = value;
   if (!value.complaint.empty()) check.failures.push_back(value);
 }
 
@@ -185,18 +185,19 @@ double specular_share(const BoundTerms& terms, const PointResult& reference, dou
 CheckedValue compare(const TableSample& sample, const Compared& compared, std::size_t i, const PointResult& reference,
                      const BoundTerms& terms) {
   const TableValues& table = sample.table;
-  CheckedValue value{description_of(compared.quantity).name, position_of(sample.positions[i], table)};
+  CheckedValue value{describe(compared.quantity).name, entry_axis_values(sample.positions[i], table)};
   value.stored = table[compared.quantity][i];
   value.reference = reference[compared.quantity];
   const double theta_deg = std::ranges::find(value.position, Axis::kTheta, &AxisValue::axis)->value;
   const double share = specular_share(terms, reference, theta_deg);
   const Estimates stated{estimate_at(table[Quantity::kErrorEstimate], i),
                          estimate_at(table[Quantity::kRhoErrorEstimate], i), share};
-  const Estimates of_reference{reference[Quantity::kErrorEstimate], reference[Quantity::kRhoErrorEstimate], share};
+  const Estimates reference_estimates{reference[Quantity::kErrorEstimate], reference[Quantity::kRhoErrorEstimate],
+                                      share};
   BoundTerms keeps_all = terms;
   keeps_all.dropped = 0.0;
   value.stated = error_bound(compared.bound, stated, reference, terms);
-  value.reference_error = error_bound(compared.bound, of_reference, reference, keeps_all);
+  value.reference_error = error_bound(compared.bound, reference_estimates, reference, keeps_all);
   // If neither the table nor the reference has an error bound, for example because I overflows, any error is allowed.
   if (std::isnan(value.stated) && !std::isfinite(value.reference_error))
     value.stated = value.reference_error = kInfinity;
@@ -207,7 +208,7 @@ CheckedValue compare(const TableSample& sample, const Compared& compared, std::s
 
 void check_axes(const TableValues& table, const SceneValues& scene, const std::string& name) {
   for (const Axis axis : kAllAxes) {
-    const AxisDescription& known = description_of(axis);
+    const AxisDescription& known = describe(axis);
     const bool has_finite_mean_slope = axis == Axis::kQ && scene.surface.needs_mean_slope();
     const NumberRange& range = has_finite_mean_slope ? kSmithCauchyQRange : known.range;
     for (const double value : table.axes[axis]) {
@@ -224,11 +225,11 @@ bool has_rho(const TableValues& table) {
   return table.has(Quantity::kRhoErrorEstimate) && (table.has(Quantity::kRhoI) || table.has(Quantity::kRhoQ));
 }
 
-MomentsRequest request_of(const TableSample& sample, const Surface& surface) {
+MomentsRequest sample_request(const TableSample& sample, const Surface& surface) {
   MomentsRequest request = response_request(surface);
   const OpticalConstants index = request.optics.front().index;
   request.optics.clear();
-  const SceneEntries grid = SceneEntries::of_grid(sample.table.axes, index);
+  const SceneEntries grid = SceneEntries::grid(sample.table.axes, index);
   for (const std::size_t position : sample.positions) {
     const SceneEntry entry = grid[position];
     request.append({entry.theta_deg, entry.shape, index});
@@ -246,13 +247,13 @@ double CheckedValue::ratio() const {
   return error() / (stated + reference_error);
 }
 
-std::vector<AxisValue> position_of(std::size_t entry, const TableHead& table) {
+std::vector<AxisValue> entry_axis_values(std::size_t entry, const TableHead& table) {
   std::vector<AxisValue> position;
   const PerAxis at = positions_on_axes(entry, table.counts());
   for (const Axis axis : kAllAxes) {
     if (table.axes[axis].empty()) continue;
     const double value = table.axes[axis][at[axis]];
-    position.push_back({axis, value, description_of(axis).has_labels ? table.label(axis, value) : ""});
+    position.push_back({axis, value, describe(axis).has_labels ? table.label(axis, value) : ""});
   }
   return position;
 }
@@ -282,7 +283,7 @@ TableCheck check_table(const TableSample& sample, const SceneValues& scene, cons
                     name));
   }
   check_axes(table, scene, name);
-  const SceneEntries grid = SceneEntries::of_grid(table.axes, scene.surface.material.constant);
+  const SceneEntries grid = SceneEntries::grid(table.axes, scene.surface.material.constant);
   ReferenceEvaluator reference({.relative_tolerance = kReferenceTolerance});
   const SceneEntries chosen = grid.chosen(sample.positions);
   const std::vector<PointResult> results = scene.spectrum.is_band()
@@ -292,7 +293,7 @@ TableCheck check_table(const TableSample& sample, const SceneValues& scene, cons
   std::vector<BoundTerms> terms = bound_terms(scene, grid, plan_effects(scene, grid, false));
   const std::string* precision = find_attribute<std::string>(table, "precision");
   const bool is_double = precision && *precision == "double";
-  for (BoundTerms& of_variant : terms) of_variant.albedo_rounding = is_double ? of_variant.rounding : kFloatRounding;
+  for (BoundTerms& own_terms : terms) own_terms.albedo_rounding = is_double ? own_terms.rounding : kFloatRounding;
   TableCheck check;
   check.entries = table.size();
   check.checked = sample.positions.size();
@@ -300,10 +301,10 @@ TableCheck check_table(const TableSample& sample, const SceneValues& scene, cons
   for (const std::uint32_t status : table.status) check.missed += (status & kAnyToleranceNotMet) != 0 ? 1 : 0;
   for (const Compared& compared : kCompared) {
     if (!table.has(compared.quantity)) continue;
-    QuantityCheck& of_quantity = check.quantities.emplace_back();
-    of_quantity.name = description_of(compared.quantity).name;
+    QuantityCheck& quantity_check = check.quantities.emplace_back();
+    quantity_check.name = describe(compared.quantity).name;
     for (std::size_t i = 0; i < results.size(); ++i) {
-      add(check, of_quantity, compare(sample, compared, i, results[i], terms[grid[sample.positions[i]].variant]));
+      add(check, quantity_check, compare(sample, compared, i, results[i], terms[grid[sample.positions[i]].variant]));
     }
   }
   return check;
@@ -314,9 +315,9 @@ TableCheck check_responses(const TableSample& sample, const SceneValues& scene, 
   const TableValues& table = sample.table;
   const std::vector<double>& stated = table.responses[ResponseVariable::kResponseError];
   if (stated.empty()) throw InputError(name + ": has no response_error to check");
-  const MomentsRequest request = request_of(sample, scene.surface);
+  const MomentsRequest request = sample_request(sample, scene.surface);
   ReferenceEvaluator reference;
-  const EntryResponses right = responses_of(request, scene.accuracy, reference, progress);
+  const EntryResponses right = compute_responses(request, scene.accuracy, reference, progress);
   const std::vector<double>& reference_error = right.responses[ResponseVariable::kResponseError];
   TableCheck check;
   check.entries = table.size();
@@ -324,25 +325,25 @@ TableCheck check_responses(const TableSample& sample, const SceneValues& scene, 
   check.tolerance = scene.accuracy.tolerance;
   for (std::size_t i = 0; i < stated.size(); ++i) check.missed += stated[i] > check.tolerance * right.albedo[i] ? 1 : 0;
   for (const ResponseVariable variable : kAllResponseVariables) {
-    const ResponseDescription& described = description_of(variable);
+    const ResponseDescription& described = describe(variable);
     if (!described.has_beta || table.responses[variable].empty()) continue;
     if (table.responses[variable].size() != right.responses[variable].size())
       throw InputError(fmt::format("{}: {} is not at the local angles of this program", name, described.name));
     const bool is_of_q = variable == ResponseVariable::kResponseQ || variable == ResponseVariable::kEmissionQ;
-    QuantityCheck& of_variable = check.quantities.emplace_back();
-    of_variable.name = described.name;
+    QuantityCheck& variable_check = check.quantities.emplace_back();
+    variable_check.name = described.name;
     for (std::size_t i = 0; i < request.size(); ++i) {
       if (std::isnan(stated[i]) && std::isnan(reference_error[i])) continue;  // no weights: rho is undefined there
-      const auto of_entry = [&](const std::vector<double>& weights) {
+      const auto entry_weights = [&](const std::vector<double>& weights) {
         return std::span(weights).subspan(i * table.beta_deg.size(), table.beta_deg.size());
       };
-      CheckedValue value{described.name, position_of(sample.positions[i], table)};
-      value.stored =
-          response_distance(of_entry(table.responses[variable]), of_entry(right.responses[variable]), is_of_q);
+      CheckedValue value{described.name, entry_axis_values(sample.positions[i], table)};
+      value.stored = response_distance(entry_weights(table.responses[variable]),
+                                       entry_weights(right.responses[variable]), is_of_q);
       value.stated = stated[i];
       value.reference_error = reference_error[i];
       if (!(value.stored <= stated[i] + reference_error[i])) value.complaint = "is too far from the reference";
-      add(check, of_variable, value);
+      add(check, variable_check, value);
     }
   }
   return check;

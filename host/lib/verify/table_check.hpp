@@ -48,7 +48,7 @@ struct TableCheck {
   bool passed() const { return failures.empty(); }
 };
 
-std::vector<AxisValue> position_of(std::size_t entry, const TableHead& table);
+std::vector<AxisValue> entry_axis_values(std::size_t entry, const TableHead& table);
 
 /// Positions of options.samples random entries, none twice, in ascending order. options.seed fixes the choice.
 std::vector<std::size_t> sample_positions(std::size_t entries, const TableCheckOptions& options);

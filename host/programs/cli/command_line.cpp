@@ -190,12 +190,12 @@ CLI::Option* add_option(CLI::App& command, const OptionRow& row, Options& option
 }
 
 void add_conditions(CLI::App& verify) {
-  for (const char* of_table : {"--samples", "--seed", "--named-files"})
-    verify.get_option(of_table)->needs(verify.get_option("TABLE"));
+  for (const char* option : {"--samples", "--seed", "--named-files"})
+    verify.get_option(option)->needs(verify.get_option("TABLE"));
   verify.get_option("--between")->needs(verify.get_option("TABLE"))->excludes(verify.get_option("--samples"));
   verify.get_option("--quantities")->needs(verify.get_option("--between"));
-  for (const char* of_device : {"--device", "--precision", "--evaluator", "--tolerance", "--all"})
-    verify.get_option(of_device)->needs(verify.get_option("--hard-cases"));
+  for (const char* option : {"--device", "--precision", "--evaluator", "--tolerance", "--all"})
+    verify.get_option(option)->needs(verify.get_option("--hard-cases"));
   verify.get_option("--hard-cases")->excludes(verify.get_option("TABLE"));
 }
 

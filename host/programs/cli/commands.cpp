@@ -35,7 +35,7 @@ std::size_t slurm_number(const char* variable) {
 }
 
 /// The part of a table that --shard names: "2/8" is the second of eight parts; "auto" takes both numbers from Slurm.
-Shard shard_of(const std::string& text) {
+Shard parse_shard(const std::string& text) {
   if (text.empty()) return {};
   Shard shard;
   if (text == "auto") {
@@ -92,7 +92,7 @@ Report verification(const Options& options, const Progress& progress) {
 
 int run_table(const Options& options) {
   const Scene scene = load_scene(options);
-  const Shard shard = shard_of(options.shard);
+  const Shard shard = parse_shard(options.shard);
   const Report report = make_evaluator(options, scene)
                             .write_table(scene, options.output_path,
                                          {options.keep_all, ProgressBar(options.quiet).callback(), options.command_line,

@@ -19,7 +19,7 @@ using Words = std::vector<std::string>;
 
 bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
 
-Words names_of(const CLI::Option& option) {  // for example "--output" and "-o"
+Words option_names(const CLI::Option& option) {  // for example "--output" and "-o"
   Words names;
   for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
   for (const std::string& name : option.get_snames()) names.push_back("-" + name);
@@ -43,7 +43,7 @@ Words settings_for(const std::string& option) {
 }
 
 /// The words that an option allows as its value; empty if it allows any value.
-Words choices_of(const CLI::Option& option) {
+Words option_choices(const CLI::Option& option) {
   const std::string name = option.get_name();
   if (name == "--set" || name == "--vary" || name == "--compare") return settings_for(name);
   const std::string type = option.get_type_name();  // for example "TEXT:{vulkan,cpu}"
@@ -74,10 +74,10 @@ std::string completing_words(const CLI::App& app, const Words& line) {
   if (command == nullptr) return found;
   const CLI::Option* const previous = command->get_option_no_throw(line[line.size() - 2]);
   if (previous != nullptr && takes_value(*previous)) {
-    for (const std::string& word : choices_of(*previous)) add(word, "");
+    for (const std::string& word : option_choices(*previous)) add(word, "");
   } else if (current.starts_with('-')) {
     for (const CLI::Option* option : command->get_options()) {
-      for (const std::string& name : names_of(*option)) add(name, option->get_description());
+      for (const std::string& name : option_names(*option)) add(name, option->get_description());
     }
   }
   return found;
@@ -96,7 +96,7 @@ std::string manual_options(const CLI::App& command) {
     if (option->get_name() == "--help,-h" || option->get_name() == "-h,--help") continue;
     const bool is_positional = option->get_positional();
     const std::string name =
-        is_positional ? option->get_name(true) : fmt::format("{}", fmt::join(names_of(*option), ", "));
+        is_positional ? option->get_name(true) : fmt::format("{}", fmt::join(option_names(*option), ", "));
     const std::string type = is_positional || !takes_value(*option) ? "" : " " + option->get_type_name();
     text += fmt::format(".TP\n.B {}\n{}\n", roff(name + type), roff(option->get_description()));
   }

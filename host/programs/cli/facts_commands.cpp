@@ -48,7 +48,7 @@ int finish_list(Report report, const char* name, const Json& list, const Options
 }
 
 /// The wavelengths in um that the argument of --at means: "UM", "FROM:TO" or "FROM:TO:COUNT". Errors: InputError.
-std::vector<double> wavelengths_of(const std::string& text) {
+std::vector<double> parse_wavelengths(const std::string& text) {
   constexpr double kDefaultCount = 11.0;
   constexpr double kMost = 1e6;
   std::vector<double> numbers;
@@ -67,7 +67,7 @@ std::vector<double> wavelengths_of(const std::string& text) {
 }
 
 int show_material(const Options& options) {
-  const std::vector<double> wavelengths = wavelengths_of(options.wavelength_um);
+  const std::vector<double> wavelengths = parse_wavelengths(options.wavelength_um);
   const auto [name, from_um, to_um, source] = material(options.material);
   if (wavelengths.front() < from_um || wavelengths.back() > to_um) {
     throw InputError(
@@ -94,7 +94,7 @@ int show_material(const Options& options) {
 }
 
 int show_all_materials(const Options& options) {
-  const std::vector<double> wavelengths = wavelengths_of(options.wavelength_um);
+  const std::vector<double> wavelengths = parse_wavelengths(options.wavelength_um);
   if (wavelengths.size() != 1)
     throw InputError(
         fmt::format("--at {}: give one wavelength, or the name of a material", one_line(options.wavelength_um)));

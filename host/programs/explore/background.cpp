@@ -113,7 +113,7 @@ JobPart Worker::advance(Task& task) {
   const Results results =
       evaluate_(job.scene, list,
                 {.keep_all = job.keep_all, .progress = [&](std::size_t, std::size_t) { return may_continue(job); }});
-  JobPart news{.key = job.key, .part = task.next_part, .scene = job.scene, .points = points_of(list, results)};
+  JobPart news{.key = job.key, .part = task.next_part, .scene = job.scene, .points = result_points(list, results)};
   task.wall_s += seconds_since(start);
   task.evaluations += results.integrand_evaluations;
   news.is_last = ++task.next_part == job.parts.size();

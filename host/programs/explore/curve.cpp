@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::size_t kStride = 10;  // true_error() checks every tenth point of a fine curve: a point every 5 degrees
 
-double dolp_of(const Point& point) { return point[Quantity::kDolp]; }
+double point_dolp(const Point& point) { return point[Quantity::kDolp]; }
 
-double most_of(const Point& point) { return dolp_of(point) + point[Quantity::kErrorEstimate]; }
+double upper_dolp(const Point& point) { return point_dolp(point) + point[Quantity::kErrorEstimate]; }
 
 struct Removal {
   const char* effect;
@@ -25,7 +25,7 @@ struct Removal {
 
   bool is_in(const Scene& scene) const {
     const bool is_number = described(key).type == Key::Type::kNumber;
-    if (!is_number) return scene.word(key) && *scene.word(key) != word_of(change.value);
+    if (!is_number) return scene.word(key) && *scene.word(key) != plain_text(change.value);
     const bool is_table = change.key.find('.') == std::string::npos;
     return is_table ? scene.number(key).has_value() : scene.number(key) > 0.0;
   }
@@ -60,9 +60,9 @@ std::vector<WithoutEffect> without_each(const Scene& scene, const SceneEdits& ed
   return without;
 }
 
-std::vector<Point>::const_iterator largest_of(const std::vector<Point>& points) {  // max DOLP of good points, or end()
+std::vector<Point>::const_iterator dolp_peak(const std::vector<Point>& points) {  // max DOLP of good points, or end()
   const auto rank = [](const Point& point) {
-    return std::pair(point.is_good(), point.is_good() ? dolp_of(point) : 0.0);
+    return std::pair(point.is_good(), point.is_good() ? point_dolp(point) : 0.0);
   };
   const auto best = std::ranges::max_element(points, {}, rank);
   return best == points.end() || best->is_good() ? best : points.end();
@@ -78,9 +78,9 @@ void Curve::follow(const std::string& key, const Scene& scene, bool keep_all) {
 }
 
 std::optional<Job> Curve::wanted(Stage stage) const {
-  if (key_.empty() || is_finished() || shown_.key == key_of(stage)) return std::nullopt;
+  if (key_.empty() || is_finished() || shown_.key == job_key(stage)) return std::nullopt;
   const bool is_coarse = stage == Stage::kCoarse;
-  return Job{.key = key_of(stage),
+  return Job{.key = job_key(stage),
              .scene = scene_,
              .parts = {points_at(scene_, zeniths(0.0, 90.0, is_coarse ? kCoarseCount : kFineCount))},
              .tolerance = is_coarse ? kCoarseTolerance : 0.0,
@@ -90,15 +90,15 @@ std::optional<Job> Curve::wanted(Stage stage) const {
 }
 
 bool Curve::take(const JobPart& news) {
-  const bool is_fine = news.key == key_of(Stage::kFine);
-  if (!is_fine && news.key != key_of(Stage::kCoarse)) return false;
+  const bool is_fine = news.key == job_key(Stage::kFine);
+  if (!is_fine && news.key != job_key(Stage::kCoarse)) return false;
   if (is_fine) finished_ = news;
   if (is_fine || !is_finished()) shown_ = news;
   return true;
 }
 
 bool Curve::take_earlier(const JobPart& news) {
-  if (!news.key.starts_with(prefix_of(Stage::kCoarse))) return false;
+  if (!news.key.starts_with(key_prefix(Stage::kCoarse))) return false;
   if (!is_current()) shown_ = news;
   return true;
 }
@@ -124,7 +124,7 @@ std::string true_error(const Curve& curve, const Progress& progress) {
   const Point* worst = nullptr;
   double largest = -1.0;
   for (std::size_t i = 0; i < stated.size(); ++i) {
-    const double error = std::abs(dolp_of(stated[i]) - truth[Quantity::kDolp][i]);
+    const double error = std::abs(point_dolp(stated[i]) - truth[Quantity::kDolp][i]);
     if (!stated[i].is_good() || !(error > largest)) continue;
     largest = error;
     worst = &stated[i];
@@ -144,7 +144,7 @@ void Peak::follow(const Curve& curve, const SceneEdits& edits, double theta_max_
   without_.clear();
   curve_ = curve.points();
   std::erase_if(curve_, [&](const Point& point) { return point.theta_deg > theta_max_deg; });
-  const auto best = largest_of(curve_);
+  const auto best = dolp_peak(curve_);
   if (best == curve_.end()) return;
   const double low = (best == curve_.begin() ? best : best - 1)->theta_deg;
   const double high = (best + 1 == curve_.end() ? best : best + 1)->theta_deg;
@@ -161,8 +161,9 @@ std::vector<Job> Peak::wanted() const {
   }
   for (const WithoutEffect& removed : without_) {
     if (removed.result) continue;
-    jobs.push_back(
-        {.key = key_of(removed), .scene = removed.scene, .parts = {points_at(removed.scene, {answer_->at.theta_deg})}});
+    jobs.push_back({.key = job_key(removed),
+                    .scene = removed.scene,
+                    .parts = {points_at(removed.scene, {answer_->at.theta_deg})}});
   }
   return jobs;
 }
@@ -172,7 +173,7 @@ bool Peak::take(const JobPart& news) {
     answer_from(news.points);
     return true;
   }
-  const auto has_key = [&](const WithoutEffect& without) { return news.key == key_of(without); };
+  const auto has_key = [&](const WithoutEffect& without) { return news.key == job_key(without); };
   const auto removed = std::ranges::find_if(without_, has_key);
   if (removed == without_.end()) return false;
   removed->result = news.points.front();
@@ -180,10 +181,10 @@ bool Peak::take(const JobPart& news) {
 }
 
 void Peak::answer_from(const std::vector<Point>& points) {
-  const auto best = largest_of(points);
+  const auto best = dolp_peak(points);
   if (best == points.end()) return theta_deg_.clear();
-  const double least = dolp_of(*best) - (*best)[Quantity::kErrorEstimate];
-  const auto may_be_largest = [&](const Point& point) { return point.is_good() && most_of(point) >= least; };
+  const double least = point_dolp(*best) - (*best)[Quantity::kErrorEstimate];
+  const auto may_be_largest = [&](const Point& point) { return point.is_good() && upper_dolp(point) >= least; };
   auto first = best;
   auto last = best;
   while (first != points.begin() && may_be_largest(*(first - 1))) --first;
@@ -195,7 +196,7 @@ void Peak::answer_from(const std::vector<Point>& points) {
 std::optional<double> Peak::rival(double least) const {
   for (const Point& point : curve_) {
     const bool is_beside = point.theta_deg >= theta_deg_.front() && point.theta_deg <= theta_deg_.back();
-    if (!is_beside && point.is_good() && most_of(point) >= least) return point.theta_deg;
+    if (!is_beside && point.is_good() && upper_dolp(point) >= least) return point.theta_deg;
   }
   return std::nullopt;
 }

@@ -29,7 +29,7 @@ class Curve {
 
   const Scene& scene() const { return scene_; }
   const std::string& key() const { return key_; }
-  bool is_finished() const { return shown_.key == key_of(Stage::kFine); }
+  bool is_finished() const { return shown_.key == job_key(Stage::kFine); }
   bool is_stale() const { return !points().empty() && !is_current(); }  ///< points() belong to an earlier scene
   const Scene& shown_scene() const { return points().empty() ? scene_ : shown_.scene; }  ///< the scene of points()
   const std::vector<Point>& points() const { return shown_.points; }
@@ -46,9 +46,9 @@ class Curve {
   }
 
  private:
-  std::string prefix_of(Stage stage) const { return (stage == Stage::kCoarse ? "coarse " : "") + name_ + ' '; }
-  std::string key_of(Stage stage) const { return prefix_of(stage) + key_; }
-  bool is_current() const { return is_finished() || shown_.key == key_of(Stage::kCoarse); }
+  std::string key_prefix(Stage stage) const { return (stage == Stage::kCoarse ? "coarse " : "") + name_ + ' '; }
+  std::string job_key(Stage stage) const { return key_prefix(stage) + key_; }
+  bool is_current() const { return is_finished() || shown_.key == job_key(Stage::kCoarse); }
 
   std::string name_;
   std::string key_;
@@ -110,7 +110,7 @@ class Peak {
  private:
   std::optional<double> rival(double least) const;
   void answer_from(const std::vector<Point>& points);
-  std::string key_of(const WithoutEffect& removed) const { return "without " + removed.effect + ' ' + key_; }
+  std::string job_key(const WithoutEffect& removed) const { return "without " + removed.effect + ' ' + key_; }
 
   std::string key_;
   Scene scene_;

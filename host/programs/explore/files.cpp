@@ -55,9 +55,9 @@ std::vector<std::string> texts_in(Node node) {  // empty if the node is no array
 }
 
 template <class Values, class TextOf>
-toml::array array_of(const Values& values, const TextOf& text_of) {
+toml::array toml_array(const Values& values, const TextOf& to_text) {
   toml::array array;
-  for (const auto& value : values) array.push_back(text_of(value));
+  for (const auto& value : values) array.push_back(to_text(value));
   return array;
 }
 
@@ -85,13 +85,13 @@ FitMarks marks_in(const std::vector<std::string>& texts, const std::string& loca
 toml::array lasting_texts(std::vector<Setting> settings, const SkyFiles& skies, const fs::path& scene,
                           const fs::path& session) {
   for (Setting& setting : settings) {
-    if (setting.key != "surroundings.profile" || !skies.hold(word_of(setting.value))) continue;
-    const fs::path sky = word_of(setting.value);
+    if (setting.key != "surroundings.profile" || !skies.hold(plain_text(setting.value))) continue;
+    const fs::path sky = plain_text(setting.value);
     const fs::path copy = session.parent_path() / (session.stem().string() + "_" + sky.filename().string());
     write_text_atomically(copy, read_named_file(sky.string(), sky.string() + ": "));
     setting.value = copy.lexically_relative(fs::absolute(scene).parent_path().lexically_normal()).string();
   }
-  return array_of(settings, [](const Setting& setting) { return setting.text(); });
+  return toml_array(settings, [](const Setting& setting) { return setting.text(); });
 }
 
 toml::table state_table(const SceneEdits& edits, const std::string& name, const SkyFiles& skies,
@@ -139,9 +139,9 @@ T need(Node node, const std::string& location) {
 
 /// The position in `choices` of the choice whose name is the text of `node`. Errors: InputError if there is none.
 template <class Choices, class NameOf>
-std::size_t need_one_of(const Choices& choices, const NameOf& name_of, Node node, const std::string& location) {
+std::size_t need_choice(const Choices& choices, const NameOf& choice_name, Node node, const std::string& location) {
   const auto name = need<std::string>(node, location);
-  const auto found = std::ranges::find(choices, name, name_of);
+  const auto found = std::ranges::find(choices, name, choice_name);
   if (found == choices.end()) throw InputError(location + " \"" + name + "\" is unknown");
   return static_cast<std::size_t>(found - choices.begin());
 }
@@ -179,8 +179,8 @@ std::size_t index_in(Node node, std::size_t count, const std::string& location) 
 View view_in(Node node, const std::string& location) {
   View view;
   view.quantity = static_cast<Plotted>(
-      need_one_of(kAllPlotted, &PlottedDescription::name, node["quantity"], location + "quantity"));
-  view.panel = static_cast<Panel>(need_one_of(kPanelNames, std::identity(), node["panel"], location + "panel"));
+      need_choice(kAllPlotted, &PlottedDescription::name, node["quantity"], location + "quantity"));
+  view.panel = static_cast<Panel>(need_choice(kPanelNames, std::identity(), node["panel"], location + "panel"));
   view.theta_max_deg = need<double>(node["theta_max_deg"], location + "theta_max_deg");
   view.map_x = need<std::string>(node["map_x"], location + "map_x");
   view.map_y = need<std::string>(node["map_y"], location + "map_y");
@@ -237,7 +237,7 @@ void save_session(const Session& session, const std::string& path) {
   toml::table file{{kVersionKey, kVersion},
                    {"scene", state(session.edits(), "")},
                    {"view", view_table(session)},
-                   {"vary", array_of(session.marked(), mark_text)}};
+                   {"vary", toml_array(session.marked(), mark_text)}};
   if (const auto& data = session.residuals().data())
     file.insert("measured", fs::proximate(data->name, target.parent_path()).string());
   toml::array pins, snapshots;
@@ -312,7 +312,7 @@ void Preferences::save() const {
   fs::create_directories(path_.parent_path(), failure);
   if (failure) throw IoError(path_.parent_path().string() + ": " + failure.message());
   const auto same = [](const std::string& path) { return path; };
-  write_toml(path_, toml::table{{"light", is_light}, {"zoom", zoom_steps_}, {"recent", array_of(recent(), same)}});
+  write_toml(path_, toml::table{{"light", is_light}, {"zoom", zoom_steps_}, {"recent", toml_array(recent(), same)}});
 }
 
 void Preferences::remember(const fs::path& file) {

@@ -105,7 +105,7 @@ Scale known_part(const Scene& scene, const MapAxis& axis) {
 }
 
 std::size_t MapAxis::rank() const {
-  const std::string table_column = column() == kWind.column ? description_of(Axis::kSigma).column : column();
+  const std::string table_column = column() == kWind.column ? describe(Axis::kSigma).column : column();
   const auto found =
       std::ranges::find_if(kAxes, [&](const AxisDescription& axis) { return table_column == axis.column; });
   if (found != kAxes.end()) return 2 + static_cast<std::size_t>(found - kAxes.begin());
@@ -117,7 +117,7 @@ std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range)
     try {
       if (!axis.key.empty()) {
         static_cast<void>(scene.with(axis.key, end));
-      } else if (!description_of(Axis::kTheta).range.contains(end)) {
+      } else if (!describe(Axis::kTheta).range.contains(end)) {
         return "must be numbers in [0, 90]";
       }
     } catch (const InputError& error) {
@@ -178,14 +178,14 @@ PointList HeatMap::part(std::size_t level, std::size_t first) const {
 std::optional<Job> HeatMap::wanted(std::size_t level) const {
   if (key_.empty() || (is_current() && is_complete(level))) return std::nullopt;
   const Level& next = kLevels[level];
-  Job job{.key = key_of(level), .scene = scene_, .parts = {}, .tolerance = next.tolerance, .keep_all = keep_all_};
+  Job job{.key = job_key(level), .scene = scene_, .parts = {}, .tolerance = next.tolerance, .keep_all = keep_all_};
   for (std::size_t i = 0; i < next.count; i += batch(level)) job.parts.push_back(part(level, i));
   return job;
 }
 
 bool HeatMap::take(const JobPart& news) {
   std::size_t level = 0;
-  while (level < kLevels.size() && news.key != key_of(level)) ++level;
+  while (level < kLevels.size() && news.key != job_key(level)) ++level;
   if (level == kLevels.size()) return false;
   const bool is_first = level == 0 && !is_current();
   if (is_first && (std::exchange(arriving_key_, key_) != key_ || news.part == 0)) arriving_.clear();

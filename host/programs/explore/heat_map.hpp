@@ -102,7 +102,7 @@ class HeatMap {
   static constexpr std::size_t entries(std::size_t level) { return kLevels[level].count * kLevels[level].count; }
   bool is_current() const { return shown_key_ == key_; }
   bool is_complete(std::size_t level) const { return points_[level].size() == entries(level); }
-  std::string key_of(std::size_t level) const { return "map " + std::to_string(kLevels[level].count) + ' ' + key_; }
+  std::string job_key(std::size_t level) const { return "map " + std::to_string(kLevels[level].count) + ' ' + key_; }
   bool is_turned() const { return x_.rank() < y_.rank(); }  ///< true if x is slower()
   const MapAxis& slower() const { return is_turned() ? x_ : y_; }
   const MapAxis& faster() const { return is_turned() ? y_ : x_; }  ///< has a new value at each point of part()

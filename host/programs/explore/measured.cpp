@@ -58,7 +58,7 @@ std::vector<Measurement> Residuals::residuals(Plotted quantity) const {
   return residuals;
 }
 
-std::optional<double> rms_of(const std::vector<Measurement>& residuals) {
+std::optional<double> residual_rms(const std::vector<Measurement>& residuals) {
   if (residuals.empty()) return std::nullopt;
   double sum = 0.0;
   for (const Measurement& residual : residuals) sum += residual.value * residual.value;

@@ -39,7 +39,8 @@ class Residuals {
   Sweep model_;
 };
 
-std::optional<double> rms_of(const std::vector<Measurement>& residuals);  ///< root mean square; empty without residuals
+std::optional<double> residual_rms(
+    const std::vector<Measurement>& residuals);  ///< root mean square; empty without residuals
 
 /// The scene keys of the numbers that vary in fits. Each key has a range if the user typed one.
 using FitMarks = std::map<std::string, std::optional<FitRange>>;

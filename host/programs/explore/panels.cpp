@@ -24,7 +24,7 @@ std::pair<double, double> known_um(const Scene& scene) {  // range of the wavele
 
 }  // namespace
 
-Panel panel_of(const std::string& name) {
+Panel find_panel(const std::string& name) {
   const auto found = std::ranges::find(kPanelNames, name);
   if (found == kPanelNames.end())
     throw InputError("view " + name + ": is not one of " + join({kPanelNames.begin(), kPanelNames.end()}));

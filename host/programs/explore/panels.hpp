@@ -15,7 +15,7 @@ enum class Panel : std::uint8_t { kMap, kSlopes, kMaterial, kSmooth, kSpectrum, 
 inline constexpr std::array kPanelNames = {"map",   "slopes", "material", "smooth", "spectrum",
                                            "pBRDF", "sphere", "sky",      "fit"};
 
-Panel panel_of(const std::string& name);  ///< Errors: InputError that lists the names
+Panel find_panel(const std::string& name);  ///< Errors: InputError that lists the names
 
 /// The scene with a Gaussian slope distribution instead of a Cauchy one, or the reverse, with the same density D(0) of
 /// horizontal facets: sigma_gaussian = sigma_cauchy / sqrt(q - 1). Empty if the model forbids the new sigma or q.

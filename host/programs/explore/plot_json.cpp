@@ -38,9 +38,9 @@ json map_json(const Session& session) {
   if (const auto& typed = session.view().range(View::kColours)) {
     colours = {{"from", description.scale() * typed->from}, {"to", description.scale() * typed->to}};
   }
-  const auto axis_of = [](const MapAxis& axis) { return axis_json(axis.label, axis.scale); };
-  return {{"x", axis_of(session.map().x())},
-          {"y", axis_of(session.map().y())},
+  const auto map_axis_json = [](const MapAxis& axis) { return axis_json(axis.label, axis.scale); };
+  return {{"x", map_axis_json(session.map().x())},
+          {"y", map_axis_json(session.map().y())},
           {"label", description.label()},
           {"is_log", session.view().is_log},
           {"is_signed", description.is_signed},

@@ -27,7 +27,7 @@ Scene with_grid(const Scene& scene, const PointList& list) {
 }
 
 template <Quantity kQuantity>
-double value_of(const Point& point) {
+double point_value(const Point& point) {
   return point[kQuantity];
 }
 double rho_s(const Point& point) { return point[Quantity::kRhoI] + point[Quantity::kRhoQ]; }
@@ -42,16 +42,16 @@ double emissivity(const Point& point) {
 }  // namespace
 
 const std::array<PlottedDescription, 7> kAllPlotted = {{
-    {Plotted::kDolp, "DOLP", "√(Q² + U²)/I, in percent", true, false, value_of<Quantity::kDolp>},
+    {Plotted::kDolp, "DOLP", "√(Q² + U²)/I, in percent", true, false, point_value<Quantity::kDolp>},
     {Plotted::kSignedDolp, "Q/I", "positive: s polarised, negative: p; in percent", true, false,
-     value_of<Quantity::kQOverI>, true},
+     point_value<Quantity::kQOverI>, true},
     {Plotted::kRhoS, "ρ_s", "ρ_I + ρ_Q, eq. (16)", false, true, rho_s},
     {Plotted::kRhoP, "ρ_p", "ρ_I − ρ_Q, eq. (16)", false, true, rho_p},
     {Plotted::kEmissivityS, "ε_s", "by the emission's model; without emission 1 − ρ_s (Kirchhoff)", false, true,
      emissivity<Quantity::kEmissivityS, rho_s>},
     {Plotted::kEmissivityP, "ε_p", "by the emission's model; without emission 1 − ρ_p (Kirchhoff)", false, true,
      emissivity<Quantity::kEmissivityP, rho_p>},
-    {Plotted::kAlbedo, "albedo", "A(θ), ρ of perfectly reflecting facets", false, true, value_of<Quantity::kAlbedo>},
+    {Plotted::kAlbedo, "albedo", "A(θ), ρ of perfectly reflecting facets", false, true, point_value<Quantity::kAlbedo>},
 }};
 
 Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list, const RunOptions& options) {
@@ -86,7 +86,7 @@ std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count) {
   return theta_deg;
 }
 
-std::vector<Point> points_of(const PointList& list, const Results& results) {
+std::vector<Point> result_points(const PointList& list, const Results& results) {
   std::vector<Point> points;
   const std::vector<double>& theta_deg = list.values.front().second;
   for (std::size_t i = 0; i < results.status.size(); ++i)

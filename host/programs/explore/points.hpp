@@ -46,7 +46,7 @@ struct Point : PointResult {
   }
 };
 
-std::vector<Point> points_of(const PointList& list, const Results& results);
+std::vector<Point> result_points(const PointList& list, const Results& results);
 std::string status_text(std::uint32_t status);  ///< "good", or a short text of the status bits
 
 enum class Plotted : std::uint8_t { kDolp, kSignedDolp, kRhoS, kRhoP, kEmissivityS, kEmissivityP, kAlbedo };

@@ -99,9 +99,9 @@ std::string peak_text(const Session& session) {
   const Point& at = peak->at;
   const double error = at[Quantity::kErrorEstimate];
   if (at[Quantity::kDolp] <= error) return "Maximum: the DOLP is 0 everywhere, within its bound";
-  const char* of_source = is_bistatic(session.scene()) ? " of the source" : "";
+  const char* source_text = is_bistatic(session.scene()) ? " of the source" : "";
   std::string text = fmt::format("Maximum: DOLP {:.3f} % at θ = {:.2f}°{}, {} polarised. Numerical error ≤ {} points; ",
-                                 kPercent * at[Quantity::kDolp], at.theta_deg, of_source,
+                                 kPercent * at[Quantity::kDolp], at.theta_deg, source_text,
                                  at[Quantity::kQOverI] > 0.0 ? "s" : "p", points_text(error));
   if (peak->rival_deg) {
     text += fmt::format("within it the maximum may also be elsewhere, for example at {:g}°.", *peak->rival_deg);

@@ -88,7 +88,7 @@ std::vector<double> Scale::ticks(std::size_t most) const {
   return some;
 }
 
-Scale range_of(std::vector<double> values, bool is_log) {
+Scale value_scale(std::vector<double> values, bool is_log) {
   std::erase_if(values, [&](double value) { return !std::isfinite(value) || (is_log && value <= 0.0); });
   if (values.empty()) values = {is_log ? 0.01 : 0.0, 1.0};
   if (!is_log) values.push_back(0.0);

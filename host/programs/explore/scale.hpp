@@ -48,7 +48,7 @@ struct Scale {
 
 /// A range for a plot of `values`, with space above the largest. A linear range contains 0. Ignores values that are not
 /// finite, and for a logarithmic range also values that are not positive.
-Scale range_of(std::vector<double> values, bool is_log);
+Scale value_scale(std::vector<double> values, bool is_log);
 
 std::string tick_text(double value);  ///< label of a tick, with at most four digits
 

@@ -30,7 +30,7 @@ std::string with_number(const Scene& scene, const char* symbol, const std::strin
 }
 
 /// The material in `table`, a TOML table such as "surface.coating.1", as text: a name, a file, or n and k.
-std::string material_of(const Scene& scene, const std::string& table) {
+std::string medium_name(const Scene& scene, const std::string& table) {
   if (table == "surface" && !has_index(scene)) return *scene.word("surface.reflectance_file");
   for (const char* name : {".material", ".material_file"}) {
     if (const auto word = scene.word(table + name)) return *word;
@@ -49,10 +49,10 @@ std::vector<std::vector<std::string>> shape_words(const Scene& scene) {
 }
 
 std::string material_name(const Scene& scene) {
-  std::string name = material_of(scene, "surface");
-  for (std::size_t layer = 1; layer <= films_of(scene).size(); ++layer) {
+  std::string name = medium_name(scene, "surface");
+  for (std::size_t layer = 1; layer <= scene_films(scene).size(); ++layer) {
     const std::string film = fmt::format("surface.coating.{}", layer);
-    name += fmt::format(", film {} {:.4g} µm", material_of(scene, film), scene.number(film + ".thickness_um").value());
+    name += fmt::format(", film {} {:.4g} µm", medium_name(scene, film), scene.number(film + ".thickness_um").value());
   }
   return name;
 }
@@ -123,10 +123,10 @@ constexpr const char* kCoating = "surface.coating";
 /// True if `change` replaces or removes an earlier setting of the key `other`.
 bool replaces(const Setting& change, const std::string& other) {
   const std::string& key = change.key;
-  if (other == key || other == table_of(key)) return true;
+  if (other == key || other == parent_table(key)) return true;
   if (key == kCoating) return other.starts_with(kCoating);
   const bool is_table = key.find('.') == std::string::npos && key != "title";
-  if (is_table) return table_of(other) == key;
+  if (is_table) return parent_table(other) == key;
   return std::ranges::count(described(key).rivals, other) > 0;
 }
 
@@ -194,7 +194,7 @@ Scale range_in(const Scene& scene, const Control& control) {
   return is_smith && control.key->key == "surface.q" ? kSmithQ : control.slider;
 }
 
-std::string table_of(const std::string& key) { return key.substr(0, key.rfind('.')); }
+std::string parent_table(const std::string& key) { return key.substr(0, key.rfind('.')); }
 
 std::string unit_text(const Key& key) {
   if (key.unit == "1") return {};
@@ -248,7 +248,7 @@ void SceneEdits::set(const std::vector<Setting>& changes) {
 }
 
 void SceneEdits::reset(const std::string& key) {
-  const auto is_of_key = [&](const Setting& change) { return change.key == key || table_of(change.key) == key; };
+  const auto is_of_key = [&](const Setting& change) { return change.key == key || parent_table(change.key) == key; };
   std::vector<Setting> all = changes();
   std::erase_if(all, is_of_key);
   std::ranges::copy_if(opened_.settings(), std::back_inserter(all), is_of_key);
@@ -261,7 +261,7 @@ std::vector<Setting> SceneEdits::changes_without(const std::vector<std::string>&
   return left;
 }
 
-std::vector<Film> films_of(const Scene& scene) {
+std::vector<Film> scene_films(const Scene& scene) {
   std::vector<Film> films;
   for (const Key& key : dolp::keys()) {
     if (key.layer == 0) continue;
@@ -276,7 +276,7 @@ std::vector<Film> films_of(const Scene& scene) {
   return films;
 }
 
-Setting coating_of(const std::vector<Film>& films) {
+Setting coating_setting(const std::vector<Film>& films) {
   if (films.empty()) return {kCoating, Value()};
   std::vector<std::string> texts;
   for (const Film& film : films) {
@@ -287,7 +287,7 @@ Setting coating_of(const std::vector<Film>& films) {
   return {kCoating, TomlText{'[' + join(texts) + ']'}};
 }
 
-std::string word_of(const Value& value) {
+std::string plain_text(const Value& value) {
   const auto* word = std::get_if<std::string>(&value.content());
   return word ? *word : value.text();
 }

@@ -38,7 +38,7 @@ const std::vector<Control>& controls();
 
 const Control& control(std::string_view key);                ///< the control of a scene key, which must have one
 Scale range_in(const Scene& scene, const Control& control);  ///< the part of the slider's range that the masking allows
-std::string table_of(const std::string& key);                ///< "surface.coating.1" of "surface.coating.1.n"
+std::string parent_table(const std::string& key);            ///< "surface.coating.1" of "surface.coating.1.n"
 std::string unit_text(const Key& key);                       ///< unit for display: "°" for "degree", "" for "1"
 bool is_bistatic(const Scene& scene);
 
@@ -83,9 +83,9 @@ class SceneEdits {
 
 /// The settings of a film: first n and k, or material, or material_file; then thickness_um.
 using Film = std::vector<Setting>;
-std::vector<Film> films_of(const Scene& scene);      ///< the outermost film first
-Setting coating_of(const std::vector<Film>& films);  ///< setting that gives a scene these films
-std::string word_of(const Value& value);             ///< text of a value, without quotes
+std::vector<Film> scene_films(const Scene& scene);        ///< the outermost film first
+Setting coating_setting(const std::vector<Film>& films);  ///< setting that gives a scene these films
+std::string plain_text(const Value& value);               ///< text of a value, without quotes
 
 /// Applies `change`. If it conflicts with earlier choices in the scene, also replaces those that must be replaced, and
 /// returns their new values. Errors: InputError if the scene refuses `change` all the same; `edits` is then unchanged.

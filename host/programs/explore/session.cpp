@@ -10,9 +10,9 @@
 namespace dolp::explore {
 namespace {
 
-std::string text_of(const std::vector<Setting>& changes) {
+std::string changes_text(const std::vector<Setting>& changes) {
   std::vector<std::string> texts;
-  for (const Setting& change : changes) texts.push_back(change.key + " = " + word_of(change.value));
+  for (const Setting& change : changes) texts.push_back(change.key + " = " + plain_text(change.value));
   return join(texts);
 }
 
@@ -107,7 +107,7 @@ void Session::tell_new_remarks_on_scene() {
 }
 
 void Session::tell_needed(const std::string& chosen, const std::vector<Setting>& needed) {
-  if (!needed.empty()) tell(fmt::format("{} also sets {}", chosen, text_of(needed)));
+  if (!needed.empty()) tell(fmt::format("{} also sets {}", chosen, changes_text(needed)));
 }
 
 void Session::hold(bool is_held) {
@@ -136,7 +136,7 @@ void Session::set(const std::vector<Setting>& changes) {
     const auto set = [&](SceneEdits& edits) { edits.set(changes); };
     const auto is_moved = [&](const Setting& change) { return moves_number(scene(), change); };
     if (std::ranges::all_of(changes, is_moved)) return set(state_.edits);
-    tell_needed(text_of(changes), change_with_needed(state_.edits, set));
+    tell_needed(changes_text(changes), change_with_needed(state_.edits, set));
   });
 }
 

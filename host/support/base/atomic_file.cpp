@@ -53,7 +53,7 @@ class File {
   int descriptor_;
 };
 
-fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
+fs::path parent_folder(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
 bool is_device_or_pipe(const fs::path& path) {
   std::error_code error;
@@ -90,7 +90,7 @@ void read_all(int descriptor, const fs::path& path, std::uint64_t offset, char* 
 }
 
 fs::path temporary_name(const fs::path& target, int number) {
-  return folder_of(target) / (".dolp-" + std::to_string(::getpid()) + "-" + std::to_string(number) + ".tmp");
+  return parent_folder(target) / (".dolp-" + std::to_string(::getpid()) + "-" + std::to_string(number) + ".tmp");
 }
 
 /// Calls make(name) with temporary names in the folder of `target`, until a name is free. Returns name and result.
@@ -110,7 +110,7 @@ std::pair<fs::path, int> with_new_name(const fs::path& target, const Make& make)
 std::pair<File, fs::path> create_temporary(const fs::path& target) {
   const bool can_be_linked = ::access(kOpenFiles, X_OK) == 0;
   const int unnamed =
-      can_be_linked ? ::open(folder_of(target).c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, kNewFileMode) : -1;
+      can_be_linked ? ::open(parent_folder(target).c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, kNewFileMode) : -1;
   if (unnamed >= 0) return {File(unnamed), fs::path()};
   auto [name, named] = with_new_name(target, [](const fs::path& path) {
     return ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kNewFileMode);
@@ -145,7 +145,7 @@ fs::path follow_links(fs::path path) {
     if (links == kMostLinks) fail(path, "too many symbolic links");
     const fs::path target = fs::read_symlink(path, error);
     if (error) fail(path, "cannot read the symbolic link: " + error.message());
-    path = folder_of(path) / target;
+    path = parent_folder(path) / target;
   }
   return path;
 }
@@ -160,7 +160,7 @@ void check_writable(const fs::path& path) {
     return;
   }
   if (target.filename().empty()) fail(path, "is not a file name");
-  const fs::path folder = folder_of(target);
+  const fs::path folder = parent_folder(target);
   const fs::file_status found = fs::status(folder, error);
   if (found.type() == fs::file_type::none)
     fail(path, "cannot look at the folder " + folder.string() + ": " + error.message());
@@ -182,9 +182,9 @@ struct AtomicFile::Impl {
   fs::path name;         // temporary name of the incomplete file; empty if it has no name
   bool is_kept = false;  // true: the destructor does not remove an incomplete file
 
-  Impl(fs::path of_user, fs::path of_file, std::pair<File, fs::path> unfinished)
-      : path(std::move(of_user)),
-        target(std::move(of_file)),
+  Impl(fs::path given_path, fs::path resolved_path, std::pair<File, fs::path> unfinished)
+      : path(std::move(given_path)),
+        target(std::move(resolved_path)),
         file(std::move(unfinished.first)),
         name(std::move(unfinished.second)) {}
   Impl(const Impl&) = delete;
@@ -284,7 +284,7 @@ void AtomicFile::resize(std::uint64_t size) {
 
 void AtomicFile::commit() {
   if (is_device_or_pipe(impl_->target)) return impl_->copy_to_target();
-  const fs::path folder = folder_of(impl_->target);  // allocated before the rename, because an allocation can fail
+  const fs::path folder = parent_folder(impl_->target);  // allocated before the rename, because an allocation can fail
   if (interrupted()) throw Cancelled();
   if (::fsync(impl_->descriptor()) != 0) fail_errno(impl_->path, "cannot write");
   if (impl_->name.empty()) impl_->link();

@@ -41,7 +41,7 @@ VkDeviceSize largest_device_heap(const VkPhysicalDeviceMemoryProperties& memory)
   return largest;
 }
 
-dolp::Device::Type type_of(VkPhysicalDeviceType type) {
+dolp::Device::Type device_type(VkPhysicalDeviceType type) {
   using enum dolp::Device::Type;
   // in the order of the values of VkPhysicalDeviceType
   constexpr std::array kTypes = {kOther, kIntegrated, kDiscrete, kVirtual, kCpu};
@@ -76,7 +76,7 @@ void add_properties_1_2(VkPhysicalDevice physical, dolp::Device& description) {
 }
 
 // On a CPU the program makes a workgroup as small as a subgroup, because a small dispatch would not fill larger ones.
-std::uint32_t local_size_of(const dolp::Device& device) {
+std::uint32_t choose_local_size(const dolp::Device& device) {
   if (device.type != dolp::Device::Type::kCpu || device.subgroup_size == 0) return kLocalSize;
   return std::min(device.subgroup_size, kLocalSize);
 }
@@ -94,7 +94,7 @@ dolp::Device describe(VkPhysicalDevice physical) {
 
   dolp::Device description;
   description.name = properties.deviceName;
-  description.type = type_of(properties.deviceType);
+  description.type = device_type(properties.deviceType);
   description.driver = version_text(properties.driverVersion);
   description.api_version = version_text(properties.apiVersion);
   description.why_not = why_not_usable(properties, family.has_value());
@@ -106,7 +106,7 @@ dolp::Device describe(VkPhysicalDevice physical) {
   description.memory_bytes = largest_device_heap(memory);
   description.timestamps = family && family->timestamp_bits > 0;
   if (properties.apiVersion >= VK_API_VERSION_1_2) add_properties_1_2(physical, description);
-  description.local_size = local_size_of(description);
+  description.local_size = choose_local_size(description);
   return description;
 }
 

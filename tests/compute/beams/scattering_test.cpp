@@ -87,7 +87,7 @@ TEST_P(ScatteringOf, OtherBeams_ChangeNoBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, ScatteringOf, testing::ValuesIn(kModels),
-                         [](const auto& test) { return name_of(test.param); });
+                         [](const auto& test) { return to_name(test.param); });
 
 // ---- Limits and extremes -------------------------------------------------------------------------------------------
 
@@ -173,7 +173,7 @@ TEST(MuellerLimits, CornersOfTheDomain_AreFiniteAndAgreeWithExplicitVectors) {
           EXPECT_TRUE(std::isfinite(f[i].m[j])) << text_of(own[i]);
           if (is_comparable) {
             EXPECT_NEAR(f[i].m[j], references[i].m[j], f[i].error + references[i].error)
-                << name_of(masking) << " " << text_of(own[i]);
+                << to_name(masking) << " " << text_of(own[i]);
           }
         }
       }

@@ -77,7 +77,7 @@ TEST_P(Grooves, StoredCases_AreWithinTheBounds) {
       for (std::size_t i = 0; i < cases.size(); ++i) {
         worst = std::max(worst, expect_within_bounds(cases[i].moments, moments[i], cases[i].name));
       }
-      std::printf("%s %.0e: %zu cases, worst %.2g of its bound\n", name_of(distribution), tolerance, cases.size(),
+      std::printf("%s %.0e: %zu cases, worst %.2g of its bound\n", to_name(distribution), tolerance, cases.size(),
                   worst);
     }
   }
@@ -128,7 +128,7 @@ TEST_P(Grooves, WithoutAndWithTheDirectEmission_TheOtherMomentsAgree) {
     without.wants_direct = false;
     const Moments a = evaluator->evaluate(with, {}).front();
     const Moments b = evaluator->evaluate(without, {}).front();
-    expect_within_bounds(a, b, name_of({Distribution::kCauchy, masking}));
+    expect_within_bounds(a, b, to_name({Distribution::kCauchy, masking}));
     EXPECT_TRUE(std::isnan(b.direct_i));
     // The emissivity is deficit / cos(theta) with single scattering, and direct_i / cos(theta) with direct emission.
     // The first is too high: it counts light that meets a second facet as absorbed. The second is too low: it leaves
@@ -200,7 +200,7 @@ TEST_P(Grooves, TowardTheMirrorDirection_NoMatrixIsDefined) {
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryKernel, Grooves, testing::ValuesIn(kKernels),
-                         [](const auto& test) { return name_of(test.param); });
+                         [](const auto& test) { return to_name(test.param); });
 
 /// Beams that arrive at 40 degrees and leave 1e-6 to 1 degree beside the mirror direction, on several sides.
 std::vector<BeamAngles> toward_the_mirror() {
@@ -231,7 +231,7 @@ TEST(GroovesMueller, TowardTheMirrorDirection_WorkIsBounded) {
   for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
     const int paint = most_bounces_toward_the_mirror(distribution, {1.5, 0.1});
     const int metal = most_bounces_toward_the_mirror(distribution, {10.0, 60.0});
-    std::printf("%s: paint %d, metal %d\n", name_of(distribution), paint, metal);
+    std::printf("%s: paint %d, metal %d\n", to_name(distribution), paint, metal);
     EXPECT_LT(paint, 1'000);
     EXPECT_LT(metal, 1'010'000);
   }
@@ -262,7 +262,7 @@ PointResult result_at(const SceneValues& scene, const Point& point) {
 }
 
 SceneValues multiple(Distribution distribution) {
-  return metal({"surface.scattering=multiple", std::string("surface.distribution=") + name_of(distribution)});
+  return metal({"surface.scattering=multiple", std::string("surface.distribution=") + to_name(distribution)});
 }
 
 double mean_emissivity(const PointResult& r) { return 0.5 * (r[Quantity::kEmissivityS] + r[Quantity::kEmissivityP]); }

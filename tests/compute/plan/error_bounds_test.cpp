@@ -147,7 +147,7 @@ TEST(HardEntries, Moments_AreWithinTheirBoundsOfFinerRulesAndOfTheReference) {
       const Moments stated =
           make_evaluator(kernel)->evaluate(request_of(entry.model, {entry.point}, entry.tolerance), {}).at(0);
       const MomentsRequest finest = request_of(entry.model, {entry.point}, kFinest);
-      const std::string where = name_of(kernel) + " " + name_of(entry.model) + " at " + text_of(entry.point);
+      const std::string where = to_name(kernel) + " " + to_name(entry.model) + " at " + text_of(entry.point);
       const Moments fine = FixedPrecision(Precision::kDouble).evaluate(finest, {}).at(0);
       expect_within_bounds(stated, fine, where);
       expect_within_bounds(stated, ReferenceEvaluator().evaluate(finest, {}).at(0), where);
@@ -203,7 +203,7 @@ TEST_P(NextToTheHorizon, RulesAndBounds_KeepUpWithTheTolerance) {
 INSTANTIATE_TEST_SUITE_P(Maskings, NextToTheHorizon,
                          testing::Values(Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith),
                          [](const auto& test) {
-                           return name_of({Distribution::kCauchy, test.param});
+                           return to_name({Distribution::kCauchy, test.param});
                          });
 
 }  // namespace

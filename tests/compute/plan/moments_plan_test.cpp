@@ -114,7 +114,7 @@ TEST_P(Grids, StatedErrors_HoldAgainstEveryEntryByItself) {
       if (is_multiple && (model.masking != Masking::kVCavity || sharing == Sharing::kIndices)) continue;
       Random random(kSeed + 10 * static_cast<std::uint64_t>(kernel) + static_cast<std::uint64_t>(sharing));
       for (std::size_t grid = 0; grid < grids; ++grid) {
-        SCOPED_TRACE(name_of(model) + " grid " + std::to_string(grid));
+        SCOPED_TRACE(to_name(model) + " grid " + std::to_string(grid));
         MomentsRequest request = random_grid(random, model, scattering, sharing);
         request.precision = is_double(kernel) ? Precision::kDouble : Precision::kFloat;
         const std::vector<Moments> moments = planned_moments(MomentsPlan(request), *evaluator, {}, work);
@@ -134,7 +134,7 @@ TEST_P(Grids, StatedErrors_HoldAgainstEveryEntryByItself) {
 
 std::string case_name(const testing::TestParamInfo<std::tuple<Kernel, Sharing>>& test) {
   constexpr std::array kNames = {"Slopes", "Rows", "Shapes", "Indices"};
-  return name_of(std::get<0>(test.param)) + kNames[static_cast<std::size_t>(std::get<1>(test.param))];
+  return to_name(std::get<0>(test.param)) + kNames[static_cast<std::size_t>(std::get<1>(test.param))];
 }
 
 INSTANTIATE_TEST_SUITE_P(Kernels, Grids, testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kSharings)),
@@ -156,8 +156,8 @@ TEST(SecondPass, SomeShapesOfAGrid_HeaviestTailIsNotLost) {
     const Moments own = evaluator->evaluate(request, {})[kHeavy];
     const Point alone{60.0, {0.55, 1.2}, {1.5, 0.0}};
     const Model model{Distribution::kCauchy, masking};
-    expect_within_bounds(own, evaluator->evaluate(request_of(model, {alone}, 1e-9), {}).front(), name_of(model));
-    EXPECT_LE(own.r_i_error, request.tolerance * own.r_i) << name_of(model);
+    expect_within_bounds(own, evaluator->evaluate(request_of(model, {alone}, 1e-9), {}).front(), to_name(model));
+    EXPECT_LE(own.r_i_error, request.tolerance * own.r_i) << to_name(model);
   }
 }
 

@@ -71,7 +71,7 @@ TEST(ResponseBasis, CombinedReflectances_StayWithinTheirBounds) {
       int reached = 0;
       for (const FacetOptics& optics : asked) {
         const OpticalConstants& index = optics.index;
-        const auto weights = basis->weights_of(index);
+        const auto weights = basis->find_weights(index);
         if (!weights) continue;
         ++reached;
         EXPECT_LE(std::max(weights->absorbed_error, weights->split_error), tolerance * level_of(index));
@@ -107,9 +107,9 @@ TEST(ResponseBasis, IndicesWithAKink_AreNotReached) {
   Random random(3);
   const auto basis = ResponseBasis::of(random_indices(kBoxes[0], 200, random), 1e-4, 1);
   ASSERT_TRUE(basis);
-  EXPECT_TRUE(basis->weights_of({1.7, 0.5}));
+  EXPECT_TRUE(basis->find_weights({1.7, 0.5}));
   for (const OpticalConstants& index : {OpticalConstants{0.5, 0.0}, {0.9, 0.001}, {1.001, 0.0}, {1.0, 0.0}})
-    EXPECT_FALSE(basis->weights_of(index)) << index.n << " " << index.k;
+    EXPECT_FALSE(basis->find_weights(index)) << index.n << " " << index.k;
 }
 
 }  // namespace

@@ -129,7 +129,7 @@ TEST_F(TableFiles, Netcdf_VariableAbove4GiB_IsOf64BitData) {
   EXPECT_EQ(format, NC_FORMAT_CDF5);
   EXPECT_EQ(nc_close(id), NC_NOERR);
   const TableReader reader(at("t.nc"));
-  EXPECT_EQ(reader.sums_of(reader.read({last, part.counts()}), {last, part.counts()}), sums);
+  EXPECT_EQ(reader.value_sums(reader.read({last, part.counts()}), {last, part.counts()}), sums);
 }
 
 /// A file without values. Its axes have the given lengths. Its variable dolp has only the first `axes` axes.
@@ -256,7 +256,7 @@ TEST_F(TableFiles, Csv_Rows_ReadBackAsTheSameDoubles) {
     EXPECT_EQ(number(), table.axes[Axis::kSigma][i / 2 % 2]);
     EXPECT_EQ(number(), table.axes[Axis::kQ][i % 2]);
     for (const Quantity quantity : kAllQuantities) {
-      expect_same({number()}, {table[quantity][i]}, description_of(quantity).name);
+      expect_same({number()}, {table[quantity][i]}, describe(quantity).name);
     }
     EXPECT_EQ(number(), table.status[i]);
   }

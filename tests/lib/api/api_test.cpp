@@ -64,7 +64,7 @@ TEST_F(Library, ResponseTables_InMemoryAndInAFile_AreTheSameBits) {
 TEST_F(Library, Tables_InMemoryAndInAFile_AreTheSameBits_AndPointsAgree) {
   const dolp::Table table = evaluator_.table(scene_);
   for (const dolp::Axis axis : dolp::kAllAxes)
-    EXPECT_EQ(table.values().axes[axis].empty(), !dolp::description_of(axis).is_required);
+    EXPECT_EQ(table.values().axes[axis].empty(), !dolp::describe(axis).is_required);
   const auto path = evaluator_.write_table(scene_, at("t.nc")).output;
   const dolp::Table read = dolp::Table::read(path);
   const std::vector<double> theta = {60, 60}, sigma = {0.1, 0.4}, q = {3.5};
@@ -72,7 +72,7 @@ TEST_F(Library, Tables_InMemoryAndInAFile_AreTheSameBits_AndPointsAgree) {
   EXPECT_EQ(table.values().quantities(), read.values().quantities());
   for (const dolp::Quantity quantity : table.values().quantities()) {
     ASSERT_EQ(table.values()[quantity].size(), 12U);
-    EXPECT_EQ(table.values()[quantity], read.values()[quantity]) << dolp::description_of(quantity).name;
+    EXPECT_EQ(table.values()[quantity], read.values()[quantity]) << dolp::describe(quantity).name;
   }
   const auto agree = [&](std::size_t point, std::size_t entry) {
     const dolp::PointResult a = points.at(point), b = table.values().at(entry);
@@ -111,7 +111,7 @@ TEST_F(Library, MergedShards_AreTheTable_AndOneThatIsThereIsKept) {
   EXPECT_EQ(dolp::merge(shards, at("merged.nc")).output, at("merged.nc"));
   const dolp::Table whole = dolp::Table::read(at("whole.nc")), merged = dolp::Table::read(at("merged.nc"));
   for (const dolp::Quantity quantity : whole.values().quantities())
-    EXPECT_EQ(whole.values()[quantity], merged.values()[quantity]) << dolp::description_of(quantity).name;
+    EXPECT_EQ(whole.values()[quantity], merged.values()[quantity]) << dolp::describe(quantity).name;
   EXPECT_THROW(dolp::merge({shards[0]}, at("half.nc")), dolp::InputError);
 }
 

@@ -37,14 +37,14 @@ std::vector<double> brute_growth(Residuals& residuals, const FitResult& result, 
 
 class FitContours : public FitTest {
  protected:
-  /// Fits n, k and sigma, and compares the growth that contours_of computes with brute_growth. The growth is chi^2
+  /// Fits n, k and sigma, and compares the growth that compute_contours computes with brute_growth. The growth is chi^2
   /// minus chi^2 of the fit. `off` is the tolerance of its square root.
   void expect_true(int points, std::uint64_t seed, double off) {
     const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0), number("surface.k", 0.0, 5.0),
                                               number("surface.sigma", 0.02, 1.0)};
     const Model model(parse_scene(kScene, "scene"), {measured(kNoise, {}, true, points, seed)}, parameters);
     const FitResult result = fit::fit(model, evaluator_, {}).value();
-    const Contours contours = contours_of(model, evaluator_, result, {}).value();
+    const Contours contours = compute_contours(model, evaluator_, result, {}).value();
     EXPECT_LE(contours.evaluations, 2 * result.evaluations);
     const auto& pair = contours.parameters;
     Residuals residuals(model, result.tolerance, Differences::kForward, evaluator_, {});
@@ -77,8 +77,8 @@ class FitContours : public FitTest {
   }
 };
 
-// The tolerance is 0.1, because contours_of interpolates the residuals linearly between the nodes of its grid, and its
-// descents stop shortly before the minimum.
+// The tolerance is 0.1, because compute_contours interpolates the residuals linearly between the nodes of its grid, and
+// its descents stop shortly before the minimum.
 TEST_F(FitContours, EightPoints_AreWhereTheLeastOfTheThirdParameterSays) { expect_true(8, 7, 0.1); }
 
 // Four points hardly distinguish n, k and sigma, so that chi^2 has a bent valley. In a bent valley, linear

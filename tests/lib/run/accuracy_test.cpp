@@ -71,7 +71,7 @@ struct Compared {
   bool is_missed() const { return (result.status & kAnyToleranceNotMet) != 0; }
   bool promises_dolp() const { return dolp::promises_dolp(result.status); }
   std::string name() const {
-    return std::string(name_of(point.distribution)) + " " + name_of(point.masking) + " theta " +
+    return std::string(to_name(point.distribution)) + " " + to_name(point.masking) + " theta " +
            std::to_string(point.theta_deg) + " sigma " + std::to_string(point.shape.sigma) + " q " +
            std::to_string(point.shape.q) + " N " + std::to_string(point.index.n) + " + " +
            std::to_string(point.index.k) + "i";

@@ -92,7 +92,7 @@ class BistaticByEvaluator : public testing::TestWithParam<std::optional<Kernel>>
 
 INSTANTIATE_TEST_SUITE_P(Bistatic, BistaticByEvaluator,
                          testing::Values(Kernel::kVulkanFloat, Kernel::kVulkanDouble, Kernel::kCpuDouble, std::nullopt),
-                         [](const auto& test) { return test.param ? name_of(*test.param) : "Reference"; });
+                         [](const auto& test) { return test.param ? to_name(*test.param) : "Reference"; });
 
 TEST_P(BistaticByEvaluator, RandomScenes_AgreeWithTheModelWrittenOut) {
   std::printf("seed %llu\n", static_cast<unsigned long long>(kSeed));

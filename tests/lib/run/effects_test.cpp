@@ -39,7 +39,7 @@ TEST(Dropping, RandomScenes_TheAnswerWithEverythingIsWithinTheEstimates) {
       const PointResult& a = whole[j];
       const PointResult& b = left[j];
       const std::string name =
-          describe(scene, entries[j]) + "; " + effects_text(effects_of(scene, entries, plan), plan);
+          scene_text(scene, entries[j]) + "; " + effects_text(list_effects(scene, entries, plan), plan);
       if ((a.status & kOutsideModelDomain) != 0) {
         EXPECT_EQ(std::isnan(a[Quantity::kStokesI]), std::isnan(b[Quantity::kStokesI])) << name;
         continue;
@@ -97,11 +97,12 @@ theta_deg = [20, 60]
   EXPECT_TRUE(plan.needs_beams);
 }
 
-// extents_of groups points by wavelength. Each point is in one group, so a sum over the groups counts no point twice.
+// entry_extents groups points by wavelength. Each point is in one group, so a sum over the groups counts no point
+// twice.
 TEST(ExtentsOf, PointsAtTheirWavelengths_AreEachInOne) {
   const SceneEntries points({{10.0, {0.1, 2.0}, {}, 1}, {20.0, {0.3, 3.0}, {}, 0}, {30.0, {0.2, 4.0}, {}, 1}},
-                            variants_of(axes_of({}, {}, {}, {8.0, 9.0})));
-  const std::vector<EntriesExtent> extents = extents_of(points);
+                            grid_variants(make_axes({}, {}, {}, {8.0, 9.0})));
+  const std::vector<EntriesExtent> extents = entry_extents(points);
   ASSERT_EQ(extents.size(), 2U);
   EXPECT_EQ(extents[0].theta_deg, std::vector<double>{20.0});
   EXPECT_EQ(extents[1].theta_deg, (std::vector<double>{10.0, 30.0}));
@@ -117,7 +118,7 @@ TEST(EffectBounds, RandomScenes_HoldWhatEachPartChanges) {
     SceneValues scene = scenes.next();
     scene.accuracy.tolerance = 1e-3;
     const std::vector<SceneEntry> entries = scenes.entries(scene);
-    const EffectBounds bounds(scene, spectral_rule(scene), extents_of(entries).front());
+    const EffectBounds bounds(scene, spectral_rule(scene), entry_extents(entries).front());
     const std::vector<PointResult> whole = run(scene, entries, keep_everything(scene));
     for (const Part part : kBounded) {
       const double bound = bounds.bound(part, {});
@@ -130,12 +131,12 @@ TEST(EffectBounds, RandomScenes_HoldWhatEachPartChanges) {
         const double change = polarisation_change(a, b);
         if (bound == 0.0) {
           EXPECT_LE(change, a[Quantity::kErrorEstimate] + b[Quantity::kErrorEstimate])
-              << "part " << static_cast<int>(part) << " " << describe(scene, entries[j]);
+              << "part " << static_cast<int>(part) << " " << scene_text(scene, entries[j]);
           continue;
         }
         ++compared[part];
         EXPECT_LE(change, bound + a[Quantity::kErrorEstimate] + b[Quantity::kErrorEstimate] + kRounding)
-            << "part " << static_cast<int>(part) << " " << describe(scene, entries[j]);
+            << "part " << static_cast<int>(part) << " " << scene_text(scene, entries[j]);
       }
     }
   }

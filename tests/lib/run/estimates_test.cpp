@@ -128,7 +128,7 @@ TEST(Influences, Bands_AreWithinAFactorOfTwoOfTheDifferenceOfTwoTables) {
     const double difference = largest_change(whole, without);
     const SceneEntries entries = grid_entries(whole);
     const EffectPlan plan = plan_effects(whole, entries, true);
-    std::vector<Effect> effects = effects_of(whole, entries, plan);
+    std::vector<Effect> effects = list_effects(whole, entries, plan);
     add_influences(effects, whole, entries, plan);
     const auto row = std::ranges::find(effects, Part::kSurroundings, &Effect::part);
     ASSERT_TRUE(row != effects.end() && row->influence.has_value()) << overrides.front();

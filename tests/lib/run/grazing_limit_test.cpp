@@ -126,7 +126,7 @@ TEST(GrazingLimit_Quotient, IsWhatTheKernelTendsTo) {
         const Moments limit = grazing_limit_moments(index, q);
         const double quotient = limit.r_q / limit.r_i;
         EXPECT_NEAR(extrapolated, quotient, kExtrapolationAccuracy * std::abs(quotient))
-            << name_of(masking) << " N " << index.n << " + " << index.k << "i q " << q;
+            << to_name(masking) << " N " << index.n << " + " << index.k << "i q " << q;
       }
     }
   }
@@ -137,13 +137,13 @@ TEST(GrazingLimit_InAGrid, IsWhatAPointGives) {
   for (const Masking masking : {Masking::kNone, Masking::kIntegral}) {
     for (const std::vector<double>& theta_deg : {std::vector{30.0, 90.0}, {90.0, 30.0}, {90.0}}) {
       SceneValues scene = make_scene(Distribution::kCauchy, masking, kDielectric);
-      scene.grid = axes_of(theta_deg, {0.3}, {1.2, 1.5});
+      scene.grid = make_axes(theta_deg, {0.3}, {1.2, 1.5});
       CpuEvaluator cpu;
       const SceneEntries grid = grid_entries(scene);
       const std::vector<PointResult> table = evaluate_scene(scene, grid, cpu, {});
       const std::vector<PointResult> points = evaluate_scene(scene, SceneEntries(list_of(grid)), cpu, {});
       for (std::size_t i = 0; i < table.size(); ++i)
-        EXPECT_EQ(table[i][Quantity::kDolp], points[i][Quantity::kDolp]) << name_of(masking) << " entry " << i;
+        EXPECT_EQ(table[i][Quantity::kDolp], points[i][Quantity::kDolp]) << to_name(masking) << " entry " << i;
     }
   }
 }

@@ -47,16 +47,16 @@ struct PredictedCase {
 
 std::vector<PredictedCase> predicted_cases() {
   const std::vector<double> sigma = spaced(0.1, 0.6, 30), q = spaced(1.8, 5.0, 24), few = {0.2, 0.4};
-  return {{"each entry by itself", Masking::kSmith, axes_of(spaced(0.0, 80.0, 50), few, {2.0, 3.0, 5.0})},
-          {"rows", Masking::kIntegral, axes_of(spaced(0.0, 80.0, 20), few, spaced(2.0, 3.0, 8))},
-          {"slope samples", Masking::kVCavity, axes_of(spaced(0.0, 80.0, 20), few, spaced(2.0, 3.0, 8))},
-          {"interpolated", Masking::kSmith, axes_of({20.0, 70.0}, sigma, q)},
-          {"interpolated, grazing directions apart", Masking::kIntegral, axes_of({20.0, 90.0}, sigma, q)},
+  return {{"each entry by itself", Masking::kSmith, make_axes(spaced(0.0, 80.0, 50), few, {2.0, 3.0, 5.0})},
+          {"rows", Masking::kIntegral, make_axes(spaced(0.0, 80.0, 20), few, spaced(2.0, 3.0, 8))},
+          {"slope samples", Masking::kVCavity, make_axes(spaced(0.0, 80.0, 20), few, spaced(2.0, 3.0, 8))},
+          {"interpolated", Masking::kSmith, make_axes({20.0, 70.0}, sigma, q)},
+          {"interpolated, grazing directions apart", Masking::kIntegral, make_axes({20.0, 90.0}, sigma, q)},
           {"responses", Masking::kNone,
-           axes_of(spaced(0.0, 80.0, 8), few, {2.0, 3.0}, {}, spaced(1.3, 2.0, 5), spaced(0.1, 0.9, 5))},
+           make_axes(spaced(0.0, 80.0, 8), few, {2.0, 3.0}, {}, spaced(1.3, 2.0, 5), spaced(0.1, 0.9, 5))},
           {"responses at nodes, direct emission", Masking::kSmith,
-           axes_of({20.0, 70.0}, sigma, q, {}, spaced(1.3, 2.0, 4), spaced(0.1, 0.9, 4)), true},
-          {"beams", Masking::kSmith, axes_of(spaced(0.0, 80.0, 10), sigma, {2.0}), false, true}};
+           make_axes({20.0, 70.0}, sigma, q, {}, spaced(1.3, 2.0, 4), spaced(0.1, 0.9, 4)), true},
+          {"beams", Masking::kSmith, make_axes(spaced(0.0, 80.0, 10), sigma, {2.0}), false, true}};
 }
 
 TEST(Prediction, CountsOfTheFirstLevel_AreThoseOfTheRun) {

@@ -26,7 +26,7 @@ EntryResponses responses(const Model& model, const std::vector<Point>& points, d
   request.optics.clear();
   request.has_extra_splits = has_extra_splits;
   for (const Point& p : points) request.append({p.theta_deg, p.shape, index});
-  return responses_of(request, {.tolerance = tolerance}, evaluator, {});
+  return compute_responses(request, {.tolerance = tolerance}, evaluator, {});
 }
 
 std::span<const double> weights(const EntryResponses& all, ResponseVariable variable, std::size_t entry) {
@@ -48,10 +48,10 @@ double expect_within_bounds(const EntryResponses& a, const EntryResponses& b, co
     const double bound = error_at(a, i * step) + error_at(b, i);
     if (std::isnan(bound)) continue;
     for (const ResponseVariable variable : kAllResponseVariables) {
-      if (!description_of(variable).has_beta || a.responses[variable].empty()) continue;
+      if (!describe(variable).has_beta || a.responses[variable].empty()) continue;
       const bool is_of_q = variable == ResponseVariable::kResponseQ || variable == ResponseVariable::kEmissionQ;
       const double distance = response_distance(weights(a, variable, i * step), weights(b, variable, i), is_of_q);
-      EXPECT_LE(distance, bound) << description_of(variable).name << " at " << text_of(points[i]);
+      EXPECT_LE(distance, bound) << describe(variable).name << " at " << text_of(points[i]);
       worst = std::max(worst, distance / bound);
     }
   }
@@ -88,7 +88,7 @@ TEST_P(ResponsesOf, SomeEntries_AreThoseOfTheReference) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, ResponsesOf, testing::ValuesIn(kModels),
-                         [](const auto& test) { return name_of(test.param); });
+                         [](const auto& test) { return to_name(test.param); });
 
 TEST(Responses, OfADevice_AreThoseOfTheCpu) {
   std::vector<Point> points;
@@ -107,7 +107,7 @@ TEST(Responses, OfADevice_AreThoseOfTheCpu) {
     grid.theta_deg = {0.0, 60.0, 90.0};
     grid.sigma = {0.1, 0.5};
     grid.q = {2.5};
-    expect_within_bounds(responses_of(grid, {.tolerance = 1e-4}, device, {}), responses(model, points, 1e-9, cpu),
+    expect_within_bounds(compute_responses(grid, {.tolerance = 1e-4}, device, {}), responses(model, points, 1e-9, cpu),
                          points);
   }
 }
@@ -125,9 +125,9 @@ TEST(Responses, OfADenseGrid_AreThoseOfEntriesByThemselves) {
     std::vector<Point> points;
     for (std::size_t i = 0; i < grid.size(); i += kStep) points.push_back({grid[i].theta_deg, grid[i].shape, {}});
     CpuEvaluator evaluator;
-    const double worst = expect_within_bounds(responses_of(grid, {.tolerance = 1e-4}, evaluator, {}),
+    const double worst = expect_within_bounds(compute_responses(grid, {.tolerance = 1e-4}, evaluator, {}),
                                               responses(model, points, 1e-7, evaluator), points, kStep);
-    std::printf("%s: largest distance over the bounds %.2g\n", name_of(model).c_str(), worst);
+    std::printf("%s: largest distance over the bounds %.2g\n", to_name(model).c_str(), worst);
   }
 }
 
@@ -180,9 +180,9 @@ TEST(Responses, At90Degrees_AreTheLimitOrNone) {
   const std::vector<Point> points = {{90.0, {0.3, 2.5}, {}}, {90.0 - 1e-7, {0.3, 2.5}, {}}};
   for (const Model& model : kModels) {
     const EntryResponses all = responses(model, points, 1e-4, evaluator);
-    EXPECT_EQ(std::isnan(all.albedo[0]), !keeps_projected_area(model.masking)) << name_of(model);
+    EXPECT_EQ(std::isnan(all.albedo[0]), !keeps_projected_area(model.masking)) << to_name(model);
     if (!std::isnan(all.albedo[0])) {
-      EXPECT_NEAR(all.albedo[0], all.albedo[1], 1e-5 + error_at(all, 0) + error_at(all, 1)) << name_of(model);
+      EXPECT_NEAR(all.albedo[0], all.albedo[1], 1e-5 + error_at(all, 0) + error_at(all, 1)) << to_name(model);
     }
   }
 }

@@ -76,8 +76,8 @@ TEST(SceneExact_QOfTwo, IsGgx) {
           const PointResult r = run_one(scene, theta_deg, {kSigma, 2.0}, evaluator);
           const double bound = (r[Quantity::kRhoErrorEstimate] + kGgxAccuracy) * ggx.rho_i;
           EXPECT_LE(r[Quantity::kRhoErrorEstimate], scene.accuracy.tolerance);
-          EXPECT_NEAR(r[Quantity::kRhoI], ggx.rho_i, bound) << name_of(masking) << " " << theta_deg;
-          EXPECT_NEAR(r[Quantity::kRhoQ], ggx.rho_q, bound) << name_of(masking) << " " << theta_deg;
+          EXPECT_NEAR(r[Quantity::kRhoI], ggx.rho_i, bound) << to_name(masking) << " " << theta_deg;
+          EXPECT_NEAR(r[Quantity::kRhoQ], ggx.rho_q, bound) << to_name(masking) << " " << theta_deg;
           EXPECT_NEAR(r[Quantity::kAlbedo], ggx.albedo, scene.accuracy.tolerance * ggx.albedo);
         }
       }

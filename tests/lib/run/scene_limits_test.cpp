@@ -168,7 +168,7 @@ TEST(Limits_HardEntries, AreFiniteOrSayWhyNot) {
 /// zeniths. If there is no such zenith, the result is 90.
 double unphysical_from_deg(Masking masking, const OpticalConstants& index, double sigma, Evaluator evaluator) {
   SceneValues scene = make_scene(Distribution::kCauchy, masking, index);
-  scene.grid = axes_of({}, {sigma}, {2.0});
+  scene.grid = make_axes({}, {sigma}, {2.0});
   for (double theta_deg = 45.0; theta_deg < 90.0; theta_deg += 0.25) scene.grid[Axis::kTheta].push_back(theta_deg);
   const std::vector<PointResult> results = run(scene, grid_entries(scene), evaluator);
   std::size_t first = results.size();

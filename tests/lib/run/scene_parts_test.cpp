@@ -38,9 +38,9 @@ std::vector<PointResult> in_parts(const SceneValues& scene, const std::vector<Sc
 }
 
 TEST(ChosenEntries, OfAGrid_HaveTheWavelengthsAmongThemAlone) {
-  Axes axes = axes_of({10.0, 20.0}, {0.1}, {2.0});
+  Axes axes = make_axes({10.0, 20.0}, {0.1}, {2.0});
   axes[Axis::kWavelength] = {8.0, 9.0, 10.0, 11.0};
-  const SceneEntries grid = SceneEntries::of_grid(axes, {});
+  const SceneEntries grid = SceneEntries::grid(axes, {});
   const std::vector<std::size_t> positions = {2, 3, 7};
   const SceneEntries chosen = grid.chosen(positions);
   EXPECT_EQ(chosen.variants().size(), 2U);  // the three entries have two wavelengths
@@ -79,21 +79,21 @@ class PartsOfModel : public testing::TestWithParam<std::tuple<Distribution, Mask
 TEST_P(PartsOfModel, InterpolatedGrid_KeepsItsBitsInParts) {
   SceneValues dense = scene();
   dense.grid =
-      axes_of({90.0, 0.0, 85.0, 12.0, 89.95, 60.0, 30.0, 89.0}, spaced(1.0, 0.05, 30), spaced(least_q(), 6.0, 24));
+      make_axes({90.0, 0.0, 85.0, 12.0, 89.95, 60.0, 30.0, 89.0}, spaced(1.0, 0.05, 30), spaced(least_q(), 6.0, 24));
   expect_same_bits(dense, true);
 }
 
 TEST_P(PartsOfModel, ScatteredAxes_KeepTheirBitsInParts) {
   SceneValues sparse = scene();
   sparse.grid =
-      axes_of({70.0, 90.0, 20.0, 0.0, 89.999, 45.0, 88.0}, {0.3, 0.0, 2.0, 0.02}, {2.0, 8.0, least_q(), 1.9, 3.0});
+      make_axes({70.0, 90.0, 20.0, 0.0, 89.999, 45.0, 88.0}, {0.3, 0.0, 2.0, 0.02}, {2.0, 8.0, least_q(), 1.9, 3.0});
   expect_same_bits(sparse, true);
   expect_same_bits(sparse, false);
 }
 
 TEST_P(PartsOfModel, AxesOfIndexAndWavelength_KeepTheirBitsInParts) {
   SceneValues own = scene();
-  own.grid = axes_of({80.0, 30.0, 90.0}, {0.1, 0.4}, {2.0, 1.8, 5.0}, {8.0, 10.0}, {1.4, 4.0}, {0.0, 3.0});
+  own.grid = make_axes({80.0, 30.0, 90.0}, {0.1, 0.4}, {2.0, 1.8, 5.0}, {8.0, 10.0}, {1.4, 4.0}, {0.0, 3.0});
   expect_same_bits(own, true);
 }
 
@@ -106,7 +106,7 @@ TEST(SceneParts, CombinedIndices_KeepTheirBitsInParts) {
   for (const Masking masking : {Masking::kVCavity, Masking::kIntegral}) {
     SceneValues scene = make_scene(Distribution::kCauchy, masking, kAbsorbing);
     scene.accuracy.tolerance = 1e-3;
-    scene.grid = axes_of({80.0}, spaced(0.1, 0.4, 5), spaced(2.0, 5.0, 5), {}, spaced(1.3, 3.0, 8), {0.1, 0.9});
+    scene.grid = make_axes({80.0}, spaced(0.1, 0.4, 5), spaced(2.0, 5.0, 5), {}, spaced(1.3, 3.0, 8), {0.1, 0.9});
     const auto evaluator = evaluator_on(true);
     CollectedResults results(grid_entries(scene));
     const Work work = run_scene(scene, grid_entries(scene), keep_everything(scene), evaluator.get(), results, {}).work;
@@ -118,7 +118,7 @@ TEST(SceneParts, CombinedIndices_KeepTheirBitsInParts) {
 TEST(SceneParts, AllBounces_KeepTheirBitsInParts) {
   SceneValues scene = make_scene(Distribution::kCauchy, Masking::kVCavity, kMetal);
   scene.surface.scattering = Scattering::kMultiple;
-  scene.grid = axes_of({90.0, 0.0, 85.0, 60.0, 30.0}, spaced(0.05, 1.0, 4), spaced(1.3, 6.0, 4));
+  scene.grid = make_axes({90.0, 0.0, 85.0, 60.0, 30.0}, spaced(0.05, 1.0, 4), spaced(1.3, 6.0, 4));
   expect_same_bits(scene, true);
 }
 
@@ -128,7 +128,7 @@ TEST(SceneParts, ADenseBand_KeepsItsBitsInParts) {
   scene.surface.material.n = {{8.0, 14.0}, {1.4, 1.9}, SpectralTable::Interpolation::kLinear};
   scene.surface.material.k = {{8.0, 14.0}, {0.1, 0.8}, SpectralTable::Interpolation::kLinear};
   scene.spectrum = {8.0, 14.0};
-  scene.grid = axes_of({90.0, 0.0, 85.0, 60.0, 30.0}, spaced(0.05, 1.0, 20), spaced(1.6, 6.0, 16));
+  scene.grid = make_axes({90.0, 0.0, 85.0, 60.0, 30.0}, spaced(0.05, 1.0, 20), spaced(1.6, 6.0, 16));
   expect_same_bits(scene, true);
 }
 

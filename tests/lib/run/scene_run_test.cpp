@@ -21,7 +21,7 @@ constexpr unsigned kSeed = 20250811;
 
 SceneValues small_grid(Distribution distribution, Masking masking) {
   SceneValues scene = make_scene(distribution, masking, kAbsorbing);
-  scene.grid = axes_of({90.0, 0.0, 30.0, 75.0, 89.9}, {0.4, 0.0, 0.1}, {3.0, 1.6, 2.0});
+  scene.grid = make_axes({90.0, 0.0, 30.0, 75.0, 89.9}, {0.4, 0.0, 0.1}, {3.0, 1.6, 2.0});
   return scene;
 }
 

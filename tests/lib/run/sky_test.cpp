@@ -203,12 +203,12 @@ TEST(Sky, DenseGridsAndBands_OnTheDevice_AgreeWithTheReferenceWithinTheirBounds)
     n.push_back(1.3 + 0.05 * i);
   }
   const Case cases[] = {
-      {"interpolated", Masking::kSmith, axes_of({30.0, 75.0}, sigma, q)},
-      {"rows", Masking::kIntegral, axes_of({60.0}, {0.2, 0.4}, {2.0, 2.5, 3.0, 3.5})},
-      {"slope samples", Masking::kVCavity, axes_of({20.0, 80.0}, {0.1, 0.5}, {2.0, 4.0})},
-      {"indices", Masking::kNone, axes_of({50.0}, {0.2}, {3.0}, {}, n, {0.0, 0.1})},
-      {"wavelengths", Masking::kSmith, axes_of({70.0}, {0.2}, {3.0}, {3.5, 4.3, 8.0, 10.6, 14.0})},
-      {"band", Masking::kSmith, axes_of({70.0}, {0.2}, {3.0}), {8.0, 14.0}, "overcast"},
+      {"interpolated", Masking::kSmith, make_axes({30.0, 75.0}, sigma, q)},
+      {"rows", Masking::kIntegral, make_axes({60.0}, {0.2, 0.4}, {2.0, 2.5, 3.0, 3.5})},
+      {"slope samples", Masking::kVCavity, make_axes({20.0, 80.0}, {0.1, 0.5}, {2.0, 4.0})},
+      {"indices", Masking::kNone, make_axes({50.0}, {0.2}, {3.0}, {}, n, {0.0, 0.1})},
+      {"wavelengths", Masking::kSmith, make_axes({70.0}, {0.2}, {3.0}, {3.5, 4.3, 8.0, 10.6, 14.0})},
+      {"band", Masking::kSmith, make_axes({70.0}, {0.2}, {3.0}), {8.0, 14.0}, "overcast"},
   };
   VulkanOptions options;
   VulkanEvaluator device(options);

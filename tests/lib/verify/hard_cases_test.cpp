@@ -24,7 +24,7 @@ namespace dolp {
 namespace {
 
 std::string label(const StoredCase& c) {
-  return std::string(name_of(c.distribution)) + " " + name_of(c.masking) + " " + c.name;
+  return std::string(to_name(c.distribution)) + " " + to_name(c.masking) + " " + c.name;
 }
 
 // ---- What is stored ------------------------------------------------------------------------------------------------
@@ -92,7 +92,7 @@ TEST_P(HardCasesOn, EveryCase_IsWithinItsEstimateAndMeetsTheToleranceOrSaysSo) {
 
 std::string setting_name(const testing::TestParamInfo<Setting>& info) {
   const double digits = -std::log10(std::get<1>(info.param));
-  return name_of(std::get<0>(info.param)) + "_1em" + std::to_string(std::lround(digits));
+  return to_name(std::get<0>(info.param)) + "_1em" + std::to_string(std::lround(digits));
 }
 
 INSTANTIATE_TEST_SUITE_P(Float, HardCasesOn,

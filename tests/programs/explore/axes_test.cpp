@@ -91,7 +91,7 @@ TEST(HeatMap, EachPairOfAxes_HasTheValuesOfTheScene) {
     const Job& job = *std::ranges::find_if(jobs, [](const Job& wanted) { return wanted.key.starts_with("map 16 "); });
     for (std::size_t i = 0; i < job.parts.size(); ++i) {
       JobPart part{.key = job.key, .part = i, .scene = job.scene, .is_last = i + 1 == job.parts.size()};
-      part.points = points_of(job.parts[i], evaluate(evaluator, job.scene, job.parts[i], {}));
+      part.points = result_points(job.parts[i], evaluate(evaluator, job.scene, job.parts[i], {}));
       session.take({part});
     }
     const HeatMap& map = session.map();
@@ -118,10 +118,10 @@ TEST(HeatMap, Axes_FollowTheScene) {
   session.set("surface.wind_m_s", 14.0);
   EXPECT_EQ(session.map().y().scale, (Scale{2.0, 14.0}));
   EXPECT_EQ(session.map_cursor(session.map().y()), 1.0);
-  session.set({coating_of({{{"n", 1.5}, {"thickness_um", 2.0}}})});
+  session.set({coating_setting({{{"n", 1.5}, {"thickness_um", 2.0}}})});
   session.set_view(&View::map_y, "film 1");
   EXPECT_EQ(session.map().y().label, "d_1 [µm]");
-  session.set({coating_of({})});
+  session.set({coating_setting({})});
   EXPECT_EQ(session.map().y().label, "U [m/s]");
   session.set_view(&View::map_x, "n");
   session.set("surface.material", "water 25C");

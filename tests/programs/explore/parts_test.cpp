@@ -348,8 +348,8 @@ TEST(Measured, Residuals_AreMeasuredMinusModelAtTheMeasuredPoints) {
     ASSERT_EQ(residuals.size(), 2U);
     EXPECT_EQ(residuals[0].value, 0.05 - model[0][quantity]);
     EXPECT_EQ(residuals[1].value, 0.06 - model[1][quantity]);
-    EXPECT_DOUBLE_EQ(*rms_of(residuals), std::hypot(residuals[0].value, residuals[1].value) / std::sqrt(2.0));
-    EXPECT_FALSE(rms_of(driver.session.residuals().residuals(Plotted::kAlbedo)));
+    EXPECT_DOUBLE_EQ(*residual_rms(residuals), std::hypot(residuals[0].value, residuals[1].value) / std::sqrt(2.0));
+    EXPECT_FALSE(residual_rms(driver.session.residuals().residuals(Plotted::kAlbedo)));
   }
 }
 

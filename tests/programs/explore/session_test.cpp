@@ -149,7 +149,7 @@ TEST(ExploreSession, Map_InADrag_GoesFromOneCompleteMapToTheNext) {
   for (std::size_t i = 0; i < first.parts.size(); ++i) {
     const PointList& list = first.parts[i];
     JobPart part{.key = first.key, .part = i, .scene = first.scene};
-    part.points = points_of(list, evaluate(evaluator, first.scene, list, {}));
+    part.points = result_points(list, evaluate(evaluator, first.scene, list, {}));
     part.is_last = i + 1 == first.parts.size();
     session.take({part});
     if (part.is_last) break;

@@ -79,7 +79,7 @@ TEST(ExplorePanels, SmoothSurface_HasFresnelsReflectances_AndAQuarterWaveFilmRef
   // At normal incidence a film of index sqrt(n) reflects nothing if its thickness is 1/4 or 3/4 of the wavelength in
   // the film. A film with 1/2 of this wavelength has no effect.
   const double n = std::sqrt(1.5);
-  const Scene coated = glass.with({coating_of({{{"n", n}, {"thickness_um", 2.0}}})});
+  const Scene coated = glass.with({coating_setting({{{"n", n}, {"thickness_um", 2.0}}})});
   PointList list = points_at(coated, {0.0, 0.0, 0.0});
   list["wavelength_um"] = {8.0 * n, 4.0 * n, 8.0 * n / 3.0};
   sweep.follow({.key = "coated", .scene = coated, .parts = {list}}, "wavelength_um");
@@ -187,9 +187,9 @@ TEST_F(Window, Panels_ClickedOneByOne_AreDrawn_AndTheMapIsComputedWhileItIsShown
 }
 
 TEST_F(Window, Films_AreAddedOutside_ChangedAndRemoved) {
-  const auto films = [&] { return films_of(session().scene()); };
+  const auto films = [&] { return scene_films(session().scene()); };
   session().set_view(&View::panel, Panel::kSlopes);  // a view without a map, because maps of coated surfaces take long
-  session().set({coating_of({{{"material", "PMMA acrylic"}, {"thickness_um", 2.0}}})});
+  session().set({coating_setting({{{"material", "PMMA acrylic"}, {"thickness_um", 2.0}}})});
   settle();
   click_control("add film");
   EXPECT_EQ(films().size(), 2U);

@@ -25,7 +25,7 @@ namespace {
 using dolp::Distribution;
 using dolp::Masking;
 using dolp::Moments;
-using dolp::name_of;
+using dolp::to_name;
 using dolp::reference::Case;
 using dolp::reference::Group;
 
@@ -136,8 +136,8 @@ std::vector<Row> rows_of(const Group& group, const std::vector<Case>& cases, con
   }
   std::vector<Row> sorted = rows;
   std::ranges::sort(sorted, std::greater{}, [](const Row& row) { return relative_error(row.moments); });
-  std::fprintf(stderr, "%s %s: %zu cases, %.1f s and %.1f s; largest bounds over r_i:", name_of(group.distribution),
-               name_of(group.masking), cases.size(), coarse.report().kernel_s, fine.report().kernel_s);
+  std::fprintf(stderr, "%s %s: %zu cases, %.1f s and %.1f s; largest bounds over r_i:", to_name(group.distribution),
+               to_name(group.masking), cases.size(), coarse.report().kernel_s, fine.report().kernel_s);
   for (std::size_t i = 0; i < std::min<std::size_t>(6, sorted.size()); ++i) {
     std::fprintf(stderr, " %.1e %s,", relative_error(sorted[i].moments), sorted[i].input.name.c_str());
   }
@@ -148,7 +148,7 @@ std::vector<Row> rows_of(const Group& group, const std::vector<Case>& cases, con
 std::string csv_line(const Row& row) {
   const Case& c = row.input;
   const Moments& m = row.moments;
-  std::string line = std::string(name_of(row.group.distribution)) + "," + name_of(row.group.masking);
+  std::string line = std::string(to_name(row.group.distribution)) + "," + to_name(row.group.masking);
   for (const double value :
        {c.theta_deg, c.shape.sigma, c.shape.q, c.index.n, c.index.k, m.r_i, m.r_q, m.albedo, m.deficit}) {
     std::array<char, 32> text{};

@@ -25,7 +25,7 @@ std::unique_ptr<CpuKernel> make_kernel(const KernelData& data, bool in_double) {
   return in_double ? make_cpu_kernel_double(data) : make_cpu_kernel_float(data);
 }
 
-double unit_roundoff_of(bool in_double) { return in_double ? kDoubleRoundoff : kFloatRoundoff; }
+double choose_roundoff(bool in_double) { return in_double ? kDoubleRoundoff : kFloatRoundoff; }
 
 std::vector<std::size_t> wanted_entries(const MomentsRequest& request) {
   std::vector<std::size_t> entries;
@@ -60,10 +60,10 @@ std::vector<Moments> by_entries(const MomentsRequest& request, const KernelData&
       const kernel::MomentsNode node = kernel.moments(entry, columns);
       moments[entries[i]] = moments_from_kernel(node, data, entry, unit_roundoff, columns);
     };
-    const Progress of_all = [&](std::size_t done, std::size_t) {
+    const Progress total_progress = [&](std::size_t done, std::size_t) {
       return !progress || progress(before + done, all.size());
     };
-    parallel_for(entries.size(), compute_entry, of_all);
+    parallel_for(entries.size(), compute_entry, total_progress);
     before += entries.size();
   }
   return moments;
@@ -79,10 +79,10 @@ std::vector<Moments> by_slope_samples(const MomentsRequest& request, const Kerne
     }
   };
   const std::size_t wanted = request.wanted_count();
-  const Progress of_entries = [&](std::size_t done, std::size_t all) {
+  const Progress entry_progress = [&](std::size_t done, std::size_t all) {
     return !progress || progress(wanted * done / all, wanted);
   };
-  parallel_for(data.directions, compute_direction, of_entries);
+  parallel_for(data.directions, compute_direction, entry_progress);
   return moments;
 }
 
@@ -100,7 +100,7 @@ std::vector<Moments> CpuEvaluator::evaluate(const MomentsRequest& request, const
   const KernelData data = kernel_data(request);
   const bool is_double = request.precision == Precision::kDouble;
   const std::unique_ptr<CpuKernel> kernel = make_kernel(data, is_double);
-  const double unit_roundoff = unit_roundoff_of(is_double);
+  const double unit_roundoff = choose_roundoff(is_double);
   std::vector<Moments> moments = has_slope_samples(request)
                                      ? by_slope_samples(request, data, *kernel, unit_roundoff, progress)
                                      : by_entries(request, data, *kernel, unit_roundoff, progress);

@@ -118,7 +118,7 @@ class SourceKernel final : public CpuKernel {
     const auto index = convert_reals<real, KernelSource::IndexNode, double>(data_.indices[entry.index]);
     kernel::MomentsNode moments{};
     for (std::uint32_t piece = 0; piece < piece_count(data_, entry.theta, data_.shapes[entry.shape]); ++piece) {
-      const auto task = source_.with_slopes(source_.task_of(task_word(data_.pieces[entry.theta], piece, 1)), theta);
+      const auto task = source_.with_slopes(source_.unpack_task(task_word(data_.pieces[entry.theta], piece, 1)), theta);
       const auto part = source_.piece_moments(rule_, theta, row, index, task);
       add_piece(moments, convert_reals<double, kernel::MomentsNode, real>(part.member[0]));
       add_columns(data_, std::span<const real>(source_.columns_out()), columns);
@@ -132,7 +132,7 @@ class SourceKernel final : public CpuKernel {
     const auto index =
         convert_reals<real, KernelSource::IndexNode, double>(data_.indices[static_cast<std::size_t>(slope.index)]);
     const auto slope_node = convert_reals<real, KernelSource::SlopeNode, double>(slope);
-    const auto result = source_.azimuths_of(rule_, theta, index, slope_node);
+    const auto result = source_.integrate_azimuths(rule_, theta, index, slope_node);
     for (std::size_t k = 0; k < data_.column_count(); ++k) copy_column(k, result, columns.subspan(2 * k));
     return convert_reals<double, kernel::AzimuthNode, real>(result.node);
   }

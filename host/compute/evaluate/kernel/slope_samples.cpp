@@ -16,10 +16,10 @@ using sampling_kernel::KernelSource;
 
 namespace {
 
-// Between the smallest and the largest width of the slope distributions, ends_of() divides the slope axis into pieces.
-// They are at most this long in ln(slope). Tuned: half the value needs up to 14 % more evaluations.
+// Between the smallest and the largest width of the slope distributions, piece_ends() divides the slope axis into
+// pieces. They are at most this long in ln(slope). Tuned: half the value needs up to 14 % more evaluations.
 constexpr double kWidthStep = 1.3;
-constexpr double kNodeWidthStep = 0.4;  // largest step of ln(m) between the widths m in corners_of()
+constexpr double kNodeWidthStep = 0.4;  // largest step of ln(m) between the widths m in corner_shapes()
 
 constexpr double kNoFacets = 80.0;  // pieces with only the steepest exp(-kNoFacets) of the facets are skipped
 
@@ -45,7 +45,7 @@ struct SlopeWeights {
 
 // Artificial shapes that replace `shapes`, which may be very many, when slopes are chosen for them all. Their widths m
 // go from the smallest to the largest m of `shapes`. Each m occurs with the smallest q and with the largest q.
-std::vector<kernel::ShapeNode> corners_of(const KernelData& data, std::span<const std::uint32_t> shapes) {
+std::vector<kernel::ShapeNode> corner_shapes(const KernelData& data, std::span<const std::uint32_t> shapes) {
   kernel::ShapeNode corner = data.shapes[shapes.front()];
   double widest = corner.m, lightest = corner.q_minus_1;
   for (const std::uint32_t i : shapes) {
@@ -85,7 +85,7 @@ struct SlopeSampling::Impl {
       : data(of), source(KernelSource::of(of)), rule(std::bit_cast<KernelSource::RuleNode>(of.rule)) {}
 
   // The pieces of the slope axis end at the breakpoints of the direction and at further slopes (see kWidthStep).
-  std::vector<End> ends_of(std::uint32_t theta, std::span<const kernel::ShapeNode> corners) {
+  std::vector<End> piece_ends(std::uint32_t theta, std::span<const kernel::ShapeNode> corners) {
     const kernel::ThetaNode& node = data.thetas[theta];
     const double cut = corners.front().cut;
     std::vector<End> ends;
@@ -105,7 +105,7 @@ struct SlopeSampling::Impl {
     return ends;
   }
 
-  KernelSource::Task task_of(std::uint32_t theta, std::span<const End> ends, std::size_t piece) {
+  KernelSource::Task piece_task(std::uint32_t theta, std::span<const End> ends, std::size_t piece) {
     const auto has_root = [&](const End& end, unsigned bit) {
       return end.is_breakpoint && (data.pieces[theta].roots[end.direction_piece] & bit) != 0;
     };
@@ -163,8 +163,8 @@ struct SlopeSampling::Impl {
     }
   }
 
-  SlopeWeights weights_of(const SlopeSamples& samples, KernelSource::ShapeNode shape) {
-    shape.q_minus_1 = 1.0;  // any value: it only multiplies all weights by a constant, which sum_of() removes
+  SlopeWeights slope_weights(const SlopeSamples& samples, KernelSource::ShapeNode shape) {
+    shape.q_minus_1 = 1.0;  // any value: it only multiplies all weights by a constant, which sum_azimuths() removes
     const auto count = static_cast<Eigen::Index>(samples.slopes.size());
     SlopeWeights weights{shape.m, Eigen::ArrayXd(count), Eigen::ArrayXd(count)};
     for (Eigen::Index i = 0; i < count; ++i) {
@@ -178,8 +178,8 @@ struct SlopeSampling::Impl {
 
   // Integral over a piece of the slope axis by a Gauss rule. The weights are scaled so that their sum is `share`, the
   // exact share of the facets on the piece. This cancels the error of the rule in the slope density.
-  static kernel::AzimuthNode sum_of(std::uint32_t first, std::uint32_t count, const Eigen::ArrayXd& shape_weights,
-                                    double share, std::span<const kernel::AzimuthNode> azimuths) {
+  static kernel::AzimuthNode sum_azimuths(std::uint32_t first, std::uint32_t count, const Eigen::ArrayXd& shape_weights,
+                                          double share, std::span<const kernel::AzimuthNode> azimuths) {
     using Azimuths = Eigen::Matrix<double, sizeof(kernel::AzimuthNode) / sizeof(double), Eigen::Dynamic>;
     const Eigen::Map<const Azimuths> all(&azimuths[first].r_i, Azimuths::RowsAtCompileTime, count);
     const double mass = shape_weights.segment(first, count).sum();
@@ -214,10 +214,10 @@ struct SlopeSampling::Impl {
     }
   }
 
-  kernel::MomentsNode moments_of(const SlopeSamples& samples, const KernelSource::ShapeNode& shape,
-                                 const SlopeWeights& weights, std::span<const kernel::AzimuthNode> azimuths,
-                                 std::span<const double> of_columns, Eigen::ArrayXd& shape_weights,
-                                 std::span<double> columns) {
+  kernel::MomentsNode integrate_shape(const SlopeSamples& samples, const KernelSource::ShapeNode& shape,
+                                      const SlopeWeights& weights, std::span<const kernel::AzimuthNode> azimuths,
+                                      std::span<const double> azimuth_columns, Eigen::ArrayXd& shape_weights,
+                                      std::span<double> columns) {
     std::ranges::fill(columns, 0.0);
     const double factor = source.exponent_factor(shape);
     const auto has_facets = [&](const SampledPiece& piece) {
@@ -233,9 +233,9 @@ struct SlopeSampling::Impl {
       const double to = factor * source.common_exponent(piece->end / shape.m);
       const double share = -std::exp(-from) * std::expm1(from - to);
       from = to;
-      const auto fine = sum_of(piece->first, piece->fine, shape_weights, share, azimuths);
-      const auto coarse = sum_of(piece->first + piece->fine, piece->coarse, shape_weights, share, azimuths);
-      add_columns(*piece, shape_weights, share, of_columns, columns);
+      const auto fine = sum_azimuths(piece->first, piece->fine, shape_weights, share, azimuths);
+      const auto coarse = sum_azimuths(piece->first + piece->fine, piece->coarse, shape_weights, share, azimuths);
+      add_columns(*piece, shape_weights, share, azimuth_columns, columns);
       const auto apart = [](double a, double b) { return std::abs(a - b); };
       const bool is_steep = piece->end > slope_with_bounces(DOLP_MOST_BOUNCES);
       add_piece(moments,
@@ -252,8 +252,8 @@ SlopeSampling::SlopeSampling(const KernelData& data) : impl_(std::make_unique<Im
 SlopeSampling::~SlopeSampling() = default;
 
 SlopeSamples SlopeSampling::plan(SampledEntries entries) const {
-  const std::vector<kernel::ShapeNode> corners = corners_of(impl_->data, entries.shapes);
-  const std::vector<End> ends = impl_->ends_of(entries.theta, corners);
+  const std::vector<kernel::ShapeNode> corners = corner_shapes(impl_->data, entries.shapes);
+  const std::vector<End> ends = impl_->piece_ends(entries.theta, corners);
   const auto theta = std::bit_cast<KernelSource::ThetaNode>(impl_->data.thetas[entries.theta]);
   const auto index = std::bit_cast<KernelSource::IndexNode>(impl_->data.indices[entries.index]);
   SlopeSamples samples;
@@ -264,7 +264,7 @@ SlopeSamples SlopeSampling::plan(SampledEntries entries) const {
   }
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
     const KernelSource::Piece piece =
-        impl_->hardest_piece(theta, index, corners, impl_->task_of(entries.theta, ends, i), requests);
+        impl_->hardest_piece(theta, index, corners, impl_->piece_task(entries.theta, ends, i), requests);
     const int coarse = std::min(impl_->source.coarse_order(piece.order), impl_->data.rule_order);
     samples.pieces.push_back(
         {ends[i].slope, std::min(ends[i + 1].slope, samples.cut), static_cast<std::uint32_t>(samples.slopes.size()),
@@ -291,7 +291,7 @@ void SlopeSampling::append(const SlopeSamples& samples, std::vector<kernel::Slop
 void SlopeSampling::integrate(const SlopeSamples& samples, const SampledAzimuths& sampled, std::size_t first,
                               double unit_roundoff, std::span<Moments> moments) const {
   const auto azimuths = std::span(sampled.nodes).subspan(first, samples.slopes.size());
-  const auto of_columns =
+  const auto azimuth_columns =
       std::span(sampled.columns).subspan(first * sampled.per_slope, azimuths.size() * sampled.per_slope);
   const KernelData& data = impl_->data;
   const auto& [direction, theta, index, shapes] = samples.entries;
@@ -302,11 +302,12 @@ void SlopeSampling::integrate(const SlopeSamples& samples, const SampledAzimuths
   std::vector<double> columns(column_sums(data));
   for (const std::uint32_t shape : shapes) {
     const auto node = std::bit_cast<KernelSource::ShapeNode>(data.shapes[shape]);
-    if (node.m != weights.m) weights = impl_->weights_of(samples, node);
-    kernel::MomentsNode sums = impl_->moments_of(samples, node, weights, azimuths, of_columns, shape_weights, columns);
+    if (node.m != weights.m) weights = impl_->slope_weights(samples, node);
+    kernel::MomentsNode sums =
+        impl_->integrate_shape(samples, node, weights, azimuths, azimuth_columns, shape_weights, columns);
     sums.deficit += data.thetas[theta].c * impl_->source.slope_tail(node, samples.cut);
     sums.evaluations = evaluations / static_cast<double>(shapes.size());
-    moments[data.entry_of(direction, index, shape)] =
+    moments[data.entry_position(direction, index, shape)] =
         moments_from_kernel(sums, data, {theta, shape, index}, unit_roundoff, columns);
   }
 }
@@ -318,7 +319,7 @@ void SlopeSampling::compute(SampledEntries entries, CpuKernel& kernel, double un
   append(samples, slopes);
   SampledAzimuths azimuths(slopes.size(), impl_->data);
   for (std::size_t i = 0; i < slopes.size(); ++i)
-    azimuths.nodes[i] = kernel.azimuths(slopes[i], azimuths.columns_of(i));
+    azimuths.nodes[i] = kernel.azimuths(slopes[i], azimuths.slope_columns(i));
   integrate(samples, azimuths, 0, unit_roundoff, moments);
 }
 
@@ -327,13 +328,13 @@ std::vector<SampledEntries> sampled_entries(const MomentsRequest& request, const
   std::vector<SampledEntries> sampled;
   for (auto direction = static_cast<std::uint32_t>(first); direction < last; ++direction) {
     if (!data.is_grid) {
-      sampled.push_back({direction, direction, direction, {data.shape_of[direction]}});
+      sampled.push_back({direction, direction, direction, {data.shape_positions[direction]}});
       continue;
     }
     for (std::uint32_t index = 0; index < data.indices.size(); ++index) {
-      SampledEntries entries{direction, data.theta_of(direction, index, 0), index, {}};
+      SampledEntries entries{direction, data.theta_position(direction, index, 0), index, {}};
       for (std::uint32_t shape = 0; shape < data.shapes.size(); ++shape) {
-        if (request.is_wanted(data.entry_of(direction, index, shape))) entries.shapes.push_back(shape);
+        if (request.is_wanted(data.entry_position(direction, index, shape))) entries.shapes.push_back(shape);
       }
       if (!entries.shapes.empty()) sampled.push_back(std::move(entries));
     }

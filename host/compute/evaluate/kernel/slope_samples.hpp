@@ -54,7 +54,9 @@ struct SlopeSamples {
 struct SampledAzimuths {
   SampledAzimuths(std::size_t slopes, const KernelData& data)
       : nodes(slopes), per_slope(column_azimuths(data)), columns(slopes * per_slope) {}
-  std::span<double> columns_of(std::size_t slope) { return std::span(columns).subspan(slope * per_slope, per_slope); }
+  std::span<double> slope_columns(std::size_t slope) {
+    return std::span(columns).subspan(slope * per_slope, per_slope);
+  }
 
   std::vector<kernel::AzimuthNode> nodes;
   std::size_t per_slope;

@@ -20,7 +20,7 @@
 namespace dolp::vulkan {
 namespace {
 
-std::span<const std::uint32_t> module_of(const KernelVariant& variant, bool float64) {
+std::span<const std::uint32_t> shader_module(const KernelVariant& variant, bool float64) {
   using namespace spirv;
   using Module = std::array<std::span<const std::uint32_t>, 2>;  // SPIR-V in float and in double
   const std::array<std::array<Module, 3>, 3> modules = {
@@ -196,7 +196,7 @@ VkPipeline Kernels::known(const KernelVariant& variant) {
 
 VkPipeline Kernels::pipeline(const KernelVariant& variant) {
   if (VkPipeline pipeline = known(variant)) return pipeline;
-  UniquePipeline created = create(module_of(variant, float64_), variant);
+  UniquePipeline created = create(shader_module(variant, float64_), variant);
   const std::scoped_lock lock(mutex_);
   return pipelines_.emplace(variant, std::move(created)).first->second.get();
 }

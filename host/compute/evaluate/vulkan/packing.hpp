@@ -45,15 +45,15 @@ class Packing {
   std::size_t texels_of_table() const { return masking_nodes() * (float64_ ? 2 : 1); }
   double unit_roundoff() const { return float64_ ? kDoubleRoundoff : kFloatRoundoff; }
 
-  /// Fills `bytes` with node_of(0), ..., node_of(count - 1). All cores call node_of, in any order. Numbers beyond the
-  /// range of float become infinite.
+  /// Fills `bytes` with make_node(0), ..., make_node(count - 1). All cores call make_node, in any order. Numbers beyond
+  /// the range of float become infinite.
   template <class NodeOf>
-  void pack(std::size_t count, const NodeOf& node_of, std::vector<std::byte>& bytes) const {
+  void pack(std::size_t count, const NodeOf& make_node, std::vector<std::byte>& bytes) const {
     constexpr std::size_t kNodesAtOnce = 8192;
-    const std::size_t each = node_bytes<std::decay_t<decltype(node_of(0))>>();
+    const std::size_t each = node_bytes<std::decay_t<decltype(make_node(0))>>();
     bytes.resize(count * each);
     parallel_ranges(count, kNodesAtOnce, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) write(node_of(i), std::span(bytes).subspan(i * each, each));
+      for (std::size_t i = first; i < last; ++i) write(make_node(i), std::span(bytes).subspan(i * each, each));
     });
   }
 

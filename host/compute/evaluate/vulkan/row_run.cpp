@@ -51,7 +51,7 @@ class RowRun final : public TiledRun {
     column_results_.assign(results.size() * column_sums(data_), 0.0);
     const std::size_t wanted = request_.wanted_count();
     for (const Block& block : tiles_.blocks()) {
-      const std::vector<RowPiece> pieces = pieces_of(rows_, data_, block.first_row, block.row_count);
+      const std::vector<RowPiece> pieces = row_pieces(rows_, data_, block.first_row, block.row_count);
       if (!pieces.empty()) begin_block(block);
       for (std::size_t first = 0; first < pieces.size(); first += tiles_.sizes.invocations) {
         const std::size_t count = std::min<std::size_t>(tiles_.sizes.invocations, pieces.size() - first);
@@ -60,12 +60,12 @@ class RowRun final : public TiledRun {
         upload_tile(block, tile);
         run_kernel(tile.size(), result_bytes(tile.size()), data_);
         add_pieces(tile, results);
-        const double of_block = static_cast<double>(first + count) / static_cast<double>(pieces.size());
-        const double share = (block.first_row + block.row_count * of_block) / static_cast<double>(rows_.rows.size());
+        const double block_share = static_cast<double>(first + count) / static_cast<double>(pieces.size());
+        const double share = (block.first_row + block.row_count * block_share) / static_cast<double>(rows_.rows.size());
         if (!goes_on(progress, share, wanted)) return std::nullopt;
       }
     }
-    return moments_of(results);
+    return entry_moments(results);
   }
 
  private:
@@ -94,7 +94,7 @@ class RowRun final : public TiledRun {
     for (const RowPiece& row_piece : pieces) {
       const Row& row = rows_.rows[row_piece.row];
       const Chunk& chunk = rows_.chunks[row.chunk];
-      const std::uint32_t theta = rows_.theta_of(data_, row);
+      const std::uint32_t theta = rows_.theta_position(data_, row);
       words.push_back({thetas_(theta), chunk.first - block.first_shape, indices_(row.index),
                        task_word(data_.pieces[theta], row_piece.piece, chunk.count)});
     }
@@ -118,10 +118,10 @@ class RowRun final : public TiledRun {
       for (std::size_t i = 0; i < pieces.size(); ++i) {
         const std::size_t row = pieces[i].row - first_row;
         if (row < first || row >= last) continue;
-        const Row& of_piece = rows_.rows[pieces[i].row];
-        for (std::uint32_t g = 0; g < rows_.chunks[of_piece.chunk].count; ++g) {
+        const Row& piece_row = rows_.rows[pieces[i].row];
+        for (std::uint32_t g = 0; g < rows_.chunks[piece_row.chunk].count; ++g) {
           auto node = packing_.read<kernel::MomentsNode>(scratch_, i * rows_.width + g);
-          node.evaluations /= of_piece.used;
+          node.evaluations /= piece_row.used;
           const std::size_t member = pieces[i].row * std::size_t{rows_.width} + g;
           add_piece(results[member], node);
           packing_.read_numbers(scratch_,
@@ -135,17 +135,17 @@ class RowRun final : public TiledRun {
     });
   }
 
-  std::vector<Moments> moments_of(std::span<const kernel::MomentsNode> results) const {
+  std::vector<Moments> entry_moments(std::span<const kernel::MomentsNode> results) const {
     std::vector<Moments> moments(request_.size());
     const std::size_t per_entry = column_sums(data_);
     parallel_ranges(rows_.rows.size(), kRowsAtOnce, [&](std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) {
         const Row& row = rows_.rows[i];
         const Chunk& chunk = rows_.chunks[row.chunk];
-        const std::uint32_t theta = rows_.theta_of(data_, row);
+        const std::uint32_t theta = rows_.theta_position(data_, row);
         for (std::uint32_t g = 0; g < chunk.count; ++g) {
-          const std::uint32_t shape = rows_.shape_of[chunk.first + g];
-          moments[data_.entry_of(row.direction, row.index, shape)] = moments_from_kernel(
+          const std::uint32_t shape = rows_.shape_positions[chunk.first + g];
+          moments[data_.entry_position(row.direction, row.index, shape)] = moments_from_kernel(
               results[i * rows_.width + g], data_, {theta, shape, row.index}, packing_.unit_roundoff(),
               std::span(column_results_).subspan((i * rows_.width + g) * per_entry, per_entry));
         }

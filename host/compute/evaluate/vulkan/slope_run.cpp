@@ -43,8 +43,8 @@ class SlopeRun final : public TiledRun {
         if (cost_.dispatches > 0) context_.stream.begin();
         run_tile(batch, slopes.subspan(done, count), azimuths);
         done += count;
-        const double of_batch = static_cast<double>(done) / static_cast<double>(slopes.size());
-        const double share = (static_cast<double>(first) + of_batch * static_cast<double>(last - first)) /
+        const double batch_share = static_cast<double>(done) / static_cast<double>(slopes.size());
+        const double share = (static_cast<double>(first) + batch_share * static_cast<double>(last - first)) /
                              static_cast<double>(data_.directions);
         if (!goes_on(progress, share, wanted)) return std::nullopt;
       }
@@ -80,7 +80,8 @@ class SlopeRun final : public TiledRun {
     const std::size_t behind = slopes.size() * packing_.node_bytes<kernel::AzimuthNode>();
     for (std::size_t i = 0; i < slopes.size(); ++i) {
       azimuths.nodes[slopes[i]] = packing_.read<kernel::AzimuthNode>(scratch_, i);
-      packing_.read_numbers(scratch_, behind + i * per_entry * packing_.real_bytes(), azimuths.columns_of(slopes[i]));
+      packing_.read_numbers(scratch_, behind + i * per_entry * packing_.real_bytes(),
+                            azimuths.slope_columns(slopes[i]));
     }
   }
 

@@ -46,8 +46,8 @@ class TiledRun {
   }
   void add_results(std::uint32_t binding, std::size_t bytes, const KernelData& data, const KernelVariant& variant);
   template <class NodeOf>
-  void upload(std::uint32_t binding, std::size_t count, const NodeOf& node_of) {
-    packing_.pack(count, node_of, scratch_);
+  void upload(std::uint32_t binding, std::size_t count, const NodeOf& make_node) {
+    packing_.pack(count, make_node, scratch_);
     inputs_[binding]->write(scratch_, context_.stream);
   }
   void upload_rule(const KernelData& data);

@@ -24,10 +24,10 @@ TileSizes sizes_on(const dolp::Device& device, const TileCosts& costs, std::uint
                    std::uint64_t shapes = 1) {
   // No single buffer exceeds its limit, because `bytes` limits even the sum of all buffers.
   const std::uint64_t bytes = std::min(device.max_storage_buffer_bytes, device.memory_bytes / kHeapFraction);
-  const std::uint64_t of_dispatch = std::uint64_t{device.max_workgroups} * device.local_size;
+  const std::uint64_t dispatch_invocations = std::uint64_t{device.max_workgroups} * device.local_size;
   const std::uint64_t tables = costs.shape_texels > 0 ? device.max_texels / costs.shape_texels : shapes;
-  return {.invocations = at_least_one(std::min({bytes / costs.invocation_bytes, of_dispatch, invocations})),
-          .shapes = at_least_one(std::min({bytes / costs.shape_bytes, of_dispatch, shapes, tables}))};
+  return {.invocations = at_least_one(std::min({bytes / costs.invocation_bytes, dispatch_invocations, invocations})),
+          .shapes = at_least_one(std::min({bytes / costs.shape_bytes, dispatch_invocations, shapes, tables}))};
 }
 
 std::uint64_t rule_bytes(const Packing& packing, const KernelData& data) {
@@ -57,15 +57,15 @@ std::vector<std::uint32_t> in_lockstep(const SlopeBatch& batch, const KernelData
   return order;
 }
 
-Packing packing_of(Precision precision) { return Packing(precision == Precision::kDouble); }
+Packing make_packing(Precision precision) { return Packing(precision == Precision::kDouble); }
 
 }  // namespace
 
 RowTiles::RowTiles(const MomentsRequest& request, const dolp::Device& device, const VulkanOptions& options,
                    Tables tables)
-    : packing(packing_of(request.precision)),
+    : packing(make_packing(request.precision)),
       data(kernel_data(request, tables)),
-      rows(rows_of(request, data)),
+      rows(make_rows(request, data)),
       costs{.invocation_bytes = sizeof(EntryWords) + packing.node_bytes<kernel::ThetaNode>() +
                                 packing.node_bytes<kernel::IndexNode>() +
                                 rows.width * packing.output_bytes<kernel::MomentsNode>(column_sums(data)),
@@ -100,7 +100,7 @@ DispatchCount RowTiles::count() const {
   DispatchCount count{.tile_invocations = sizes.invocations, .block_shapes = sizes.shapes, .row_width = rows.width};
   count.rows = rows.rows.size();
   for (const Block& block : blocks()) {
-    count.dispatches += tiles_in(pieces_of(rows, data, block.first_row, block.row_count).size(), sizes.invocations);
+    count.dispatches += tiles_in(row_pieces(rows, data, block.first_row, block.row_count).size(), sizes.invocations);
     if (data.needs_masking_table()) ++count.dispatches;
   }
   count.device_bytes =
@@ -108,10 +108,10 @@ DispatchCount RowTiles::count() const {
   return count;
 }
 
-SlopeTiles::SlopeTiles(const MomentsRequest& of_request, const dolp::Device& device, const VulkanOptions& options,
+SlopeTiles::SlopeTiles(const MomentsRequest& moments_request, const dolp::Device& device, const VulkanOptions& options,
                        Tables tables)
-    : request(of_request),
-      packing(packing_of(request.precision)),
+    : request(moments_request),
+      packing(make_packing(request.precision)),
       data(kernel_data(request, tables)),
       sampling(data),
       costs{.invocation_bytes = packing.node_bytes<kernel::SlopeNode>() + packing.node_bytes<kernel::ThetaNode>() +

@@ -167,7 +167,7 @@ void run_program(const Scene& scene, const ProgramOptions& options) {
     session.set(options.settings);
     check();
   }
-  if (!options.panel.empty()) session.set_view(&View::panel, panel_of(options.panel));
+  if (!options.panel.empty()) session.set_view(&View::panel, find_panel(options.panel));
   if (!options.measured_path.empty()) {
     session.load_measured(options.measured_path);
     check();

@@ -59,7 +59,7 @@ bool has_effect(const Scene& scene, const std::string& table) {
 }
 
 /// n and k of the surface or film whose keys are in `table`, at the first wavelength of the scene's spectrum.
-std::pair<double, double> index_of(const Scene& scene, const std::string& table) {
+std::pair<double, double> material_index(const Scene& scene, const std::string& table) {
   Scene bare = scene.without("surface.coating");
   for (const char* name : {"material", "material_file"}) {
     if (const auto word = scene.word(table + '.' + name)) bare = bare.with(std::string("surface.") + name, *word);
@@ -68,7 +68,7 @@ std::pair<double, double> index_of(const Scene& scene, const std::string& table)
 }
 
 /// The number in a typed text. If the text is not a number, returns a value that the scene will refuse with a reason.
-Value value_of(const std::string& text) {
+Value parse_value(const std::string& text) {
   const std::optional<double> number = parse_number(text);
   return number ? Value(*number) : Value(TomlText{text});
 }
@@ -139,7 +139,7 @@ struct Controls {
 
   void draw_number(const Control& control, double value) {
     const std::string& key = control.key->key;
-    const auto change = [&](const std::string& text) { return Setting{key, value_of(text)}; };
+    const auto change = [&](const std::string& text) { return Setting{key, parse_value(text)}; };
     draw_slider({key, control.label_with_unit(), note_on(control, session), key, control.slider, change}, value,
                 &control);
     if (!session.residuals().data() || !session.varies(key)) return;
@@ -167,13 +167,13 @@ struct Controls {
   // The next two functions read each value when its control is drawn: an earlier control may have changed the scene.
   void draw_choices(const std::string& table) {
     for (const Control& control : controls()) {
-      if (table_of(control.key->key) != table) continue;
+      if (parent_table(control.key->key) != table) continue;
       if (const auto position = control.word(session.scene())) draw_choice(control, *position);
     }
   }
   void draw_numbers(const std::string& table) {
     for (const Control& control : controls()) {
-      if (table_of(control.key->key) != table) continue;
+      if (parent_table(control.key->key) != table) continue;
       if (const auto value = control.value(session.scene())) draw_number(control, *value);
     }
   }
@@ -200,7 +200,7 @@ struct Controls {
     const auto clicked = draw_list(table + ".material", -1.0F, current, note, chosen, entries);
     if (!clicked) return {};
     if (*clicked > 0) return {{"material", known[*clicked - 1].name}};
-    const auto [n, k] = index_of(scene, table);
+    const auto [n, k] = material_index(scene, table);
     return {{"n", n}, {"k", k}};
   }
 
@@ -214,11 +214,11 @@ struct Controls {
 
   void draw_coating() {
     heading("Coating, from the outside in");
-    std::vector<Film> films = films_of(session.scene());
+    std::vector<Film> films = scene_films(session.scene());
     const bool is_added = ImGui::Button("Add a film outside");
     name_item("add film");
     if (is_added) films.insert(films.begin(), {{"n", 1.5}, {"k", 0.0}, {"thickness_um", 1.0}});
-    if (is_added) return session.set({coating_of(films)});
+    if (is_added) return session.set({coating_setting(films)});
     for (std::size_t layer = 1; layer <= films.size(); ++layer) {
       const std::string film = fmt::format("surface.coating.{}", layer);
       const bool is_removed = ImGui::SmallButton(("x##" + film).c_str());
@@ -231,7 +231,7 @@ struct Controls {
         chosen.push_back(films[layer - 1].back());  // keeps the thickness, which is last in a Film
         films[layer - 1] = chosen;
       }
-      if (is_removed || !chosen.empty()) return session.set({coating_of(films)});
+      if (is_removed || !chosen.empty()) return session.set({coating_setting(films)});
       draw_numbers(film);
     }
   }

@@ -122,15 +122,16 @@ bool add_curve(const char* id, const std::string& name, const CurveStyle& style,
 }
 
 void draw_legend(const std::vector<Shown>& curves, Session& session) {
-  const auto colour_of = [&](const Curve& curve) { return is_dim(session, curve) ? kDimColour : kTextColour; };
-  add_curve("curve", curve_name(session), curves.back().style, colour_of(session.curve()));
-  if (session.overlay() && add_curve("overlay", overlay_name(session), overlay_style(), colour_of(*session.overlay())))
+  const auto curve_colour = [&](const Curve& curve) { return is_dim(session, curve) ? kDimColour : kTextColour; };
+  add_curve("curve", curve_name(session), curves.back().style, curve_colour(session.curve()));
+  if (session.overlay() &&
+      add_curve("overlay", overlay_name(session), overlay_style(), curve_colour(*session.overlay())))
     session.set_view(&View::has_overlay, false);
   for (Pin& pin : session.pins()) {
     const CurveStyle style = pin_style(pin.colour);
     ImGui::PushID(&pin);
     if (add_curve("pin", "pinned: " + pin_name(session, pin), pin.is_visible ? style : stale(style),
-                  pin.is_visible ? colour_of(pin.curve) : kDimColour))
+                  pin.is_visible ? curve_colour(pin.curve) : kDimColour))
       pin.is_visible = !pin.is_visible;
     ImGui::PopID();
   }
@@ -224,7 +225,8 @@ void draw_residuals(const Session& session, const Scale& theta, ImVec2 size) {
   for (const Measurement& point : residuals)
     largest = std::max(largest, quantity.scale() * (std::abs(point.value) + point.uncertainty.value_or(0.0)));
   std::string label = std::string("measured − model") + (quantity.in_percent ? " [points]" : "");
-  if (const auto rms = rms_of(residuals)) label += fmt::format("; root mean square {:.3g}", quantity.scale() * *rms);
+  if (const auto rms = residual_rms(residuals))
+    label += fmt::format("; root mean square {:.3g}", quantity.scale() * *rms);
   const Plot plot("residuals", size, {"", theta}, {label, {-1.2 * largest, 1.2 * largest}});
   plot.clip();
   plot.list()->AddLine(plot.at(theta.from, 0.0), plot.at(theta.to, 0.0), kDimColour);
@@ -280,7 +282,7 @@ void CurveView::draw(Session& session, AxisEditor& editor, ImVec2 size) {
 
   View view = session.view();
   const Scale zeniths = Scale{0.0, view.theta_max_deg}.with_log(view.is_theta_log);
-  PlotAxis values{described(quantity).label(), range_of(values_to_show(session, curves), view.is_log)};
+  PlotAxis values{described(quantity).label(), value_scale(values_to_show(session, curves), view.is_log)};
   Zoom zoom{view.range(View::kZeniths), view.range(View::kValues)};
   choose_axes(session, zoom, zeniths, values.scale);
   const Plot plot("curve", {size.x, size.y - residual_height - gap},

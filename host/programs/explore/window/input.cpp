@@ -45,10 +45,10 @@ void set_mouse(ImVec2 position, const std::array<bool, 5>& buttons) {
 
 }  // namespace
 
-Input& Input::input_of(GLFWwindow* window) { return *static_cast<Input*>(glfwGetWindowUserPointer(window)); }
+Input& Input::window_input(GLFWwindow* window) { return *static_cast<Input*>(glfwGetWindowUserPointer(window)); }
 
 void Input::push(GLFWwindow* window, std::function<void()> apply, bool is_motion) {
-  Input& input = input_of(window);
+  Input& input = window_input(window);
   input.has_news_ = true;
   input.last_event_ = Clock::now();
   if (is_motion && input.has_more() && input.events_.back().is_motion) input.events_.pop_back();
@@ -66,23 +66,23 @@ Input::Input(GLFWwindow* window, std::function<void(const std::string&)> on_drop
     push(w, [=] {
       ImGui_ImplGlfw_KeyCallback(w, key, scancode, action, modifiers);
       set_modifiers(key, action, modifiers);
-      if (action == GLFW_PRESS) input_of(w).pressed_key_ = key;
+      if (action == GLFW_PRESS) window_input(w).pressed_key_ = key;
     });
   });
   glfwSetCharCallback(window,
                       [](GLFWwindow* w, unsigned sign) { push(w, [=] { ImGui_ImplGlfw_CharCallback(w, sign); }); });
   glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int) {
-    push(w, [=] { input_of(w).buttons_.at(static_cast<std::size_t>(std::min(button, 4))) = action == GLFW_PRESS; });
+    push(w, [=] { window_input(w).buttons_.at(static_cast<std::size_t>(std::min(button, 4))) = action == GLFW_PRESS; });
   });
   glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
     const ImVec2 at{static_cast<float>(x), static_cast<float>(y)};
     push(
-        w, [=] { input_of(w).mouse_ = at; }, true);
+        w, [=] { window_input(w).mouse_ = at; }, true);
   });
   glfwSetScrollCallback(
       window, [](GLFWwindow* w, double x, double y) { push(w, [=] { ImGui_ImplGlfw_ScrollCallback(w, x, y); }); });
   glfwSetCursorEnterCallback(
-      window, [](GLFWwindow* w, int entered) { push(w, [=] { input_of(w).is_inside_ = entered != 0; }); });
+      window, [](GLFWwindow* w, int entered) { push(w, [=] { window_input(w).is_inside_ = entered != 0; }); });
   glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int focused) {
     push(w, [=] {
       ImGui_ImplGlfw_WindowFocusCallback(w, focused);
@@ -90,10 +90,10 @@ Input::Input(GLFWwindow* window, std::function<void(const std::string&)> on_drop
     });
   });
   glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
-    for (int i = 0; i < count; ++i) push(w, [w, path = std::string(paths[i])] { input_of(w).on_drop_(path); });
+    for (int i = 0; i < count; ++i) push(w, [w, path = std::string(paths[i])] { window_input(w).on_drop_(path); });
   });
-  glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { input_of(w).has_news_ = true; });
-  glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { input_of(w).has_news_ = true; });
+  glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { window_input(w).has_news_ = true; });
+  glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { window_input(w).has_news_ = true; });
 }
 
 void Input::begin_frame() {

@@ -47,7 +47,7 @@ class Input {
     std::function<void()> apply;
     bool is_motion;
   };
-  static Input& input_of(GLFWwindow* window);
+  static Input& window_input(GLFWwindow* window);
   static void push(GLFWwindow* window, std::function<void()> apply, bool is_motion = false);
 
   GLFWwindow* window_;

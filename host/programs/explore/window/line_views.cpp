@@ -16,7 +16,7 @@ constexpr float kLineWidth = 2.0F;
 Scale values_range(const std::vector<NamedLine>& lines, bool is_log) {
   std::vector<double> all;
   for (const NamedLine& line : lines) all.insert(all.end(), line.values.begin(), line.values.end());
-  return range_of(std::move(all), is_log);
+  return value_scale(std::move(all), is_log);
 }
 
 /// Draws lines, with gaps at missing values. The names of the lines are above the plot if `is_above`, otherwise in it.
@@ -59,7 +59,7 @@ void mark_spectrum(const Plot& plot, const Scene& scene) {
 
 /// The line of a quantity over the zeniths or wavelengths of `sweep`, with gaps where the model fails. The line is
 /// faint while its points are outdated.
-NamedLine line_of(const Sweep& sweep, Plotted quantity, const CurveStyle& style, const std::string& name) {
+NamedLine sweep_line(const Sweep& sweep, Plotted quantity, const CurveStyle& style, const std::string& name) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   NamedLine line{name, sweep.is_finished() ? style : stale(style), {}};
   const PlottedDescription& description = described(quantity);
@@ -116,19 +116,19 @@ void draw_material(const Session& session, ImVec2 size) {
 
 void draw_spectrum(Session& session, AxisEditor& editor, ImVec2 size) {
   const PlottedDescription& quantity = described(session.view().quantity);
-  const NamedLine line =
-      line_of(session.spectrum(), quantity.quantity, current_style(), fmt::format("θ = {:.4g}°", session.theta_deg()));
+  const NamedLine line = sweep_line(session.spectrum(), quantity.quantity, current_style(),
+                                    fmt::format("θ = {:.4g}°", session.theta_deg()));
   draw_wavelengths("spectrum", session, editor, size, {line}, session.spectrum(),
-                   {quantity.label(), range_of(line.values, session.view().is_log)});
+                   {quantity.label(), value_scale(line.values, session.view().is_log)});
 }
 
 void draw_smooth(Session& session, AxisEditor& editor, ImVec2 size) {
   const ImVec2 half{size.x, 0.5F * (size.y - ImGui::GetStyle().ItemSpacing.y)};
-  const auto lines_of = [&](const Sweep& sweep) {
-    return std::vector<NamedLine>{line_of(sweep, Plotted::kRhoS, current_style(), "R_s"),
-                                  line_of(sweep, Plotted::kRhoP, overlay_style(), "R_p")};
+  const auto both_lines = [&](const Sweep& sweep) {
+    return std::vector<NamedLine>{sweep_line(sweep, Plotted::kRhoS, current_style(), "R_s"),
+                                  sweep_line(sweep, Plotted::kRhoP, overlay_style(), "R_p")};
   };
-  const std::vector<NamedLine> over_angle = lines_of(session.smooth()), over = lines_of(session.smooth_spectrum());
+  const std::vector<NamedLine> over_angle = both_lines(session.smooth()), over = both_lines(session.smooth_spectrum());
   const bool is_band = !session.scene().numbers("spectrum.band_um").empty();
   const Plot plot(
       "smooth", half, {"local angle of incidence β [°]", {0.0, 90.0}},

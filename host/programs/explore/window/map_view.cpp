@@ -18,7 +18,7 @@ constexpr float kBarRoom = 5.4F;                            // space right of th
 
 Scale times(const Scale& range, double factor) { return {factor * range.from, factor * range.to, range.is_log}; }
 
-std::string title_of(const Session& session) {
+std::string map_title(const Session& session) {
   const HeatMap& map = session.map();
   const bool is_outdated = map.is_stale() && !session.is_dragged();
   const std::string state = map.is_finished()      ? ""
@@ -150,7 +150,7 @@ void MapView::draw(Session& session, AxisEditor& editor, ImVec2 size) {
   const float line = ImGui::GetTextLineHeight();
   const Plot plot("map", size, {map.x().label, map.x().scale}, {map.y().label, map.y().scale}, kBarRoom * line, false);
   if (plot.is_dragged()) session.set_map_cursor(plot.mouse_x(), plot.mouse_y());
-  draw_text(plot.list(), {plot.max().x, plot.min().y - 0.6F * line}, {1.0F, 1.0F}, kTextColour, title_of(session));
+  draw_text(plot.list(), {plot.max().x, plot.min().y - 0.6F * line}, {1.0F, 1.0F}, kTextColour, map_title(session));
   plot.clip();
   cells_.draw(plot.list(), plot.min(), plot.max());
   draw_contours(plot);

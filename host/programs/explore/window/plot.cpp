@@ -6,7 +6,7 @@
 namespace dolp::explore {
 namespace {
 
-std::vector<double> ticks_of(const Scale& scale, float pixels, float spacing) {
+std::vector<double> axis_ticks(const Scale& scale, float pixels, float spacing) {
   return scale.ticks(static_cast<std::size_t>(std::max(3.0F, pixels / spacing)));
 }
 
@@ -117,7 +117,7 @@ void Plot::follow_mouse(Zoom& zoom, const Scale& all_x) const {
 
 void Plot::draw_x_axis(bool has_grid) const {
   const float line = ImGui::GetTextLineHeight();
-  for (const double tick : ticks_of(x(), area_.width(), 3.4F * line)) {
+  for (const double tick : axis_ticks(x(), area_.width(), 3.4F * line)) {
     const float at = at_position(x().position(tick), 0.0).x;
     if (has_grid) list_->AddLine({at, min().y}, {at, max().y}, kGridColour);
     list_->AddLine({at, max().y}, {at, max().y + 0.25F * line}, kDimColour);
@@ -129,7 +129,7 @@ void Plot::draw_x_axis(bool has_grid) const {
 
 void Plot::draw_y_axis(bool has_grid) const {
   const float line = ImGui::GetTextLineHeight();
-  for (const double tick : ticks_of(y(), area_.height(), 2.2F * line)) {
+  for (const double tick : axis_ticks(y(), area_.height(), 2.2F * line)) {
     const float at = at_position(0.0, y().position(tick)).y;
     if (has_grid) list_->AddLine({min().x, at}, {max().x, at}, kGridColour);
     list_->AddLine({min().x - 0.25F * line, at}, {min().x, at}, kDimColour);

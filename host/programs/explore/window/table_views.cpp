@@ -31,7 +31,7 @@ void draw_row(const Session& session, const Effect& row) {
   const std::string removed = is_slopes ? "roughness" : row.name;
   const std::string without = is_absent ? "" : without_text(session, removed);
   cell(row.name, colour);
-  cell(row.state == EffectState::kNotNeeded ? "not needed" : name_of(row.state), colour);
+  cell(row.state == EffectState::kNotNeeded ? "not needed" : to_name(row.state), colour);
   cell(influence_text(row), colour);
   cell(is_slopes && !without.empty() ? "smooth: " + without : without, colour);
   if (const std::string words = without_words(session, removed); !words.empty()) tooltip(words);

@@ -64,9 +64,9 @@ void NumberFields::draw(const std::string& id, double value, const Apply& apply)
 
 void NumberFields::draw_end(const std::string& id, std::size_t end, const std::array<double, 2>& ends,
                             const ApplyEnds& apply) {
-  const auto id_of = [&](std::size_t i) { return fmt::format("{} {}", id, i); };
-  draw(id_of(end), ends[end], [&](const std::string& typed) {
-    const std::string refused = text(id_of(1 - end));
+  const auto end_id = [&](std::size_t i) { return fmt::format("{} {}", id, i); };
+  draw(end_id(end), ends[end], [&](const std::string& typed) {
+    const std::string refused = text(end_id(1 - end));
     const std::string other = refused.empty() ? format_number(ends[1 - end]) : refused;
     return end == 0 ? apply(typed, other) : apply(other, typed);
   });

@@ -96,7 +96,7 @@ struct Panel {
 };
 
 template <std::size_t N, class Integrand>
-Panel<N> panel_of(const Integrand& integrand, const SmoothMap& map, double low, double high) {
+Panel<N> make_panel(const Integrand& integrand, const SmoothMap& map, double low, double high) {
   const auto in_s = [&](double s) {
     Values<N> values = integrand(map.at(s));
     for (double& value : values) value *= map.derivative(s);
@@ -106,7 +106,7 @@ Panel<N> panel_of(const Integrand& integrand, const SmoothMap& map, double low, 
 }
 
 template <std::size_t N>
-Integral<N> sum_of(const std::vector<Panel<N>>& panels) {
+Integral<N> sum_panels(const std::vector<Panel<N>>& panels) {
   Integral<N> total;
   for (const Panel<N>& panel : panels) {
     for (std::size_t k = 0; k < N; ++k) {
@@ -137,11 +137,11 @@ Integral<N> integrate(const Integrand& integrand, const Breaks& breaks, const Go
     for (int j = 0; j < goal.subdivisions; ++j) {
       const double low = static_cast<double>(j) / goal.subdivisions;
       const double high = static_cast<double>(j + 1) / goal.subdivisions;
-      panels.push_back(panel_of<N>(integrand, map, low, high));
+      panels.push_back(make_panel<N>(integrand, map, low, high));
     }
   }
   while (panels.size() < goal.max_panels) {
-    const Integral<N> total = sum_of(panels);
+    const Integral<N> total = sum_panels(panels);
     const Values<N> scales = scale(total.value);
     if (scaled_error(total.error, scales) <= goal.relative) break;
     const auto worst = std::max_element(panels.begin(), panels.end(), [&](const Panel<N>& a, const Panel<N>& b) {
@@ -150,10 +150,10 @@ Integral<N> integrate(const Integrand& integrand, const Breaks& breaks, const Go
     const Panel<N> whole = *worst;
     const double middle = 0.5 * (whole.low + whole.high);
     if (middle <= whole.low || middle >= whole.high) break;
-    *worst = panel_of<N>(integrand, whole.map, whole.low, middle);
-    panels.push_back(panel_of<N>(integrand, whole.map, middle, whole.high));
+    *worst = make_panel<N>(integrand, whole.map, whole.low, middle);
+    panels.push_back(make_panel<N>(integrand, whole.map, middle, whole.high));
   }
-  return sum_of(panels);
+  return sum_panels(panels);
 }
 
 }  // namespace dolp::reference

@@ -29,16 +29,16 @@ Amplitudes<Number> stack_amplitudes(const FacetOptics& optics, const Real& cos_b
   using std::exp;
   using std::sqrt;
   const Number i(0, 1);
-  const auto square_of = [](const OpticalConstants& index) {
+  const auto index_square = [](const OpticalConstants& index) {
     const Number n(index.n, index.k);
     return Number(n * n);
   };
   const auto reflected = [&](bool is_p) {
     const auto admittance = [&](const Number& n2, const Number& q) { return is_p ? Number(q / n2) : q; };
-    const Number n2 = square_of(optics.index);
+    const Number n2 = index_square(optics.index);
     Number e(1), h = admittance(n2, sqrt(Number(n2 - sin2_beta)));
     for (auto film = optics.films.rbegin(); film != optics.films.rend(); ++film) {
-      const Number square = square_of(film->index);
+      const Number square = index_square(film->index);
       const Number q = sqrt(Number(square - sin2_beta));
       const Number y = admittance(square, q);
       const Number turned = exp(Number(i * (4 * boost::math::constants::pi<Real>() * Real(film->thickness)) * q));

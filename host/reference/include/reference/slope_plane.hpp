@@ -117,8 +117,8 @@ struct SlopeTask {
 /// Integrals of N functions f_k: int_0^steepest 2 pi P t dt (2/pi) int_0^{pi/2} f_k dchi, with the slope density P. In
 /// component N + k of the result, the error of the integral over chi replaces this integral. `expected`: rough results.
 template <std::size_t N>
-Integral<2 * N> integrate_slopes_of(const SlopeTask<N>& task, const Slopes& slopes, const RegimeScan& scan,
-                                    const Refinement& refinement, const Values<N>& expected) {
+Integral<2 * N> integrate_all_slopes(const SlopeTask<N>& task, const Slopes& slopes, const RegimeScan& scan,
+                                     const Refinement& refinement, const Values<N>& expected) {
   constexpr double kInnerShare = 0.02;
   constexpr double kInnerFloor = 4e-15;  // a Kronrod panel has a rounding error of 1e-15 of its magnitude
   const auto is_tired = [&] { return task.work() > task.most_work; };
@@ -159,9 +159,9 @@ Integral<2 * N> integrate_slopes_of(const SlopeTask<N>& task, const Slopes& slop
     std::copy(first.begin(), first.end(), all.begin());
     return all;
   };
-  Breaks breaks(0.0, slopes.coordinate_of(task.steepest));
+  Breaks breaks(0.0, slopes.slope_coordinate(task.steepest));
   for (const double v : {1.5, 4.0, 8.0, 16.0, 24.0, 32.0, 40.0, 48.0}) breaks.add(v);
-  for (const double t : scan.t_breaks(slopes.width(), task.bends_end)) breaks.add(slopes.coordinate_of(t));
+  for (const double t : scan.t_breaks(slopes.width(), task.bends_end)) breaks.add(slopes.slope_coordinate(t));
   const Goal goal{.relative = refinement.relative_tolerance, .subdivisions = refinement.subdivisions};
   return integrate<2 * N>(row, breaks, goal, scales);
 }

@@ -31,7 +31,7 @@ class Slopes {
 
   /// Integrals over slopes use the variable v, with t = at(v) = width() sinh(v). density_at(v) is the density of v.
   double at(double v) const { return width_ * std::sinh(v); }
-  double coordinate_of(double t) const { return std::asinh(t / width_); }
+  double slope_coordinate(double t) const { return std::asinh(t / width_); }
   double density_at(double v) const;
 
   /// Slope beyond which the densities fall off. It is the natural unit of t.

@@ -95,21 +95,13 @@ TEST_F(WindowFiles, OpenDialog_TakesAPathByKeyboard_AndRefusesAMissingOne) {
   EXPECT_NE(session().message().text.find("bad.toml"), std::string::npos);
 }
 
-TEST_F(WindowFiles, SaveDialogs_BeginBesideTheScene_ThenInTheLastFolder_AndTheirFilesAreOpened) {
+TEST_F(WindowFiles, SaveDialogs_BeginBesideTheScene_ThenInTheLastFolder) {
   open_listed("folder/", "other.toml");
   answer("ctrl+e");
   EXPECT_FALSE(content("folder/other_curve.csv").empty());
   answer("ctrl+e", at("chosen.csv").string());
-  drag_slider("surface.sigma", kPartOfSlider);
-  const auto sigma = number("surface.sigma");
   answer("ctrl+s");
-  EXPECT_FALSE(session().edits().is_changed());
-  EXPECT_EQ(Scene::from_file(at("other_scene.toml")).number("surface.sigma"), sigma);
-  answer("ctrl+shift+s");
-  keys("ctrl+r");
-  EXPECT_TRUE(session().edits().is_changed());
-  open_listed("", "other_session.toml");
-  EXPECT_EQ(number("surface.sigma"), sigma);
+  EXPECT_FALSE(content("other_scene.toml").empty());
 }
 
 TEST_F(WindowFiles, Plots_SavedByShortcut_AreLinesAndTextOfWhatIsShown) {
@@ -154,6 +146,24 @@ TEST_F(WindowFiles, Snapshot_Clicked_RestoresTheState_AndTakesATypedName) {
   type("dry");
   EXPECT_TRUE(session().snapshots()[0].name.ends_with("dry")) << session().snapshots()[0].name;
   EXPECT_EQ(session().pins()[0].name, "");
+}
+
+TEST_F(WindowFiles, SceneAndSession_SavedByShortcut_AreOpenedAsTheyWere) {
+  keys("ctrl+p");
+  drag_slider("surface.sigma", kPartOfSlider);
+  const auto sigma = number("surface.sigma");
+  EXPECT_TRUE(session().edits().is_changed());
+  answer("ctrl+s");
+  EXPECT_FALSE(session().edits().is_changed());
+  EXPECT_EQ(Scene::from_file(at("scene_scene.toml")).number("surface.sigma"), sigma);
+  answer("ctrl+shift+s");
+  keys("ctrl+r");
+  EXPECT_TRUE(session().edits().is_changed());
+  session().pins().pop_front();
+  open_listed("", "scene_session.toml");
+  EXPECT_EQ(number("surface.sigma"), sigma);
+  ASSERT_EQ(session().pins().size(), 1U);
+  EXPECT_TRUE(session().pins()[0].curve.is_finished());
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace dolp {
 
 /// The attenuation G of the maskings `integral` and smith at single beams, for one slope distribution.
 /// Equation: shaders/physics/README.md, sections 2 and 8 ("Masking tables").
-/// Accuracy: relative error 1e-12 (tests Models/Scattering.*).
+/// Accuracy: relative error 1e-12 (tests ScatteringOf.*).
 class InPlaneMasking {
  public:
   InPlaneMasking(Distribution distribution, Masking masking, const SlopeShape& shape);

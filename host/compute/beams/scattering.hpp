@@ -10,7 +10,7 @@ namespace dolp {
 /// Computes the pBRDF at pairs of directions, in double and on all cores. Both the device and the CPU evaluator use it:
 /// a beam is a product of a few numbers, for which the geometry alone needs double.
 /// Equation: shaders/physics/README.md, sections 1 and 2 (eqs. 4, 7 and 15).
-/// Accuracy: ScatteringMatrix::error (tests MuellerKernel.*).
+/// Accuracy: ScatteringMatrix::error (tests ScatteringOf.*).
 /// Errors: InputError if an entry is outside the lists of the request; Cancelled if `progress` returns false.
 std::vector<ScatteringMatrix> scattering_matrices(const ScatteringRequest& request, const Progress& progress);
 

@@ -34,7 +34,7 @@ struct ScatteringEntry {
   std::uint32_t index = 0;
 };
 
-/// Relative error of a ScatteringMatrix with single scattering, rounding included (tests MuellerKernel.*).
+/// Relative error of a ScatteringMatrix with single scattering, rounding included (tests ScatteringOf.*).
 constexpr double kScatteringError = 1e-11;
 
 /// Domain: zeniths in [0, 90] degrees, but not both 90; sigma > 0; cauchy needs q > 1, and q > 3/2 with smith masking.

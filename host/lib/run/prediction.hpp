@@ -27,7 +27,7 @@ inline constexpr std::size_t kFewCountedMoments = 8;
 // reflectances an evaluation takes about three times as long.
 inline constexpr double kPlanShare = 25.0;
 inline constexpr double kFreeEvaluations = 1e6;
-inline constexpr double kFreeEvaluationsOfCurves = 4e5;
+inline constexpr double kFreeEvaluationsOfCurves = 2e5;
 
 /// Integrand evaluations that a part of a plan may take for a run of `scene` with so many evaluations.
 double allowed_evaluations(const SceneValues& scene, double run_evaluations);

@@ -150,8 +150,8 @@ std::vector<BeamGeometry> beam_geometries(const std::vector<BeamAngles>& angles)
   return geometries;
 }
 
-ScatteringMatrix matrix_of_beam(const ScatteringRequest& request, const ScatteringEntry& entry,
-                                const BeamGeometry& geometry, double attenuation) {
+ScatteringMatrix beam_matrix(const ScatteringRequest& request, const ScatteringEntry& entry,
+                             const BeamGeometry& geometry, double attenuation) {
   const double density = std::exp(log_density(request.distribution, request.shapes[entry.shape], geometry.slope));
   ScatteringMatrix matrix;
   matrix.m = turned(facet_reflection(request.angles[entry.angles], geometry, request.optics[entry.index]), geometry);
@@ -170,7 +170,7 @@ std::vector<ScatteringMatrix> scattering_matrices(const ScatteringRequest& reque
   std::vector<ScatteringMatrix> matrices(order.size());
   const auto compute_group = [&](std::size_t group) {
     std::optional<InPlaneMasking> masking;
-    const SlopeShape* shape_of_masking = nullptr;
+    const SlopeShape* masking_shape = nullptr;
     const std::size_t last = std::min((group + 1) * kBeamsAtOnce, order.size());
     for (std::size_t i = group * kBeamsAtOnce; i < last; ++i) {
       const ScatteringEntry& entry = request.entries[order[i]];
@@ -179,12 +179,12 @@ std::vector<ScatteringMatrix> scattering_matrices(const ScatteringRequest& reque
       if (request.masking == Masking::kVCavity) attenuation = v_cavity_attenuation(geometry);
       if (needs_integrals(request.masking)) {
         const SlopeShape& shape = request.shapes[entry.shape];
-        if (shape_of_masking == nullptr || shape != *shape_of_masking)
+        if (masking_shape == nullptr || shape != *masking_shape)
           masking.emplace(request.distribution, request.masking, shape);
-        shape_of_masking = &shape;
+        masking_shape = &shape;
         attenuation = masking->attenuation(geometry);
       }
-      matrices[order[i]] = matrix_of_beam(request, entry, geometry, attenuation);
+      matrices[order[i]] = beam_matrix(request, entry, geometry, attenuation);
     }
   };
   const Progress beam_progress = [&](std::size_t done, std::size_t) {

@@ -124,7 +124,7 @@ CountedPart counted(const RunPrediction& run, const SceneValues& scene, const Sc
   return sample;
 }
 
-/// What the sample computes in place of the run: with films or measured reflectances, only a part of each band.
+/// The scene of the sample: with films or measured reflectances, it has only a part of each band.
 struct CountedScene {
   SceneValues scene;
   EffectPlan plan;

@@ -39,8 +39,8 @@ std::vector<std::string> scene_files(const SceneValues& scene);
 /// Refuses an output file that would overwrite an input file; "-" (stdin, stdout) is no file. Errors: InputError.
 void check_output_is_no_input(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
-/// The results at points of a scene. Their units and attributes come from `head`, the head of a table of this scene.
-Results make_results(const std::vector<PointResult>& points, const Quantities& quantities, const TableHead& head);
+/// The results at points of a scene. `layout`: of a table of this scene, with the quantities that the results have.
+Results make_results(const std::vector<PointResult>& points, const TableLayout& layout);
 
 /// Makes points from columns. If a column has one value, all points use it. Errors: InputError for a wrong column.
 Points points_of_columns(const std::vector<Column>& columns, PointsKind kind);
@@ -58,6 +58,7 @@ struct Evaluator::Impl {
 
   /// Returns the evaluator, with an empty report. Makes a new one if there is none, or none with the needed precision.
   ModelEvaluator* begin(const SceneValues& scene) {
+    if (options.evaluator == "vulkan") check_no_fork();
     const bool needs_double = scene.accuracy.precision == Precision::kDouble;
     if (evaluator && (evaluator->has_double() || !needs_double)) {
       evaluator->clear_report();
@@ -80,14 +81,14 @@ struct Evaluator::Impl {
   auto exclusively(const Scene& scene, Options call_options, const Body& body) {
     if (in_callback == std::this_thread::get_id())
       throw InputError("an Evaluator cannot be called from its own callback; another Evaluator can");
-    if (options.evaluator == "vulkan") check_no_fork();
     const std::lock_guard lock(mutex);
     call_options.progress = guard_reentry(call_options.progress);
     if constexpr (requires { call_options.phase; }) call_options.phase = guard_reentry(call_options.phase);
     try {
       return body(scene.impl().scene, call_options);
     } catch (const DeviceError&) {
-      evaluator.reset();
+      // A forked process must not destroy the device, see ~Evaluator().
+      owner == getpid() ? evaluator.reset() : static_cast<void>(evaluator.release());
       throw;
     }
   }

@@ -30,7 +30,7 @@ need test vulkan-validationlayers                    # finds misuse of Vulkan
 need test netcdf-bin octave octave-netcdf python3-scipy python3 python3-netcdf4 python3-numpy  # other readers of tables
 need test x11-utils xvfb xauth xdotool               # a display with mouse and keyboard
 need test slurmctld slurmd slurm-client munge        # a cluster of one node
-need test dpkg-dev file fish zsh python3-yaml        # check the Debian package, shell completions, the workflow
+need test dpkg-dev file fish zsh python3-pip python3-yaml  # check packages, shell completions, the workflow
 
 missing=()
 for set in "$@"; do

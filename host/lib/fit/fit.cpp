@@ -317,8 +317,19 @@ class Fit {
     result_.predicted = fine_.observed(prediction.components);
     result_.numerical_error = prediction.error.cwiseProduct(fine_.weights()).maxCoeff() / std::sqrt(result_.scale);
     result_.evaluations = coarse_.evaluations() + fine_.evaluations() + profile_.evaluations();
+    result_.jacobian = find_jacobian(best);
     name_degeneracies();
     add_criteria();
+  }
+
+  /// The derivatives of the observables by the numbers of the scene.
+  Eigen::MatrixXd find_jacobian(const Minimum& best) {
+    Linearisation point = best.where;
+    fine_.linearise({&point});
+    Eigen::MatrixXd jacobian = fine_.weights().cwiseInverse().asDiagonal() * point.jacobian;
+    for (std::size_t j = 0; j < result_.parameters.size(); ++j)
+      jacobian.col(static_cast<Eigen::Index>(j)) /= model_.parameters()[j].slope(result_.parameters[j].value);
+    return jacobian;
   }
 
   /// Describes the undetermined combinations of parameters. Leaves out a combination that changes residuals, unless one

@@ -28,6 +28,7 @@ struct FitResult : FitNumbers {
   std::uint32_t status = 0;            ///< status bits of all points, combined by OR
   Eigen::VectorXd residuals;           ///< (measured - model) / uncertainty; without uncertainties, measured - model
   Eigen::VectorXd predicted;           ///< the model's values
+  Eigen::MatrixXd jacobian;            ///< derivatives of `predicted`: a row per measurement, a column per parameter
   std::size_t evaluations = 0;         ///< parameter sets for which the model was computed
   std::vector<Minimum> valley_points;  ///< the best minimum, then the computed points of the profile likelihoods
   double aic = 0.0;                    ///< Akaike's information criterion, without a term that depends only on the data

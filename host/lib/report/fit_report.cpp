@@ -183,6 +183,7 @@ void add_minima(ReportBuilder& report, const FitResult& result) {
 
 void add_points(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
   report.value("residuals", value_json(result.residuals));
+  report.value("jacobian", value_json(result.jacobian));
   Json points = Json::array();
   Eigen::Index row = 0;
   for (const MeasuredData& data : model.data()) {

@@ -19,6 +19,28 @@ TEST(FitQuality, IsAWordForTheP_Value) {
   }
 }
 
+TEST_F(FitTest, Jacobian_HasTheDerivativesOfTheModelByTheParameters) {
+  const std::vector<FitRange> parameters = {number("surface.n", 1.2, 2.4), number("surface.sigma", 0.01, 1.0)};
+  const MeasuredData data = measured(0.0);
+  const FitResult result = fitted(data, parameters);
+  const Model model(parse_scene(kScene, "scene"), {data}, parameters);
+  constexpr double kStep = 1e-3;       // of the value; a difference then errs by the order of 1e-6
+  constexpr double kMostError = 1e-3;  // of the largest derivative, from the difference of the fit
+  ASSERT_EQ(result.jacobian.rows(), 20);
+  ASSERT_EQ(result.jacobian.cols(), 2);
+  for (Eigen::Index j = 0; j < 2; ++j) {
+    Eigen::VectorXd above(2);
+    above << result.parameters[0].value, result.parameters[1].value;
+    Eigen::VectorXd below = above;
+    const double step = kStep * above[j];
+    above[j] += step;
+    below[j] -= step;
+    const std::vector<Prediction> beside = model.predict({above, below}, 1e-9, evaluator_, {});
+    const Eigen::VectorXd right = (beside[0].components - beside[1].components).col(0) / (2.0 * step);
+    EXPECT_LE((result.jacobian.col(j) - right).cwiseAbs().maxCoeff(), kMostError * right.cwiseAbs().maxCoeff()) << j;
+  }
+}
+
 TEST_F(FitTest, ExactData_GiveTheTruth) {
   const FitResult result = fitted(measured(0.0), {number("surface.n", 1.1, 4.0), number("surface.k", 0.0, 5.0),
                                                   number("surface.sigma", 0.02, 1.0)});

@@ -248,6 +248,9 @@ py::tuple result_parts(dolp::ResultColumns results, const dolp::Quantities& give
     quantities.append(py::make_tuple(known.name, known.long_name, to_str(dolp::quantity_units(quantity, stokes_units)),
                                      known.ancillary, to_array(std::move(results[quantity]))));
   }
+  for (dolp::DerivativeColumn& column : results.derivatives)
+    quantities.append(
+        py::make_tuple(column.name, column.long_name, column.units, "", to_array(std::move(column.values))));
   return py::make_tuple(quantities, to_array(std::move(results.status)), to_dict(attributes));
 }
 
@@ -384,13 +387,14 @@ PYBIND11_MODULE(_native, module) {
       .def(py::init([](const std::string& evaluator, const std::string& device) {
         return dolp::Evaluator({evaluator, device});
       }))
-      .def(
-          "table",
-          [](dolp::Evaluator& evaluator, const dolp::Scene& scene, bool keep_all, std::vector<std::string> quantities) {
-            return table_contents(interruptible([&](const dolp::Progress& progress) {
-              return evaluator.table(scene, {keep_all, progress, "dolp.table", false, std::move(quantities)});
-            }));
-          })
+      .def("table",
+           [](dolp::Evaluator& evaluator, const dolp::Scene& scene, bool keep_all, std::vector<std::string> quantities,
+              std::vector<std::string> derivatives) {
+             return table_contents(interruptible([&](const dolp::Progress& progress) {
+               return evaluator.table(
+                   scene, {keep_all, progress, "dolp.table", false, std::move(quantities), std::move(derivatives)});
+             }));
+           })
       .def("response",
            [](dolp::Evaluator& evaluator, const dolp::Scene& scene) {
              const dolp::Table table = interruptible([&](const dolp::Progress& progress) {
@@ -400,17 +404,23 @@ PYBIND11_MODULE(_native, module) {
            })
       .def("write_table",
            [](dolp::Evaluator& evaluator, const dolp::Scene& scene, const std::filesystem::path& path, bool keep_all,
-              bool resume, std::vector<std::string> quantities) {
+              bool resume, std::vector<std::string> quantities, std::vector<std::string> derivatives) {
              return to_str(interruptible([&](const dolp::Progress& progress) {
-               const dolp::RunOptions options{keep_all, progress, "dolp.table", resume, std::move(quantities)};
+               const dolp::RunOptions options{
+                   keep_all, progress, "dolp.table", resume, std::move(quantities), std::move(derivatives)};
                return evaluator.write_table(scene, path, options).text;
              }));
            })
       .def("evaluate",
-           [](dolp::Evaluator& evaluator, const dolp::Scene& scene, const Columns& columns, bool keep_all) {
+           [](dolp::Evaluator& evaluator, const dolp::Scene& scene, const Columns& columns, bool keep_all,
+              std::vector<std::string> derivatives) {
              const std::vector<dolp::Column> points = views(columns);
              return result_parts(interruptible([&](const dolp::Progress& progress) {
-               return evaluator.evaluate(scene, points, {keep_all, progress, "dolp.evaluate"});
+               return evaluator.evaluate(scene, points,
+                                         {.keep_all = keep_all,
+                                          .progress = progress,
+                                          .history = "dolp.evaluate",
+                                          .derivatives = std::move(derivatives)});
              }));
            })
       .def("fit",

@@ -11,6 +11,28 @@ constexpr std::array kCuttingOrder = {Axis::kTheta, Axis::kMaterial,    Axis::kB
                                       Axis::kK,     Axis::kTemperature, Axis::kSigma, Axis::kQ};
 static_assert(kCuttingOrder.size() == kAxisCount);
 
+/// The member of the entry, or of its variant, that has the value on an axis of numbers.
+double* value_at(SceneEntry& entry, SceneVariant& variant, Axis axis) {
+  switch (axis) {
+    case Axis::kTheta:
+      return &entry.theta_deg;
+    case Axis::kSigma:
+      return &entry.shape.sigma;
+    case Axis::kQ:
+      return &entry.shape.q;
+    case Axis::kN:
+      return &entry.index->n;
+    case Axis::kK:
+      return &entry.index->k;
+    case Axis::kWavelength:
+      return &*variant.wavelength_um;
+    case Axis::kTemperature:
+      return &*variant.temperature_K;
+    default:
+      return nullptr;
+  }
+}
+
 }  // namespace
 
 Axes make_axes(std::vector<double> theta_deg, std::vector<double> sigma, std::vector<double> q,
@@ -136,6 +158,47 @@ PerAxis SceneEntries::first_in(const SceneEntries& whole) const {
   PerAxis first = first_;
   for (std::size_t i = 0; i < first.size(); ++i) first[i] -= whole.first_[i];
   return first;
+}
+
+bool SceneEntries::has_values(Axis axis) const {
+  switch (axis) {
+    case Axis::kN:
+    case Axis::kK:
+      return is_grid_ ? has_own_index()
+                      : std::ranges::all_of(points_, [](const SceneEntry& point) { return point.index.has_value(); });
+    case Axis::kWavelength:
+      return variants_.front().wavelength_um.has_value();
+    case Axis::kTemperature:
+      return variants_.front().temperature_K.has_value();
+    default:
+      return true;
+  }
+}
+
+double SceneEntries::value(const SceneEntry& entry, Axis axis) const {
+  SceneEntry copy = entry;
+  SceneVariant variant = variants_[entry.variant];
+  return *value_at(copy, variant, axis);
+}
+
+SceneEntries SceneEntries::changed(Axis axis, const std::function<double(double)>& change) const {
+  if (is_grid_) {
+    Axes axes = axes_;
+    OpticalConstants index = index_;
+    std::ranges::transform(axes[axis], axes[axis].begin(), change);
+    if (axis == Axis::kN) index.n = change(index.n);
+    if (axis == Axis::kK) index.k = change(index.k);
+    return grid(std::move(axes), index);
+  }
+  SceneEntries entries = *this;
+  const bool is_of_variant = std::ranges::find(kVariantAxes, axis) != kVariantAxes.end();
+  SceneEntry none;
+  SceneVariant unused;
+  for (SceneVariant& variant : entries.variants_)
+    if (is_of_variant) *value_at(none, variant, axis) = change(*value_at(none, variant, axis));
+  for (SceneEntry& point : entries.points_)
+    if (!is_of_variant) *value_at(point, unused, axis) = change(*value_at(point, unused, axis));
+  return entries;
 }
 
 SceneEntries SceneEntries::chosen(std::span<const std::size_t> positions) const {

@@ -110,6 +110,13 @@ class SceneEntries {
   /// The refractive index at the positions `on_axes`. Domain: the grid has an axis of n or k.
   OpticalConstants index_at(const PerAxis& on_axes) const;
 
+  /// True if all entries have their own value on the axis, instead of the scene's value.
+  bool has_values(Axis axis) const;
+  /// The value of an entry on an axis of numbers. Domain: has_values(axis).
+  double value(const SceneEntry& entry, Axis axis) const;
+  /// A copy in which the function changes each value on an axis of numbers. Domain: has_values(axis).
+  SceneEntries changed(Axis axis, const std::function<double(double)>& change) const;
+
   /// A list of the entries at `positions`, with only the variants that these entries use.
   SceneEntries chosen(std::span<const std::size_t> positions) const;
   /// Cuts the entries into parts of at most `most` entries. The parts of a grid are grids, too.

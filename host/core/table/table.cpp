@@ -89,22 +89,40 @@ std::string coordinate_names(const TableHead& head) {
   return fmt::format("{}", fmt::join(names, " "));
 }
 
+std::vector<DerivativeColumn> derivative_columns(const std::vector<std::string>& keys) {
+  std::vector<DerivativeColumn> columns;
+  for (const std::string& key : keys) {
+    std::string name = "__" + key;
+    std::ranges::replace(name, '.', '_');
+    columns.push_back({"d_dolp" + name, "derivative of dolp by " + key, ""});
+    columns.push_back({"d_q_over_i" + name, "derivative of q_over_i by " + key, ""});
+    columns.push_back({"derivative_error" + name, "estimated error of the derivatives by " + key, ""});
+  }
+  return columns;
+}
+
 TableLayout values_layout(const TableValues& table) {
   TableLayout layout{static_cast<const TableHead&>(table), table.quantities(), !table.status.empty()};
   std::ranges::copy_if(kAllResponseVariables, std::back_inserter(layout.responses),
                        [&](ResponseVariable variable) { return !table.responses[variable].empty(); });
+  for (const DerivativeColumn& column : table.derivatives)
+    layout.derivatives.push_back({column.name, column.long_name, column.units});
   return layout;
 }
 
-ResultColumns result_columns(std::span<const PointResult> results, const Quantities& quantities) {
+ResultColumns result_columns(std::span<const PointResult> results, const Quantities& quantities,
+                             const std::vector<DerivativeColumn>& derivatives) {
   constexpr std::size_t kEntriesAtOnce = 16384;
   ResultColumns columns;
   for (const Quantity quantity : quantities) columns[quantity].resize(results.size());
   columns.status.resize(results.size());
+  columns.derivatives = derivatives;
+  for (DerivativeColumn& column : columns.derivatives) column.values.resize(results.size());
   parallel_ranges(results.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       for (const Quantity quantity : quantities) columns[quantity][i] = results[i][quantity];
       columns.status[i] = results[i].status;
+      for (std::size_t j = 0; j < derivatives.size(); ++j) columns.derivatives[j].values[i] = results[i].derivatives[j];
     }
   });
   return columns;

@@ -42,7 +42,15 @@ struct TableLayout {
   Quantities quantities;
   bool has_status = true;
   std::vector<ResponseVariable> responses = {};
+  std::vector<DerivativeColumn> derivatives = {};  ///< without values
 };
+
+/// Attribute with the keys of the derivatives in a table, separated by commas.
+inline constexpr const char* kDerivativeKeys = "derivatives";
+
+inline constexpr std::size_t kDerivativesPerKey = 3;
+/// The kDerivativesPerKey columns for each key of `keys`, without values and units.
+std::vector<DerivativeColumn> derivative_columns(const std::vector<std::string>& keys);
 
 TableLayout values_layout(const TableValues& table);
 
@@ -56,12 +64,17 @@ void for_each_variable(const TableLayout& layout, const Use& use) {
   for (const ResponseVariable variable : layout.responses)
     use(
         [=](auto& table) -> auto& { return table.responses[variable]; }, layout.head.values_per_entry(variable));
+  for (std::size_t i = 0; i < layout.derivatives.size(); ++i)
+    use(
+        [i](auto& table) -> auto& { return table.derivatives[i].values; }, std::size_t{1});
   if (layout.has_status)
     use(
         [](auto& table) -> auto& { return table.status; }, std::size_t{1});
 }
 
-ResultColumns result_columns(std::span<const PointResult> results, const Quantities& quantities);
+/// The columns of `quantities`, the status, and `derivatives`, which have no values yet.
+ResultColumns result_columns(std::span<const PointResult> results, const Quantities& quantities,
+                             const std::vector<DerivativeColumn>& derivatives = {});
 
 /// A part of a table: on each axis, `count` values from position `first`.
 struct TableBox {

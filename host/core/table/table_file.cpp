@@ -63,7 +63,7 @@ std::string value_text(const Attribute& attribute) {
 std::string csv_header(const TableLayout& layout) {
   std::string text;
   for (const Axis axis : present_axes(layout.head.axes)) (text += describe(axis).column) += ',';
-  text += result_header(layout.quantities, layout.has_status) + "\n";
+  text += result_header(layout.quantities, layout.derivatives, layout.has_status) + "\n";
   for (const Attribute& attribute : layout.head.attributes)
     text += "# " + attribute.name + ": " + value_text(attribute) + "\n";
   return text + "# units of stokes: " + layout.head.stokes_units + "\n";
@@ -94,6 +94,7 @@ std::string npy_header(const TableLayout& layout) {
     shape += fmt::format("{}{}", shape.empty() ? "" : ", ", layout.head.axes[axis].size());
   }
   for (const Quantity quantity : layout.quantities) fields += fmt::format("('{}', '<f8'), ", describe(quantity).name);
+  for (const DerivativeColumn& column : layout.derivatives) fields += fmt::format("('{}', '<f8'), ", column.name);
   if (layout.has_status) fields += "('status', '<u4'), ";
   std::string header = "{'descr': [" + fields + "], 'fortran_order': False, 'shape': (" + shape + "), }";
   const std::size_t unpadded = kPreambleSize + header.size() + 1;
@@ -121,6 +122,7 @@ std::string npy_rows(const TableValues& part, const TableLayout& layout) {
       bytes += label;
     });
     for (const Quantity quantity : layout.quantities) append_bytes(bytes, part[quantity][position]);
+    for (const DerivativeColumn& column : part.derivatives) append_bytes(bytes, column.values[position]);
     if (!part.status.empty()) append_bytes(bytes, part.status[position]);
   }
   return bytes;
@@ -128,9 +130,11 @@ std::string npy_rows(const TableValues& part, const TableLayout& layout) {
 
 }  // namespace
 
-std::string result_header(const Quantities& quantities, bool has_status) {
+std::string result_header(const Quantities& quantities, const std::vector<DerivativeColumn>& derivatives,
+                          bool has_status) {
   std::string header;
   for (const Quantity quantity : quantities) (header += describe(quantity).name) += ',';
+  for (const DerivativeColumn& column : derivatives) (header += column.name) += ',';
   if (has_status) return header + "status";
   return header.substr(0, header.size() - 1);
 }
@@ -144,6 +148,10 @@ std::string result_rows(const ResultColumns& results, std::size_t rows, const Qu
       start(text, row);
       for (const Quantity quantity : quantities) {
         append_number(text, results[quantity][row]);
+        text += ',';
+      }
+      for (const DerivativeColumn& column : results.derivatives) {
+        append_number(text, column.values[row]);
         text += ',';
       }
       results.status.empty() ? text.pop_back() : void(text += std::to_string(results.status[row]));
@@ -162,17 +170,17 @@ Quantities in_csv_order(const Quantities& quantities) {
   return ordered;
 }
 
-ResultCsv::ResultCsv(const std::filesystem::path& path, const std::string& columns, const Quantities& quantities,
+ResultCsv::ResultCsv(const std::filesystem::path& path, const std::string& columns, const TableLayout& layout,
                      RowStart start)
-    : quantities_(in_csv_order(quantities)), start_(std::move(start)) {
+    : quantities_(in_csv_order(layout.quantities)), derivatives_(layout.derivatives), start_(std::move(start)) {
   if (path != "-") file_.emplace(path);
-  write(columns + ',' + result_header(quantities_) + '\n');
+  write(columns + ',' + result_header(quantities_, derivatives_) + '\n');
 }
 
 void ResultCsv::append(std::span<const PointResult> results) {
   while (!results.empty()) {
     const std::span<const PointResult> block = results.first(std::min(kBlock, results.size()));
-    write(result_rows(result_columns(block, quantities_), block.size(), quantities_,
+    write(result_rows(result_columns(block, quantities_, derivatives_), block.size(), quantities_,
                       [&](std::string& text, std::size_t row) { start_(text, done_ + row); }));
     done_ += block.size();
     results = results.subspan(block.size());

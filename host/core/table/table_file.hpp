@@ -15,9 +15,10 @@ namespace dolp {
 /// Appends the leading cells of CSV row `row` to `text`, each with a comma after it. result_rows() adds the results.
 using RowStart = std::function<void(std::string& text, std::size_t row)>;
 
-std::string result_header(const Quantities& quantities, bool has_status = true);
+std::string result_header(const Quantities& quantities, const std::vector<DerivativeColumn>& derivatives = {},
+                          bool has_status = true);
 
-/// CSV rows. A row has the cells that `start` appends, then the quantities in the given order, then the status.
+/// CSV rows. A row has the cells that `start` appends, the quantities in the given order, the derivatives, the status.
 std::string result_rows(const ResultColumns& results, std::size_t rows, const Quantities& quantities,
                         const RowStart& start);
 
@@ -27,8 +28,7 @@ Quantities in_csv_order(const Quantities& quantities);
 class ResultCsv {
  public:
   /// `columns`: names of the columns whose cells `start` appends. Errors: IoError.
-  ResultCsv(const std::filesystem::path& path, const std::string& columns, const Quantities& quantities,
-            RowStart start);
+  ResultCsv(const std::filesystem::path& path, const std::string& columns, const TableLayout& layout, RowStart start);
   /// Adds the results of the next points. Errors: IoError; Cancelled when interrupted().
   void append(std::span<const PointResult> results);
   /// Completes the file. Errors: IoError; Cancelled when interrupted().
@@ -38,6 +38,7 @@ class ResultCsv {
   void write(const std::string& text);
 
   Quantities quantities_;
+  std::vector<DerivativeColumn> derivatives_;
   RowStart start_;
   std::optional<AtomicFile> file_;  ///< nullopt for standard output
   std::string text_;                ///< rows for standard output

@@ -281,6 +281,14 @@ struct TableReader::Impl {
       if (described.has_beta) more.push_back(head.beta_deg.size());
       if (!head.beta_deg.empty() && find(described.name, sizeof(double), more)) layout.responses.push_back(variable);
     }
+    std::vector<std::string> keys;
+    if (const auto* const stored = find_attribute<std::string>(head, kDerivativeKeys))
+      for (const std::string_view key : split(*stored, ',')) keys.emplace_back(key);
+    for (DerivativeColumn& column : derivative_columns(keys)) {
+      if (!find(column.name.c_str(), sizeof(double))) continue;
+      column.units = find_text(reader, open.back().second, "units").value_or("");
+      layout.derivatives.push_back(std::move(column));
+    }
     layout.has_status = find("status", sizeof(std::uint32_t));
     if (open.empty()) reader.fail("is not a table of dolp (none of its variables is there)");
   }
@@ -312,9 +320,9 @@ struct TableReader::Impl {
 
 TableReader::TableReader(const fs::path& path) : impl_(std::make_unique<Impl>(path)) {
   impl_->read_axes();
+  impl_->head.attributes = read_attributes(impl_->reader);
   impl_->find_variables();
   impl_->read_curves();
-  impl_->head.attributes = read_attributes(impl_->reader);
   append_long_texts(impl_->reader, impl_->head.attributes);
   take_spectral_data(impl_->head, path.string());
 }
@@ -325,6 +333,7 @@ const TableLayout& TableReader::layout() const { return impl_->layout; }
 
 TableValues TableReader::read(const TableBox& box) const {
   TableValues part{part_head(head(), box)};
+  part.derivatives = layout().derivatives;
   std::size_t number = 0;
   for_each_variable(layout(), [&](const auto& of, std::size_t width) { impl_->read(number++, box, of(part), width); });
   return part;
@@ -345,6 +354,7 @@ ValueSums TableReader::value_sums(const TableValues& part, const TableBox& box) 
 
 TableValues TableReader::read_entries(std::span<const std::size_t> positions, const Progress& progress) const {
   TableValues entries{head()};
+  entries.derivatives = layout().derivatives;
   ValueSums sums;
   std::size_t before = 0;
   const std::size_t at_once = kEntriesAtOnce / std::max<std::size_t>(head().beta_deg.size(), 1);

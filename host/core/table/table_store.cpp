@@ -121,8 +121,8 @@ struct TableStore::Impl {
     put_text(id, "units", units);
     if (!qualifiers.empty()) put_text(id, "ancillary_variables", qualifiers);
   }
-  int define_over_entries(const char* name, nc_type type, const std::vector<int>& over) {
-    variables.push_back(define(name, type, over));
+  int define_over_entries(const std::string& name, nc_type type, const std::vector<int>& over) {
+    variables.push_back(define(name.c_str(), type, over));
     if (const std::string names = coordinate_names(layout.head); !names.empty())
       put_text(variables.back(), "coordinates", names);
     return variables.back();
@@ -250,6 +250,7 @@ void TableStore::Impl::define_results() {
     define_result(described, described.has_beta ? over_beta : dimensions, "1",
                   described.has_beta ? kResponseQualifier : "");
   }
+  for (const DerivativeColumn& column : layout.derivatives) define_result(column, dimensions, column.units, "");
   if (layout.has_status) define_status();
 }
 
@@ -285,6 +286,7 @@ ValueSums TableStore::write(const TableValues& part, const PerAxis& first) {
 
 TableValues TableStore::read(const TableBox& box) const {
   TableValues part{part_head(impl_->layout.head, box)};
+  part.derivatives = impl_->layout.derivatives;
   for_each_variable(impl_->layout, [&](const auto& of, std::size_t width) { of(part).resize(part.size() * width); });
   impl_->each_variable(part, box, [&](int variable, const Hyperslab& at, auto& values) {
     impl_->check(get_values(impl_->file, variable, at, values.data()));

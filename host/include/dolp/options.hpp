@@ -36,6 +36,8 @@ struct RunOptions {
   bool resume = false;       ///< for write_table: continue a cancelled or killed call for the same scene
   /// The variables of a table, such as "dolp" and "status". Empty means all. Axes and attributes are always there.
   std::vector<std::string> quantities = {};
+  /// Keys of numbers, such as "surface.n", and "grid.theta_deg". Results then have derivatives by these numbers.
+  std::vector<std::string> derivatives = {};
 };
 
 /// A part of a table, for one of several processes. The `count` parts have about the same size. Default: whole table.

@@ -100,7 +100,7 @@ Evaluator::Impl& Evaluator::impl() {
 Table Evaluator::table(const Scene& scene, const RunOptions& call_options) {
   return impl().exclusively(scene, call_options, [&](const SceneValues& values, const RunOptions& options) {
     Run run(values, grid_entries(values), options, impl_->maker(values));
-    TableLayout layout = table_layout(values, run.plan(), run.entries().axes());
+    TableLayout layout = table_layout(values, run);
     choose_variables(layout, options.quantities);
     CollectedResults results(run.entries());
     const RunOutcome outcome = run.compute(results);
@@ -116,7 +116,7 @@ void Evaluator::table_parts(const Scene& scene, const std::function<void(const T
                             const RunOptions& call_options) {
   impl().exclusively(scene, call_options, [&](const SceneValues& values, const RunOptions& options) {
     Run run(values, grid_entries(values), options, impl_->maker(values));
-    TableLayout layout = table_layout(values, run.plan(), run.entries().axes());
+    TableLayout layout = table_layout(values, run);
     choose_variables(layout, options.quantities);
     const std::function<void(const Table&)> guarded = impl_->guard_reentry(take);
     CallbackSink parts([&](const SceneEntries& part, const std::vector<PointResult>& results) {
@@ -134,9 +134,10 @@ Results Evaluator::evaluate(const Scene& scene, const std::vector<Column>& point
             impl_->maker(values));
     CollectedResults collected(run.entries());
     const RunOutcome outcome = run.compute(collected);
-    TableLayout layout = table_layout(values, outcome.plan, run.entries().axes());
+    TableLayout layout = table_layout(values, run);
+    layout.quantities = output_quantities(values);
     layout.head.attributes = all_attributes(values, layout, outcome, options.history);
-    Results results = make_results(collected.take(), output_quantities(values), layout.head);
+    Results results = make_results(collected.take(), layout);
     results.integrand_evaluations = outcome.evaluation.evaluations;
     return results;
   });

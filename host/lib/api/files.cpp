@@ -32,6 +32,8 @@ Points load_points(const std::filesystem::path& path, PointsKind kind, std::vect
   check_output_is_no_input(output, inputs);
   std::vector<std::string> results = {"status"};
   for (const QuantityDescription& quantity : kQuantities) results.emplace_back(quantity.name);
+  for (const Key& key : keys())
+    for (const DerivativeColumn& column : derivative_columns({key.key})) results.push_back(column.name);
   return read_points(path.string(), kind, results);
 }
 
@@ -57,8 +59,8 @@ void add_left_out(ReportBuilder& report, const Points& points) {
   report.value("left_out", points.left_out);
 }
 
-ResultCsv points_csv(const std::filesystem::path& path, const Points& points, const Quantities& quantities) {
-  return {path, points.header, quantities,
+ResultCsv points_csv(const std::filesystem::path& path, const Points& points, const TableLayout& layout) {
+  return {path, points.header, layout,
           [&points](std::string& text, std::size_t row) { (text += points.rows[row]) += ','; }};
 }
 
@@ -127,7 +129,8 @@ Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& 
     SceneEntries entries = point_entries(values, points);
     check_writable(path);
     Run run(values, std::move(entries), options, impl_->maker(values));
-    ResultCsv csv = points_csv(path, points, output_quantities(values));
+    ResultCsv csv =
+        points_csv(path, points, {.quantities = output_quantities(values), .derivatives = run.derivatives()});
     double rows_s = 0.0;
     CallbackSink rows([&](const SceneEntries&, const std::vector<PointResult>& results) {
       const Clock::time_point start = Clock::now();

@@ -89,8 +89,11 @@ std::vector<Attribute> Table::file_attributes() const {
 
 void Table::write(const std::filesystem::path& path) const { write_table(impl_->table, path); }
 
-Results make_results(const std::vector<PointResult>& points, const Quantities& quantities, const TableHead& head) {
-  return {{result_columns(points, quantities)}, quantities, head.stokes_units, head.attributes};
+Results make_results(const std::vector<PointResult>& points, const TableLayout& layout) {
+  return {{result_columns(points, layout.quantities, layout.derivatives)},
+          layout.quantities,
+          layout.head.stokes_units,
+          layout.head.attributes};
 }
 
 std::string to_csv(const std::vector<Column>& points, const Results& results) {
@@ -104,7 +107,8 @@ std::string to_csv(const std::vector<Column>& points, const Results& results) {
   for (const Quantity quantity : quantities) check(describe(quantity).name, results[quantity].size(), false);
   std::string header;
   for (const Column& column : points) header += column.name + ',';
-  return header + result_header(quantities) + '\n' +
+  for (const DerivativeColumn& column : results.derivatives) check(column.name, column.values.size(), false);
+  return header + result_header(quantities, results.derivatives) + '\n' +
          result_rows(results, count, quantities, [&](std::string& text, std::size_t row) {
            for (const Column& column : points) {
              append_number(text, column.values[column.values.size() == 1 ? 0 : row]);

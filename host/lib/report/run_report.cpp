@@ -64,13 +64,15 @@ void add_times(ReportBuilder& report, const RunOutcome& run) {
   const RunSummary& summary = run.summary;
   const double named_s = e.setup_s + e.kernel_s + e.sums_s + e.curves_s + e.beams_s + e.transfer_s +
                          summary.response_basis_s + summary.radiometry_s + summary.check_s + run.spectral_rule_s +
-                         run.estimates_s + run.file_s;
+                         run.estimates_s + run.derivatives_s + run.file_s;
   report.row_if(e.evaluator != "vulkan", "of that", "{:.3f} s in sums of the host", e.sums_s);
   report.row("", "{:.3f} s in the spectral rule, {:.3f} s in the response basis, {:.3f} s in reflectance curves",
              key("spectral_rule_s", run.spectral_rule_s), key("response_basis_s", summary.response_basis_s),
              key("reflectance_curves_s", e.curves_s));
   report.row("", "{:.3f} s to move data of kernels, {:.3f} s in radiometry, {:.3f} s waiting for the file",
              key("transfer_s", e.transfer_s), key("radiometry_s", summary.radiometry_s), key("file_s", run.file_s));
+  report.row_if(run.derivatives_s > 0.0, "", "{:.3f} s in derivatives, without their kernels",
+                key("derivatives_s", run.derivatives_s));
   report.row("", "{:.3f} s in the check, {:.3f} s in estimates, {:.3f} s in the rest", key("check_s", summary.check_s),
              key("estimates_s", run.estimates_s), key("other_s", std::max(run.wall_s - named_s, 0.0)));
 }

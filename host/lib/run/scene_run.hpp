@@ -79,6 +79,7 @@ struct RunOutcome {
   // Parts of wall_s. `summary` and `evaluation` have others.
   double spectral_rule_s = 0.0;  ///< for the samples of the spectrum, and for the effects that follow from them
   double estimates_s = 0.0;      ///< for the estimated error of single scattering
+  double derivatives_s = 0.0;    ///< for the derivatives
   double file_s = 0.0;           ///< in which the run waited for the table to be written
 };
 
@@ -87,13 +88,16 @@ struct RunOutcome {
 class Run {
  public:
   /// `scene` must outlive the object. Calls `options.progress` when all inputs are read, then makes the evaluator if
-  /// one is needed. Errors: errors of make_evaluator; Cancelled.
+  /// one is needed. Errors: errors of scene_derivatives() and make_evaluator; Cancelled.
   Run(const SceneValues& scene, SceneEntries entries, const RunOptions& options, const EvaluatorMaker& make_evaluator);
 
   const SceneEntries& entries() const { return entries_; }
   const EffectPlan& plan() const { return outcome_.plan; }
   /// Describes the evaluator and its work. If the run needs no evaluator, the device and the other texts are "none".
   const EvaluationReport& evaluation() const { return outcome_.evaluation; }
+  const std::vector<std::string>& derivative_keys() const { return derivative_keys_; }
+  /// The columns of the derivatives by these keys, without values.
+  const std::vector<DerivativeColumn>& derivatives() const { return derivatives_; }
   std::vector<SceneEntries> parts() const;
 
   /// Computes all parts and passes their results to `sink`. Results that miss the tolerance are computed again.
@@ -107,6 +111,8 @@ class Run {
  private:
   const SceneValues& scene_;
   SceneEntries entries_;
+  std::vector<std::string> derivative_keys_;
+  std::vector<DerivativeColumn> derivatives_;
   Progress progress_;
   ModelEvaluator* evaluator_ = nullptr;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

@@ -201,6 +201,14 @@ TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const
   return layout;
 }
 
+TableLayout table_layout(const SceneValues& scene, const Run& run) {
+  TableLayout layout = table_layout(scene, run.plan(), run.entries().axes());
+  layout.derivatives = run.derivatives();
+  if (!layout.derivatives.empty())
+    layout.head.attributes.push_back({kDerivativeKeys, fmt::format("{}", fmt::join(run.derivative_keys(), ","))});
+  return layout;
+}
+
 void choose_variables(TableLayout& layout, const std::vector<std::string>& names) {
   if (names.empty()) return;
   std::vector<std::string> allowed;
@@ -218,17 +226,19 @@ void choose_variables(TableLayout& layout, const std::vector<std::string>& names
 std::string run_identity(const SceneValues& scene, const std::string& evaluator, const RunOptions& options) {
   const std::set<std::string> names(options.quantities.begin(), options.quantities.end());
   return fmt::format(
-      "program dolp {} ({}); evaluator {}; precision {}; keep_all {}; quantities {}; scene {}; data fnv1a64:{:016x}",
+      "program dolp {} ({}); evaluator {}; precision {}; keep_all {}; quantities {}; derivatives {}; scene {}; data "
+      "fnv1a64:{:016x}",
       program_version(), program_commit(), evaluator, to_name(scene.accuracy.precision),
       options.keep_all ? "yes" : "no", names.empty() ? "all" : fmt::format("{}", fmt::join(names, ",")),
-      scene_hash(scene), data_hash(scene));
+      options.derivatives.empty() ? "none" : fmt::format("{}", fmt::join(options.derivatives, ",")), scene_hash(scene),
+      data_hash(scene));
 }
 
 TableValues table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results) {
   TableValues table;
   table.axes = part.axes();
   table.labels = layout.head.labels;
-  static_cast<ResultColumns&>(table) = result_columns(results, layout.quantities);
+  static_cast<ResultColumns&>(table) = result_columns(results, layout.quantities, layout.derivatives);
   if (!layout.has_status) table.status.clear();
   return table;
 }

@@ -21,6 +21,8 @@ Quantities output_quantities(const SceneValues& scene, const EffectPlan* plan = 
 
 /// The layout of the table over `axes` (a grid or a part of it), with all attributes that are known before the run.
 TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const Axes& axes);
+/// The layout of the table that a run computes, with its derivatives.
+TableLayout table_layout(const SceneValues& scene, const Run& run);
 
 /// Keeps only the variables with these names; all if there are none. Errors: InputError that lists the allowed names.
 void choose_variables(TableLayout& layout, const std::vector<std::string>& names);

@@ -222,7 +222,7 @@ SceneEntries shard_entries(const SceneValues& scene, const Shard& shard) {
 RunOutcome write_table(const SceneValues& scene, const TableJob& job, const EvaluatorMaker& make_evaluator) {
   Run run(scene, shard_entries(scene, job.shard), job.options, make_evaluator);
   const std::string identity = run_identity(scene, job);
-  TableLayout layout = table_layout(scene, run.plan(), run.entries().axes());
+  TableLayout layout = table_layout(scene, run);
   choose_variables(layout, job.options.quantities);
   layout.head.attributes.push_back({kIdentity, identity});
   if (!job.shard.is_none()) layout.head.attributes.push_back({kShard, shard_text(job.shard)});
@@ -304,6 +304,7 @@ std::size_t ShardSet::checked_number(const TableReader& reader, const std::strin
     throw InputError(fmt::format("{}: is a shard of another table: it has {}", path, *differs));
   const bool has_same_curves = spectral_data_text(head) == spectral_data_text(first);
   if (shard->count != count_ || reader.layout().quantities != layout_.quantities ||
+      reader.layout().derivatives.size() != layout_.derivatives.size() ||
       reader.layout().has_status != layout_.has_status || head.stokes_units != first.stokes_units || !has_same_curves) {
     throw InputError(fmt::format("{}: is shard {}, of another table than {}: it has other variables or units", path,
                                  shard_text(*shard), paths_.begin()->second));

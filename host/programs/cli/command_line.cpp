@@ -110,6 +110,8 @@ std::vector<OptionRow> option_rows() {
        "I/N: this part of the grid, into FILE with .I-of-N before its suffix; auto: in a Slurm array"},
       {"table", "--quantities", &Options::quantities,
        "NAME,NAME,...: the variables to write, e.g. dolp,error_estimate,status; all when not given"},
+      {"table eval lookup", "--derivatives", &Options::derivatives,
+       "KEY,KEY,...: derivatives of dolp and q_over_i by numbers of the scene, e.g. surface.n,surface.sigma"},
       {"table", "--resume", &Options::resume, "continue where an interrupted run of the same scene stopped"},
       {"table response eval mueller plan fit explore", "--set", &Options::overrides,
        "KEY=VALUE: any scene key, e.g. surface.masking=none"},

@@ -77,7 +77,9 @@ Report verify_device(const Options& options, const Progress& progress) {
 int evaluate_points(const Scene& scene, const Options& options) {
   const Report report = make_evaluator(options, scene)
                             .write_points(scene, options.points_path, options.output_path,
-                                          {options.keep_all, ProgressBar(options.quiet).callback()});
+                                          {.keep_all = options.keep_all,
+                                           .progress = ProgressBar(options.quiet).callback(),
+                                           .derivatives = names_in(options.derivatives)});
   return finish(report, options);
 }
 
@@ -96,7 +98,7 @@ int run_table(const Options& options) {
   const Report report = make_evaluator(options, scene)
                             .write_table(scene, options.output_path,
                                          {options.keep_all, ProgressBar(options.quiet).callback(), options.command_line,
-                                          options.resume, names_in(options.quantities)},
+                                          options.resume, names_in(options.quantities), names_in(options.derivatives)},
                                          shard);
   return finish(report, options);
 }

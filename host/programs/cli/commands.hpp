@@ -17,7 +17,7 @@ struct Options {
   std::vector<std::string> overrides;  ///< the texts KEY=VALUE of --set
   std::string tolerance, precision, device, evaluator;
   bool json = false, quiet = false, strict = false, keep_all = false;
-  std::string shard, quantities;
+  std::string shard, quantities, derivatives;
   std::vector<std::string> shards;
   bool resume = false;
   std::size_t samples = 64, seed = 1, between = 0;

@@ -21,7 +21,7 @@ from ._scene import Scene
 
 
 def table(scene: Scene, *, evaluator: str | None = None, device: str = "", keep_all: bool = False,
-          quantities: Iterable[str] = (), **axes: Array) -> xr.Dataset:
+          quantities: Iterable[str] = (), derivatives: Iterable[str] = (), **axes: Array) -> xr.Dataset:
     """The table over the scene's grid: a Dataset with the contents of the table's file, and with
     the names of materials and bands as an index, as in `t.sel(material="iron", band="8-14")`.
 
@@ -31,6 +31,10 @@ def table(scene: Scene, *, evaluator: str | None = None, device: str = "", keep_
     a second coordinate along sigma; `t.swap_dims(sigma="wind_m_s").sel(wind_m_s=5)` selects a wind.
 
     `quantities`: the variables of the table, such as `["dolp", "status"]`; all if there are none.
+
+    `derivatives`: keys of numbers of the scene, such as `["surface.n"]`. The table then also has `d_dolp__surface_n` and
+    `d_q_over_i__surface_n`, per unit of the key, and their estimated error, `derivative_error__surface_n`. They are NaN
+    where a step leaves the domain, such as k = 0.
 
     Any other number of the scene can be an axis, with its key as the name. The program then computes one table for each
     value and joins the tables. Only attributes equal in all tables remain. `lookup` takes other values of the key, as in
@@ -45,8 +49,8 @@ def table(scene: Scene, *, evaluator: str | None = None, device: str = "", keep_
     key = next((name for name in axes if "." in name), None)
     if key is None:
         on_axes = with_axes(native_scene(scene), axes)
-        whole = table_dataset(*native_evaluator(scene, evaluator, device).table(on_axes, flag("keep_all", keep_all),
-                                                                                word_list("quantities", quantities)))
+        whole = table_dataset(*native_evaluator(scene, evaluator, device).table(
+            on_axes, flag("keep_all", keep_all), word_list("quantities", quantities), word_list("derivatives", derivatives)))
         warn_of_model(scene, whole.get("status", 0), whole.attrs)
         return whole
     columns = [column for column, *_ in _native.axes() if column != "temperature_K" or column in axes]
@@ -54,12 +58,12 @@ def table(scene: Scene, *, evaluator: str | None = None, device: str = "", keep_
     others = {name: values for name, values in axes.items() if name != key}
     values = np.array(axis_values(key, axes[key]))
     return concatenated([table(scene.with_({key: value}), evaluator=evaluator, device=device, keep_all=keep_all,
-                               quantities=quantities, **others)
+                               quantities=quantities, derivatives=derivatives, **others)
                          for value in values.tolist()], key, values)
 
 
 def write_table(scene: Scene, path: Path, *, evaluator: str | None = None, device: str = "", keep_all: bool = False,
-                resume: bool = False, quantities: Iterable[str] = (), **axes: Array) -> str:
+                resume: bool = False, quantities: Iterable[str] = (), derivatives: Iterable[str] = (), **axes: Array) -> str:
     """Writes the table that `table` would return to a file (.nc, .csv or .npy). It does so part by part, so that memory
     does not grow with the size of the table.
 
@@ -74,12 +78,13 @@ def write_table(scene: Scene, path: Path, *, evaluator: str | None = None, devic
     if key := next((name for name in axes if "." in name), None):
         raise InputError(f"axes: {key} is no axis of a file; write a file for each value, of scene.with_({{{key!r}: VALUE}})")
     on_axes = with_axes(native_scene(scene), axes)
-    return native_evaluator(scene, evaluator, device).write_table(on_axes, native_path("path", path), flag("keep_all", keep_all),
-                                                                  flag("resume", resume), word_list("quantities", quantities))
+    return native_evaluator(scene, evaluator, device).write_table(
+        on_axes, native_path("path", path), flag("keep_all", keep_all), flag("resume", resume),
+        word_list("quantities", quantities), word_list("derivatives", derivatives))
 
 
 def evaluate(scene: Scene, *, evaluator: str | None = None, device: str = "", keep_all: bool = False,
-             **points: Array) -> xr.Dataset:
+             derivatives: Iterable[str] = (), **points: Array) -> xr.Dataset:
     """The quantities of a table at points: a Dataset with the shape to which the arrays of `points` broadcast.
 
     `points` (theta_deg, sigma or wind_m_s, q, wavelength_um, n, k): arrays of the same shape are combined value by
@@ -95,11 +100,18 @@ def evaluate(scene: Scene, *, evaluator: str | None = None, device: str = "", ke
     (('theta', 'sigma'), (2, 3))
     >>> dolp.evaluate(scene, theta_deg=40, **{"surroundings.temperature_K": [250, 290]}).dolp.round(4).values
     array([0.0179, 0.0043])
+
+    `derivatives`: see `table`.
+
+    >>> d = dolp.evaluate(scene, theta_deg=40, derivatives=["surface.sigma"])
+    >>> abs(d.d_dolp__surface_sigma.item()) > 1000 * d.derivative_error__surface_sigma.item()
+    True
     """
-    return _evaluated(scene, evaluator, device, keep_all, points)
+    return _evaluated(scene, evaluator, device, keep_all, points, derivatives)
 
 
-def _evaluated(scene: Scene, evaluator: str | None, device: str, keep_all: bool, points: Mapping[str, Array]) -> xr.Dataset:
+def _evaluated(scene: Scene, evaluator: str | None, device: str, keep_all: bool, points: Mapping[str, Array],
+               derivatives: Iterable[str] = ()) -> xr.Dataset:
     """Computes points for `evaluate` and `lookup`, so warnings name the line that called one of them."""
     native, engine = native_scene(scene), native_evaluator(scene, evaluator, device)
     frame, columns = columns_of(points, native.labels(), has_keys=True)
@@ -109,7 +121,7 @@ def _evaluated(scene: Scene, evaluator: str | None, device: str, keep_all: bool,
     _check_varied("points", varied, columns)
 
     def run(own: _native.Scene, of_scene: dict[str, np.ndarray]) -> _native.Parts:
-        return engine.evaluate(own, of_scene, flag("keep_all", keep_all))
+        return engine.evaluate(own, of_scene, flag("keep_all", keep_all), word_list("derivatives", derivatives))
 
     results = dataset_at(
         _over_keys(run, native, columns, varied) if varied and 0 not in frame.shape else run(native, columns), frame)

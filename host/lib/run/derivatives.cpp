@@ -1,0 +1,168 @@
+#include "run/derivatives.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <dolp/errors.hpp>
+#include <limits>
+#include <utility>
+
+#include "base/text.hpp"
+#include "model/slopes.hpp"
+#include "run/scene_run.hpp"
+#include "scene/scene_keys.hpp"
+#include "table/table.hpp"
+
+namespace dolp {
+namespace {
+
+constexpr double kStepTolerance = 1e-8;
+constexpr double kStep = 0.01;  // the error of order h^4 and the bounds of the results over h are then similar
+constexpr const char* kThetaKey = "grid.theta_deg";
+constexpr const char* kWindKey = "surface.wind_m_s";
+
+/// Keys whose values entries may have themselves.
+constexpr std::array<std::pair<Axis, const char*>, 8> kAxisKeys = {{{Axis::kTheta, kThetaKey},
+                                                                    {Axis::kSigma, "surface.sigma"},
+                                                                    {Axis::kSigma, kWindKey},
+                                                                    {Axis::kQ, "surface.q"},
+                                                                    {Axis::kN, "surface.n"},
+                                                                    {Axis::kK, "surface.k"},
+                                                                    {Axis::kWavelength, "spectrum.wavelength_um"},
+                                                                    {Axis::kTemperature, "emission.temperature_K"}}};
+
+/// The axis on which the entries have the values of the key; nullopt if the scene has the value.
+std::optional<Axis> key_axis(const SceneEntries& entries, const std::string& key) {
+  const auto found = std::ranges::find(kAxisKeys, key, [](const auto& pair) { return std::string_view(pair.second); });
+  return found != kAxisKeys.end() && entries.has_values(found->first) ? std::optional(found->first) : std::nullopt;
+}
+
+bool has_wind(const SceneValues& scene) { return scene.surface.wind_m_s.has_value() || !scene.wind_m_s.empty(); }
+
+bool is_number_of(const SceneValues& scene, const SceneEntries& entries, const std::string& key) {
+  const SceneKey* const known = find_scene_key(key);
+  if (key == kThetaKey) return true;
+  if (!known || known->description.type != Key::Type::kNumber || key.starts_with("accuracy.")) return false;
+  const auto has_films = [](const SceneVariant& variant) { return !variant.films.empty(); };
+  if (known->description.layer > 0 && std::ranges::any_of(entries.variants(), has_films)) return false;
+  if (key == kWindKey) return has_wind(scene);
+  if (key == "surface.sigma") return !has_wind(scene);
+  if (key == "surface.q" && scene.surface.distribution == Distribution::kGaussian) return false;
+  return key_axis(entries, key) || known->value(scene);
+}
+
+/// The step from x. It is 0, which makes the derivative NaN, if x is outside the range or at one of its ends.
+double step_at(double x, const NumberRange& range) {
+  if (!range.contains(x)) return 0.0;
+  const double below = std::isfinite(range.min) ? x - range.min : std::max(std::abs(x), 1.0);
+  return std::min(kStep * below, 0.5 * (range.max - x));
+}
+
+double wind_from_sigma(double sigma) {
+  const double still = sigma_of_wind(0.0);
+  const double unit = sigma_of_wind(1.0);
+  return (sigma - still) * (sigma + still) / ((unit - still) * (unit + still));
+}
+
+/// A function of one entry's own value, or of the value of the scene, as results at four values.
+class Steps {
+ public:
+  Steps(const SceneValues& scene, const SceneEntries& entries, const std::string& key)
+      : scene_(scene),
+        entries_(entries),
+        key_(key),
+        axis_(key_axis(entries, key)),
+        range_(find_scene_key(key)->description.range) {}
+
+  /// The step of an entry.
+  double step(const SceneEntry& entry) const {
+    if (!axis_) return step_at(find_scene_key(key_)->value(scene_)->number, range_);
+    return step_at(to_key(entries_.value(entry, *axis_)), range_);
+  }
+
+  /// The results at x + `factor` times the step. Empty if the scene cannot have this value.
+  std::vector<PointResult> results(double factor, ModelEvaluator& evaluator, const Progress& progress) const {
+    const auto moved = [&](double x) { return x + factor * step_at(x, range_); };
+    std::optional<SceneValues> changed;
+    try {
+      changed = axis_ ? scene_ : with_settings(scene_, {{key_, moved(find_scene_key(key_)->value(scene_)->number)}});
+    } catch (const InputError&) {
+      return {};
+    }
+    changed->accuracy.tolerance = std::min(scene_.accuracy.tolerance, kStepTolerance);
+    if (evaluator.has_double()) changed->accuracy.precision = Precision::kDouble;
+    if (!axis_) return evaluate_scene(*changed, entries_, evaluator, progress);
+    const auto change = [&](double own) { return from_key(moved(to_key(own))); };
+    return evaluate_scene(*changed, entries_.changed(*axis_, change), evaluator, progress);
+  }
+
+ private:
+  double to_key(double own) const { return key_ == kWindKey ? wind_from_sigma(own) : own; }
+  double from_key(double value) const { return key_ == kWindKey ? sigma_of_wind(value) : value; }
+
+  const SceneValues& scene_;
+  const SceneEntries& entries_;
+  std::string key_;
+  std::optional<Axis> axis_;
+  NumberRange range_;
+};
+
+std::string per_unit(const std::string& unit) {
+  if (unit == "1") return unit;
+  return unit.find(' ') == std::string::npos ? unit + "-1" : "(" + unit + ")-1";
+}
+
+}  // namespace
+
+std::vector<DerivativeColumn> scene_derivatives(const SceneValues& scene, const SceneEntries& entries,
+                                                const std::vector<std::string>& keys) {
+  for (const std::string& key : keys) {
+    if (std::ranges::count(keys, key) > 1)
+      throw InputError(fmt::format("derivatives: {}: appears twice", one_line(key)));
+    if (is_number_of(scene, entries, key)) continue;
+    throw InputError(fmt::format(
+        "derivatives: {}: is no number of this scene; must be a key with a number that the scene has, such as "
+        "surface.sigma, or grid.theta_deg (see dolp keys)",
+        one_line(key)));
+  }
+  std::vector<DerivativeColumn> columns = derivative_columns(keys);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const std::string& key = keys[i / kDerivativesPerKey];
+    columns[i].units = per_unit(find_scene_key(key)->description.unit);
+  }
+  return columns;
+}
+
+void add_derivatives(const SceneValues& scene, const SceneEntries& entries, const std::string& key,
+                     ModelEvaluator& evaluator, const Progress& progress, std::span<PointResult> results) {
+  const Steps steps(scene, entries, key);
+  std::array<std::vector<PointResult>, 4> at;
+  bool is_inside = true;
+  for (std::size_t i = 0; i < at.size() && is_inside; ++i) {
+    constexpr std::array<double, 4> kFactors = {-1.0, 1.0, -0.5, 0.5};
+    at[i] = steps.results(kFactors[i], evaluator, progress);
+    is_inside = !at[i].empty();
+  }
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    std::vector<double>& derivatives = results[i].derivatives;
+    const double step = is_inside ? steps.step(entries[i]) : 0.0;
+    if (!(step > 0.0)) {
+      derivatives.insert(derivatives.end(), kDerivativesPerKey, std::numeric_limits<double>::quiet_NaN());
+      continue;
+    }
+    double error = 0.0;
+    for (const Quantity quantity : {Quantity::kDolp, Quantity::kQOverI}) {
+      const auto value = [&](std::size_t j) { return at[j][i][quantity]; };
+      const double wide = (value(1) - value(0)) / (2.0 * step);
+      const double narrow = (value(3) - value(2)) / step;
+      derivatives.push_back((4.0 * narrow - wide) / 3.0);
+      error = std::max(error, std::abs(narrow - wide) / 3.0);
+    }
+    const auto bound = [&](std::size_t j) { return at[j][i][Quantity::kErrorEstimate]; };
+    derivatives.push_back(error + ((bound(0) + bound(1)) / 6.0 + (bound(2) + bound(3)) * (4.0 / 3.0)) / step);
+  }
+}
+
+}  // namespace dolp

@@ -1,0 +1,222 @@
+// Derivatives of results by numbers of the scene, in memory and in files.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+
+#include "computed_scene.hpp"
+#include "error_text.hpp"
+#include "reference/reference_evaluator.hpp"
+#include "run/derivatives.hpp"
+#include "run/table_run.hpp"
+#include "scene/points.hpp"
+#include "table/table_file.hpp"
+#include "temporary_file.hpp"
+
+namespace dolp {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kScene = R"toml(
+[surface]
+n = 1.5
+k = 0.1
+sigma = 0.2
+q = 3.0
+masking = "smith"
+diffuse = 0.1
+specular = 0.8
+[emission]
+temperature_K = 300
+[surroundings]
+temperature_K = 250
+[spectrum]
+wavelength_um = 10
+[grid]
+theta_deg = [20, 70]
+)toml";
+
+/// The results at the scene's grid or at points, with the derivatives by `keys`.
+std::vector<PointResult> results_with(const SceneValues& scene, const SceneEntries& entries,
+                                      const std::vector<std::string>& keys, ModelEvaluator& evaluator) {
+  Run run(scene, entries, {.derivatives = keys}, [&] { return &evaluator; });
+  CollectedResults results(run.entries());
+  run.compute(results);
+  return results.take();
+}
+std::vector<PointResult> results_with(const SceneValues& scene, const std::vector<std::string>& keys) {
+  CpuEvaluator evaluator;
+  return results_with(scene, grid_entries(scene), keys, evaluator);
+}
+
+/// Q/I of the emission of a smooth surface with a real index.
+std::complex<double> smooth_q_over_i(std::complex<double> n, double theta_deg) {
+  const double theta = theta_deg * std::numbers::pi / 180.0;
+  const std::complex<double> inside = std::sqrt(n * n - std::sin(theta) * std::sin(theta));
+  const std::complex<double> s = (std::cos(theta) - inside) / (std::cos(theta) + inside);
+  const std::complex<double> p = (n * n * std::cos(theta) - inside) / (n * n * std::cos(theta) + inside);
+  return (p * p - s * s) / (2.0 - s * s - p * p);
+}
+
+TEST(Derivatives, OfASmoothSurfaceByN_AreThoseOfFresnelsEquations) {
+  const SceneValues scene = parse(kScene, {"surface.sigma=0", "surface.k=0", "surface.diffuse=0", "surface.specular=1",
+                                           "surroundings=none", "grid.sigma=[0]"});
+  const std::vector<PointResult> results = results_with(scene, {"surface.n"});
+  constexpr double kImaginaryStep = 1e-20;  // Im f(n + ih) / h is the derivative without cancellation
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const double theta_deg = scene.grid[Axis::kTheta][i];
+    const double right = smooth_q_over_i({1.5, kImaginaryStep}, theta_deg).imag() / kImaginaryStep;
+    const std::vector<double>& found = results[i].derivatives;
+    ASSERT_EQ(found.size(), 3U);
+    EXPECT_LE(std::abs(found[1] - right), found[2]) << theta_deg;
+    EXPECT_LE(std::abs(found[0] + right), found[2]) << "Q < 0, so DOLP = -Q/I";
+    EXPECT_LT(found[2], 1e-4 * std::abs(right));
+  }
+}
+
+TEST(Derivatives, OfARoughSurface_AgreeWithDifferencesOfTheReference) {
+  const std::vector<std::pair<std::string, double>> values = {{"surface.n", 1.5},
+                                                              {"surface.k", 0.1},
+                                                              {"surface.sigma", 0.2},
+                                                              {"surface.q", 3.0},
+                                                              {"surface.specular", 0.8},
+                                                              {"surface.diffuse", 0.1},
+                                                              {"emission.temperature_K", 300.0},
+                                                              {"surroundings.temperature_K", 250.0},
+                                                              {"spectrum.wavelength_um", 10.0}};
+  const SceneValues scene = parse(kScene);
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : values) keys.push_back(key);
+  const std::vector<PointResult> results = results_with(scene, keys);
+  constexpr double kShare = 1e-3;  // the difference then errs by 1e-6 and by the reference's 1e-10 over the step
+  ReferenceEvaluator reference;
+  for (std::size_t j = 0; j < values.size(); ++j) {
+    const auto& [key, value] = values[j];
+    const auto moved = [&](double share) {
+      const SceneValues changed = with_settings(scene, {{key, value * (1.0 + share)}, {"accuracy.tolerance", 1e-10}});
+      return evaluate_scene(changed, grid_entries(changed), reference, {});
+    };
+    const std::vector<PointResult> above = moved(kShare), below = moved(-kShare);
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      const double right = (above[i][Quantity::kQOverI] - below[i][Quantity::kQOverI]) / (2.0 * kShare * value);
+      const std::vector<double>& found = results[i].derivatives;
+      const double change_per_value = 1e-5 / value;  // error of the difference of the reference, in practice
+      EXPECT_LE(std::abs(found[3 * j + 1] - right), found[3 * j + 2] + change_per_value) << key << ", entry " << i;
+      EXPECT_LT(found[3 * j + 2], 1e-4 / value) << key;
+    }
+  }
+}
+
+TEST(Derivatives, OnAxesAndAtPoints_AreThoseOfTheScene) {
+  const std::vector<std::string> keys = {"surface.sigma", "surface.n", "emission.temperature_K"};
+  const SceneValues grid = parse(kScene, {"grid.sigma=[0.2, 0.4]", "grid.n=[1.4, 1.5]", "grid.temperature_K=[300]"});
+  const std::vector<PointResult> right = results_with(parse(kScene), keys);
+  const std::vector<PointResult> on_axes = results_with(grid, keys);
+  CpuEvaluator evaluator;
+  const SceneValues scene = parse(kScene);
+  const SceneEntries points = point_entries(
+      scene,
+      parse_points("theta_deg,sigma,n\n20,0.2,1.5\n70,0.2,1.5\n70,0.4,1.4\n", "p.csv", PointsKind::kDirections, {}));
+  const std::vector<PointResult> at_points = results_with(scene, points, keys, evaluator);
+  for (std::size_t theta = 0; theta < 2; ++theta) {
+    const std::size_t entry = 4 + 2 * theta;  // n varies slower than theta, which varies slower than sigma
+    for (std::size_t i = 0; i < right[theta].derivatives.size(); ++i) {
+      const std::size_t of_error = i / 3 * 3 + 2;
+      const double bound = 2.0 * right[theta].derivatives[of_error];
+      EXPECT_NEAR(on_axes[entry].derivatives[i], right[theta].derivatives[i], bound);
+      EXPECT_NEAR(at_points[theta].derivatives[i], right[theta].derivatives[i], bound);
+    }
+  }
+}
+
+TEST(Derivatives, ByTheWind_FollowFromThoseBySigma) {
+  const std::vector<std::string> sea = {"surface.sigma={}", "surface.wind_m_s=5", "surface.distribution=gaussian",
+                                        "surface.q={}"};
+  const SceneValues windy = parse(kScene, sea);
+  std::vector<std::string> calm = sea;
+  calm[0] = "surface.sigma=" + std::to_string(windy.surface.sigma);
+  calm[1] = "surface.wind_m_s={}";
+  const std::vector<PointResult> by_wind = results_with(windy, {"surface.wind_m_s"});
+  const std::vector<PointResult> by_sigma = results_with(parse(kScene, calm), {"surface.sigma"});
+  const double sigma_per_wind = 0.25 * 0.00512 / windy.surface.sigma;  // sigma^2 = (0.003 + 0.00512 U) / 2
+  for (std::size_t i = 0; i < by_wind.size(); ++i)
+    EXPECT_NEAR(by_wind[i].derivatives[1], by_sigma[i].derivatives[1] * sigma_per_wind, 1e-6);
+}
+
+TEST(Derivatives, AtAnEndOfTheDomain_AreNan) {
+  const SceneValues scene = parse(kScene, {"surface.k=0", "surface.specular=0.9", "grid.theta_deg=[0, 40, 90]"});
+  const std::vector<PointResult> results =
+      results_with(scene, {"surface.k", "surface.diffuse", "surface.specular", "grid.theta_deg"});
+  for (const PointResult& result : results) {
+    ASSERT_EQ(result.derivatives.size(), 12U);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_TRUE(std::isnan(result.derivatives[i])) << "k = 0";
+  }
+  EXPECT_TRUE(std::isnan(results[0].derivatives[9])) << "theta = 0";
+  EXPECT_TRUE(std::isfinite(results[1].derivatives[9]));
+  EXPECT_TRUE(std::isnan(results[2].derivatives[9])) << "theta = 90";
+}
+
+TEST(Derivatives, ByWhatIsNoNumberOfTheScene_AreRefused) {
+  const SceneValues scene = parse(kScene);
+  for (const char* key :
+       {"surface.masking", "accuracy.tolerance", "path.transmittance", "surface.wind_m_s", "n", "grid.n"}) {
+    const std::string error = error_text([&] { results_with(scene, {key}); });
+    EXPECT_NE(error.find(std::string("derivatives: ") + key + ": is no number of this scene"), std::string::npos)
+        << error;
+  }
+  EXPECT_NE(error_text([&] {
+              results_with(scene, {"surface.n", "surface.n"});
+            }).find("appears twice"),
+            std::string::npos);
+}
+
+class DerivativeFiles : public testing::Test {
+ protected:
+  fs::path at(const std::string& name) const { return folder_.path() / name; }
+  void write(const std::string& name, const Shard& shard = {}) const {
+    CpuEvaluator evaluator;
+    write_table(parse(kScene), {at(name), shard, {.derivatives = {"surface.n", "emission.temperature_K"}}, "cpu"},
+                [&] { return &evaluator; });
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST_F(DerivativeFiles, OfAllFormatsAndOfShards_HaveTheSameValues) {
+  write("t.nc");
+  write("t.csv");
+  write("s.1.nc", {1, 2});
+  write("s.2.nc", {2, 2});
+  ShardSet({at("s.1.nc").string(), at("s.2.nc").string()}).merge(at("m.nc"), "test");
+  const TableValues table = read_table(at("t.nc"));
+  ASSERT_EQ(table.derivatives.size(), 6U);
+  EXPECT_EQ(table.derivatives[0].name, "d_dolp__surface_n");
+  EXPECT_EQ(table.derivatives[4].name, "d_q_over_i__emission_temperature_K");
+  EXPECT_EQ(table.derivatives[4].units, "K-1");
+  EXPECT_EQ(table.derivatives[5].name, "derivative_error__emission_temperature_K");
+  const TableValues merged = read_table(at("m.nc"));
+  ASSERT_EQ(merged.derivatives.size(), 6U);
+  const std::vector<PointResult> right = results_with(parse(kScene), {"surface.n", "emission.temperature_K"});
+  for (std::size_t j = 0; j < 6; ++j) {
+    for (std::size_t i = 0; i < right.size(); ++i) EXPECT_EQ(table.derivatives[j].values[i], right[i].derivatives[j]);
+    EXPECT_EQ(merged.derivatives[j].values, table.derivatives[j].values);
+  }
+  std::ifstream file(at("t.csv"));
+  std::string header;
+  std::getline(file, header);
+  EXPECT_NE(header.find(",d_dolp__surface_n,d_q_over_i__surface_n,derivative_error__surface_n,"), std::string::npos);
+  EXPECT_TRUE(header.ends_with(",status"));
+  std::string row;
+  while (std::getline(file, row) && row.starts_with('#')) {
+  }
+  EXPECT_EQ(std::ranges::count(row, ','), std::ranges::count(header, ','));
+}
+
+}  // namespace
+}  // namespace dolp

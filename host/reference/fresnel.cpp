@@ -1,5 +1,7 @@
 #include "reference/fresnel.hpp"
 
+#include "reference/film_spread.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -50,6 +52,7 @@ FresnelCoefficients measured_coefficients(const MeasuredReflectance& measured, d
 FresnelCoefficients fresnel(const FacetOptics& optics, double cos_beta) {
   if (optics.measured) return measured_coefficients(*optics.measured, cos_beta);
   if (optics.films.empty()) return bare_coefficients(optics.index, cos_beta);
+  if (has_spread(optics)) return mean_coefficients(optics, cos_beta);
   const auto r = stack_amplitudes<std::complex<double>>(optics, cos_beta, (1.0 - cos_beta) * (1.0 + cos_beta));
   return {r.s, r.p, 1.0 - std::norm(r.s), 1.0 - std::norm(r.p)};
 }

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "reference/film_spread.hpp"
 #include "reference/fresnel.hpp"
 #include "reference/groove_beam.hpp"
 #include "reference/moments.hpp"
@@ -279,14 +280,17 @@ ReferenceMueller reference_scattering(const Surface& surface, const FacetOptics&
   const Vector facet = sum(out.k, scaled<Real>(-1, in.k));  // 2 cos(beta) times the facet's normal
   const Real cos2_beta = dot(facet, facet) / 4;
   const auto tan2_alpha = static_cast<double>((facet[0] * facet[0] + facet[1] * facet[1]) / (facet[2] * facet[2]));
-  const auto r = fresnel_amplitudes<Complex>(constants, sqrt(cos2_beta), 1 - cos2_beta);
-
+  ReferenceMueller facet_matrix{};
+  for (const auto& [stack, weight] : reference::single_stacks(constants)) {
+    const auto r = fresnel_amplitudes<Complex>(stack, sqrt(cos2_beta), 1 - cos2_beta);
+    add(facet_matrix, scaled_matrix(mueller_from_jones(jones_matrix(in, out, r)), weight));
+  }
   const reference::Slopes slopes(surface.distribution, surface.sigma, surface.q);
   const reference::Attenuation attenuation(slopes, surface.masking, reference::zenith_from_deg(theta_i_deg),
                                            reference::zenith_from_deg(theta_r_deg), kMaskingTolerance);
   const double factor =
       0.25 * slopes.facet_density(tan2_alpha) * attenuation(tan2_alpha, static_cast<double>(cos2_beta));
-  return scaled_matrix(mueller_from_jones(jones_matrix(in, out, r)), factor);
+  return scaled_matrix(facet_matrix, factor);
 }
 
 ReferenceMueller reference_pbrdf(const Surface& surface, const FacetOptics& constants, double theta_i_deg,

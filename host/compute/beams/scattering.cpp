@@ -16,6 +16,7 @@
 #include "beams/beam_geometry.hpp"
 #include "beams/further_bounces.hpp"
 #include "beams/in_plane_masking.hpp"
+#include "model/films.hpp"
 #include "model/slopes.hpp"
 #include "model/smooth_surface.hpp"
 
@@ -77,8 +78,8 @@ FacetReflection covered_reflection(const BeamGeometry& geometry, const FacetOpti
   const SmoothAbsorptance absorbed = smooth_absorptance(optics, c);
   const double m01 = 0.5 * absorbed.split * geometry.sin2_beta;
   if (optics.measured) return {1.0 - absorbed.s - m01, m01, 0.0};
-  const ReflectedAmplitudes r = film_amplitudes(optics, c);
-  return {std::norm(r.s) - m01, m01, std::conj(r.s) * r.p};
+  const FilmReflection r = film_reflection(optics, c);
+  return {r.r_s - m01, m01, r.cross};
 }
 
 FacetReflection facet_reflection(const BeamAngles& angles, const BeamGeometry& geometry, const FacetOptics& optics) {

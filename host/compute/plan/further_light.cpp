@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "model/angles.hpp"
+#include "model/films.hpp"
 #include "model/smooth_surface.hpp"
 
 namespace dolp {
@@ -69,10 +70,8 @@ Reflection reflection(const FacetOptics& optics, double cosine) {
     const SmoothAbsorptance absorbed = smooth_absorptance(optics, cosine);
     return {1.0 - 0.5 * (absorbed.s + absorbed.p), 0.5 * (absorbed.p - absorbed.s), 0.0};
   }
-  const ReflectedAmplitudes r = film_amplitudes(optics, cosine);
-  const double s = std::norm(r.s);
-  const double p = std::norm(r.p);
-  return {0.5 * (s + p), 0.5 * (s - p), -std::conj(r.s) * r.p};
+  const FilmReflection r = film_reflection(optics, cosine);
+  return {0.5 * (r.r_s + r.r_p), 0.5 * (r.r_s - r.r_p), -r.cross};
 }
 
 /// Turns the light by the angle whose double has the cosine and sine `twice`, reflects it, and turns it back.

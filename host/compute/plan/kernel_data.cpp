@@ -14,6 +14,7 @@
 #include "base/parallel_ranges.hpp"
 #include "base/stopwatch.hpp"
 #include "model/angles.hpp"
+#include "model/films.hpp"
 #include "model/response_basis.hpp"
 #include "model/slopes.hpp"
 #include "model/smooth_surface.hpp"

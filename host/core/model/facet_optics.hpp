@@ -17,6 +17,7 @@ struct OpticalConstants {
 struct Film {
   OpticalConstants index;
   double thickness = 0.0;  ///< in vacuum wavelengths
+  double spread = 0.0;     ///< standard deviation of the thickness over the surface, in vacuum wavelengths
   friend auto operator<=>(const Film&, const Film&) = default;
 };
 

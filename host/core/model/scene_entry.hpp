@@ -40,9 +40,9 @@ struct SceneEntry {
   std::uint32_t variant = 0;              ///< position in SceneEntries::variants
 };
 
-/// The n, k or thickness of one film, which an entry uses instead of the scene's value.
+/// The n, k, thickness or its spread of one film, which an entry uses instead of the scene's value.
 struct FilmValue {
-  enum class Part : std::uint8_t { kN, kK, kThickness };
+  enum class Part : std::uint8_t { kN, kK, kThickness, kSpread };
   std::size_t layer = 0;  ///< counts from 0, from the outside in
   Part part = Part::kThickness;
   double value = 0.0;

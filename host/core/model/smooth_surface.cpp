@@ -6,49 +6,12 @@
 #include <limits>
 #include <numbers>
 
+#include "model/films.hpp"
+
 namespace dolp {
 namespace {
 
 using Complex = std::complex<double>;
-
-// The operators * and / of std::complex and std::sqrt guard against overflow and NaN. Here nothing overflows, and the
-// functions below take a fraction of the time.
-Complex product(Complex a, Complex b) {
-  return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
-}
-
-Complex quotient(Complex a, Complex b) {
-  const double inverse = 1.0 / (b.real() * b.real() + b.imag() * b.imag());
-  return {(a.real() * b.real() + a.imag() * b.imag()) * inverse, (a.imag() * b.real() - a.real() * b.imag()) * inverse};
-}
-
-/// Domain: an imaginary part of at least 0, which the root has, too.
-Complex root(Complex square) {
-  const double x = square.real(), y = square.imag();
-  if (y == 0.0) return x >= 0.0 ? Complex(std::sqrt(x), 0.0) : Complex(0.0, std::sqrt(-x));
-  const double larger = std::sqrt(0.5 * (std::sqrt(x * x + y * y) + std::abs(x)));
-  const double smaller = larger > 0.0 ? 0.5 * y / larger : 0.0;
-  return x >= 0.0 ? Complex(larger, smaller) : Complex(smaller, larger);
-}
-
-/// A medium at one angle: N^2, and q = sqrt(N^2 - sin^2 beta) with an imaginary part of at least 0.
-struct Wave {
-  Complex square;
-  Complex q;
-};
-
-Wave wave_in(const OpticalConstants& index, double cosine) {
-  const double n = index.n, k = index.k;
-  const Complex square((n - k) * (n + k), 2.0 * n * k);
-  return {square, root({(n - 1.0) * (n + 1.0) - k * k + cosine * cosine, square.imag()})};
-}
-
-/// Tangential fields of s or p light at a depth. `flux` / `field` is the admittance q (s) or q / N^2 (p) of the wave
-/// there.
-struct Fields {
-  Complex field;
-  Complex flux;
-};
 
 SmoothAbsorptance bare_absorptance(const OpticalConstants& index, double cosine) {
   // Powers of a tiny N underflow. If n and k are both below kLeast, kLeast replaces n. Results change by up to 4e-75.
@@ -94,8 +57,8 @@ SmoothAbsorptance between_rows(const MeasuredReflectance& measured, std::size_t 
 
 SmoothAbsorptance covered_absorptance(const FacetOptics& optics, double cosine) {
   if (optics.measured) return between_rows(*optics.measured, optics.measured->row_above(beta_deg_at(cosine)), cosine);
-  const ReflectedAmplitudes r = film_amplitudes(optics, cosine);
-  return {std::max(1.0 - std::norm(r.s), 0.0), std::max(1.0 - std::norm(r.p), 0.0)};
+  const FilmReflection r = film_reflection(optics, cosine);
+  return {std::max(1.0 - r.r_s, 0.0), std::max(1.0 - r.r_p, 0.0)};
 }
 
 /// Adds `split`, (R_s - R_p) / sin^2(beta), to absorptances. Near normal incidence, where it is 0 / 0, it is
@@ -119,43 +82,6 @@ SmoothAbsorptance with_split(const Absorptance& absorptance_at, double cosine) {
 }
 
 }  // namespace
-
-ReflectedAmplitudes film_amplitudes(const FacetOptics& optics, double cosine) {
-  constexpr double kFourPi = 4.0 * std::numbers::pi;
-  const Wave medium = wave_in(optics.index, cosine);
-  Fields s{1.0, medium.q};
-  Fields p{1.0, quotient(medium.q, medium.square)};
-  // The characteristic matrix of each film, times 2 exp(i delta), from the inside out. So nothing overflows in thick
-  // films. Amplitudes of single interfaces would be 0 / 0 where two of them cancel, as at grazing incidence on n = 1.
-  for (std::size_t j = optics.films.size(); j-- > 0;) {
-    const Wave film = wave_in(optics.films[j].index, cosine);
-    const double scale = kFourPi * optics.films[j].thickness;
-    // exp(2 i delta) is passed (cos + i sin). Half the angle gives 1 - exp(2 i delta) without cancellation.
-    const double absorbed = -std::expm1(-scale * film.q.imag());
-    const double passed = 1.0 - absorbed;
-    const double sine = std::sin(0.5 * scale * film.q.real());
-    const double imaginary = 2.0 * passed * sine * std::cos(0.5 * scale * film.q.real());
-    const Complex difference(absorbed + 2.0 * passed * sine * sine, -imaginary);
-    const Complex sum = 2.0 - difference;
-    const Complex over_q = film.q == 0.0 ? Complex(0.0, -scale) : quotient(difference, film.q);
-    const Complex times_q = product(film.q, difference);
-    s = {product(sum, s.field) + product(over_q, s.flux), product(times_q, s.field) + product(sum, s.flux)};
-    p = {product(sum, p.field) + product(product(film.square, over_q), p.flux),
-         product(quotient(times_q, film.square), p.field) + product(sum, p.flux)};
-  }
-  return {quotient(cosine * s.field - s.flux, cosine * s.field + s.flux),
-          quotient(cosine * p.field - p.flux, cosine * p.field + p.flux)};
-}
-
-double fringe_count(const FacetOptics& optics) {
-  double fringes = 0.0;
-  for (const Film& film : optics.films) {
-    const double normal = wave_in(film.index, 1.0).q.real();
-    const double grazing = wave_in(film.index, 0.0).q.real();
-    fringes += 2.0 * film.thickness * (normal - grazing);
-  }
-  return fringes;
-}
 
 SmoothAbsorptance smooth_absorptance(const FacetOptics& optics, double cosine) {
   if (optics.is_bare()) return bare_absorptance(optics.index, cosine);

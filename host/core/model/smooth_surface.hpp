@@ -1,28 +1,11 @@
 #pragma once
 
-#include <complex>
 #include <vector>
 
 #include "model/facet_optics.hpp"
 #include "model/moments.hpp"
 
 namespace dolp {
-
-struct ReflectedAmplitudes {
-  std::complex<double> s;
-  std::complex<double> p;
-};
-
-/// Amplitude reflection coefficients of a medium under films.
-/// Equation: r begins as the coefficient of the interface between the medium and the innermost film. From there
-/// outward, each film replaces r by (r_j + r e^(2 i delta)) / (1 + r_j r e^(2 i delta)). r_j is the coefficient of the
-/// film's outer interface, delta = 2 pi d sqrt(N^2 - sin^2 beta) / lambda for its thickness d and index N.
-/// Source: Born and Wolf, Principles of Optics, section 1.6. Conventions: r_p = -r_s at normal incidence.
-/// Domain: cosine in (0, 1].
-ReflectedAmplitudes film_amplitudes(const FacetOptics& optics, double cosine);
-
-/// Number of interference fringes between grazing and normal incidence, summed over the films.
-double fringe_count(const FacetOptics& optics);
 
 /// Absorptances of a smooth surface, s = 1 - R_s and p = 1 - R_p.
 struct SmoothAbsorptance {
@@ -32,7 +15,7 @@ struct SmoothAbsorptance {
 };
 
 /// Equation: a bare medium has 1 - R_s = 4 c Re(w) / |c + w|^2 and 1 - R_p = 4 c Re(conj(N^2) w) / |N^2 c + w|^2, where
-/// c is the cosine and w = sqrt(N^2 - 1 + c^2). Under films 1 - R is 1 - |r|^2, with r from film_amplitudes.
+/// c is the cosine and w = sqrt(N^2 - 1 + c^2). Under films R is from film_reflection().
 /// Domain: cosine c in (0, 1], n > 0, k >= 0. Total reflection (n < 1, k = 0) gives exactly 0.
 /// Accuracy: nothing cancels for a bare medium, even if it reflects nearly everything. With films the error is 1e-14,
 /// and the relative error of `split` is 1e-10.

@@ -150,7 +150,8 @@ FacetOptics Surface::optics_at(double wavelength_um) const {
   }
   optics.index = material.at(wavelength_um);
   for (const Layer& layer : coating)
-    optics.films.push_back({layer.material.at(wavelength_um), layer.thickness_um / wavelength_um});
+    optics.films.push_back({layer.material.at(wavelength_um), layer.thickness_um / wavelength_um,
+                            layer.thickness_spread_um / wavelength_um});
   return optics;
 }
 

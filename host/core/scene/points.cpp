@@ -39,10 +39,12 @@ struct ColumnRule {
   }
 };
 
-/// Adds a rule for each name in `names` that means n, k or thickness of a film, such as "surface.coating.1.n".
+/// Adds a rule for each name in `names` that means n, k, thickness or spread of a film, such as "surface.coating.1.n".
 void append_film_rules(std::vector<ColumnRule>& rules, const std::vector<std::string>& names) {
-  static const std::map<std::string, FilmValue::Part> kParts = {
-      {"n", FilmValue::Part::kN}, {"k", FilmValue::Part::kK}, {"thickness_um", FilmValue::Part::kThickness}};
+  static const std::map<std::string, FilmValue::Part> kParts = {{"n", FilmValue::Part::kN},
+                                                                {"k", FilmValue::Part::kK},
+                                                                {"thickness_um", FilmValue::Part::kThickness},
+                                                                {"thickness_spread_um", FilmValue::Part::kSpread}};
   for (const std::string& name : names) {
     const SceneKey* const key = find_scene_key(name);
     if (!key || key->description.layer == 0 || std::ranges::find(rules, name, &ColumnRule::name) != rules.end())

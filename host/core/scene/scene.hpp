@@ -44,6 +44,7 @@ struct Material {
 struct Layer {
   Material material;
   double thickness_um = 0.0;
+  double thickness_spread_um = 0.0;  ///< standard deviation of the thickness over the surface
 };
 
 /// Reflectances at ascending wavelengths. If `measured` has only one element, it holds for every wavelength.

@@ -199,6 +199,11 @@ std::vector<SceneKey> layer_keys(std::size_t layer) {
       number(
           begin + "thickness_um", "um", kThicknessUmRange, "required", "thickness of the film",
           [=](auto& s) { return &coating_layer(s, layer).thickness_um; }, has_layer),
+      number(
+          begin + "thickness_spread_um", "um", kThicknessUmRange, "0",
+          "standard deviation of the thickness over the surface, which blurs the interference; at most two films have "
+          "one",
+          [=](auto& s) { return &coating_layer(s, layer).thickness_spread_um; }, has_layer),
   };
   for (SceneKey& key : keys) key.description.layer = layer;
   return keys;

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "base/text.hpp"
+#include "model/films.hpp"
 #include "scene/key_hints.hpp"
 #include "scene/scene_keys.hpp"
 
@@ -234,6 +235,16 @@ void check_scattering(const SceneValues& scene, const SceneDocument& document) {
   if (is_direct) check_needs(document, "emission.model", {{can_be_direct, maskings}});
 }
 
+void check_coating(const SceneValues& scene, const SceneDocument& document) {
+  std::size_t varied = 0;
+  for (std::size_t i = 0; i < scene.surface.coating.size(); ++i) {
+    if (scene.surface.coating[i].thickness_spread_um > 0.0) ++varied;
+    if (varied <= kMostVariedFilms) continue;
+    document.fail(fmt::format("surface.coating.{}.thickness_spread_um", i + 1),
+                  fmt::format("at most {} films of a coating can have a spread", kMostVariedFilms));
+  }
+}
+
 void check_radiation(const SceneValues& scene, const SceneDocument& document) {
   for (const char* key : {"surroundings.vapour_cm", "surroundings.air_temperature_K"}) {
     if (!document.find(key) || built_in_sky(scene.names.profile)) continue;
@@ -270,6 +281,7 @@ SceneValues build_scene(const SceneDocument& document, const std::string& path_n
   check_smith(scene, document);
   check_radiation(scene, document);
   check_scattering(scene, document);
+  check_coating(scene, document);
   scene.document = std::make_shared<const SceneDocument>(document);
   return scene;
 }

@@ -168,6 +168,7 @@ void set_films(Surface& surface, const std::vector<FilmValue>& films) {
     if (film.part == FilmValue::Part::kN) layer.material.constant.n = film.value;
     if (film.part == FilmValue::Part::kK) layer.material.constant.k = film.value;
     if (film.part == FilmValue::Part::kThickness) layer.thickness_um = film.value;
+    if (film.part == FilmValue::Part::kSpread) layer.thickness_spread_um = film.value;
   }
 }
 

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "model/direction.hpp"
+#include "model/films.hpp"
 #include "model/smooth_surface.hpp"
 #include "spectrum/planck.hpp"
 #include "spectrum/sky_factors.hpp"
@@ -228,7 +229,10 @@ std::vector<double> fringe_ends(const SceneModel& scene) {
   const double from = 1.0 / scene.spectrum.max_um;
   const double to = 1.0 / scene.spectrum.min_um;
   double fringes = 0.0;
-  for (const Layer& layer : scene.surface.coating) {
+  const std::vector<Film> films = scene.surface.optics_at(scene.spectrum.max_um).films;
+  for (std::size_t i = 0; i < films.size(); ++i) {
+    if (is_blurred(films[i])) continue;
+    const Layer& layer = scene.surface.coating[i];
     const double n = std::max(layer.material.at(scene.spectrum.min_um).n, layer.material.at(scene.spectrum.max_um).n);
     fringes += 2.0 * layer.thickness_um * n * (to - from);
   }

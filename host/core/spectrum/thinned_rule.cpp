@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "model/films.hpp"
 #include "model/smooth_surface.hpp"
 
 namespace dolp {

@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <dolp/errors.hpp>
 #include <map>
+#include <set>
 
 #include <dolp/number_range.hpp>
 #include "base/text.hpp"
+#include "model/films.hpp"
 #include "run/scene_run.hpp"
 #include "table/table.hpp"
 
@@ -86,13 +88,22 @@ void check_shapes(const SceneValues& scene, const Points& points) {
 
 void check_films(const SceneValues& scene, const Points& points) {
   const std::vector<Layer>& coating = scene.surface.coating;
+  std::set<std::size_t> varied;
+  for (std::size_t i = 0; i < coating.size(); ++i)
+    if (coating[i].thickness_spread_um > 0.0) varied.insert(i);
   for (const auto& [film, column] : points.films) {
     const std::size_t layer = film.first + 1;
     if (layer > coating.size()) {
       throw InputError(fmt::format("{}: column of layer {}: the scene's surface.coating has {} layers", points.where(),
                                    layer, coating.size()));
     }
-    if (film.second == FilmValue::Part::kThickness || coating[film.first].material.name.empty()) continue;
+    if (film.second == FilmValue::Part::kSpread) varied.insert(film.first);
+    if (varied.size() > kMostVariedFilms)
+      throw InputError(
+          fmt::format("{}: thickness_spread_um of layer {}: at most {} films of a coating can have a spread",
+                      points.where(), layer, kMostVariedFilms));
+    const bool is_thickness = film.second == FilmValue::Part::kThickness || film.second == FilmValue::Part::kSpread;
+    if (is_thickness || coating[film.first].material.name.empty()) continue;
     throw InputError(fmt::format("{}: columns of n and k of layer {} need n and k of it in the scene, which has \"{}\"",
                                  points.where(), layer, coating[film.first].material.name));
   }

@@ -169,6 +169,8 @@ class Remarks {
       if (!scene_.names.coating[i].material.empty()) add_coarse_rows(key + "material", layer.material);
       if (layer.thickness_um >= kLikelyNanometresOfFilm)
         add(key + "thickness_um", "is in micrometres; were nanometres meant?");
+      if (layer.thickness_spread_um > layer.thickness_um)
+        add(key + "thickness_spread_um", "is above the mean thickness; thicknesses below 0 are left out");
     }
     if (!scene_.names.reflectance_file.empty()) add_reflectances("surface.reflectance_file");
     if (!scene_.names.source_file.empty()) add_gap("source.file", bridged_gap(scene_.source->table, used_um(scene_)));

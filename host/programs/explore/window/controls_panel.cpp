@@ -228,7 +228,8 @@ struct Controls {
       Film chosen = draw_material(film);
       if (is_removed) films.erase(films.begin() + static_cast<std::ptrdiff_t>(layer) - 1);
       if (!chosen.empty()) {
-        chosen.push_back(films[layer - 1].back());  // keeps the thickness, which is last in a Film
+        const Film& old = films[layer - 1];  // keeps the thickness and its spread, which are last in a Film
+        chosen.insert(chosen.end(), std::ranges::find(old, "thickness_um", &Setting::key), old.end());
         films[layer - 1] = chosen;
       }
       if (is_removed || !chosen.empty()) return session.set({coating_setting(films)});

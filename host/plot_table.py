@@ -79,8 +79,8 @@ def scene_part(dataset, part):
     try:
         keys = tomllib.loads(text_of(dataset, "scene")).get(part, {})
         for line in text_of(dataset, "scene_overrides").splitlines():
-            if line.startswith(f"{part}."):
-                kept = {} if part == "spectrum" else keys  # has one key: a wavelength or a band
+            if line.startswith(f"{part}.") and not line.startswith("spectrum.response_per"):  # no picture shows this key
+                kept = {} if part == "spectrum" else keys  # has one key: a wavelength, a band or a response
                 keys = {**kept, **tomllib.loads(line.removeprefix(f"{part}."))}
         return keys
     except ValueError:
@@ -88,9 +88,11 @@ def scene_part(dataset, part):
 
 
 def spectrum_of(dataset):
-    """The wavelength or band of the scene as text. Empty if the table has an axis of wavelengths or bands."""
+    """The wavelength, band or response of the scene as text. Empty if the table has an axis of wavelengths or bands."""
     has_axis = "wavelength" in dataset.dimensions or "band" in dataset.dimensions
     spectrum = {} if has_axis else scene_part(dataset, "spectrum")
+    if "response_file" in spectrum:
+        return "response of " + spectrum["response_file"].rsplit("/", 1)[-1]
     return "–".join(f"{end:g}" for end in np.ravel(list(spectrum.values()))) + " µm" if spectrum else ""
 
 

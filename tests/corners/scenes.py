@@ -129,7 +129,12 @@ class _Drawing:
         return drawn
 
     def _surface(self) -> dict[str, str]:
-        drawn = self._plain("surface", "n", "k", "material", "material_file", "reflectance_file", "wind_m_s")
+        drawn = self._plain("surface", "n", "k", "material", "material_file", "reflectance_file", "diffuse_file",
+                            "wind_m_s")
+        if self._chance(0.1):
+            drawn["diffuse_file"] = self._spectral_file("diffuse.csv", "reflectance")
+            drawn.pop("diffuse", None)
+            drawn.pop("diffuse_exponent", None)
         if self._chance(0.1):
             rows = sorted({0.0, 90.0, *(round(self._rng.uniform(1, 89), 1) for _ in range(self._rng.randrange(4)))})
             r_0 = self._rng.random()
@@ -146,6 +151,11 @@ class _Drawing:
         if is_plain and self._is_there("coating"):
             drawn["coating"] = f"[{', '.join(self._layer() for _ in range(self._rng.randint(1, 3)))}]"
         return drawn
+
+    def _spectral_file(self, name: str, column: str) -> str:
+        """A file with numbers from 0 to 1 at the ends of the range of wavelengths and at random places between."""
+        rows = [(x, self._rng.random()) for x in (0.1, *sorted(self._rng.uniform(2.5, 15) for _ in range(9)), 1e4)]
+        return self._file(name, f"wavelength_um,{column}", rows)
 
     def _layer(self) -> str:
         layer = self._optics("surface.coating.1.") | {"thickness_um": self._number("surface.coating.1.thickness_um")}
@@ -180,6 +190,12 @@ class _Drawing:
     def _spectrum(self) -> dict[str, str]:
         if self._chance(0.6):
             return {"wavelength_um": self._number("spectrum.wavelength_um")}
+        if self._chance(0.3):
+            low, high = self._rng.choice(_BANDS)
+            inside = sorted(self._rng.uniform(low, high) for _ in range(self._rng.randrange(6)))
+            rows = [(low, self._rng.choice((0, 1))), *((x, self._rng.random()) for x in inside), (high, 0.5)]
+            return {"response_file": self._file("response.csv", "wavelength_um,response", rows),
+                    "response_per": self._value("spectrum.response_per")}
         return {"band_um": str(list(self._rng.choice(_BANDS)))}
 
     def _accuracy(self) -> dict[str, str]:

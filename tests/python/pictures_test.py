@@ -38,6 +38,8 @@ class Pictures(PackageCase):
                 ({"title": "Plate, 8-14 um", "grid.sigma": [0.1, 0.2, 0.3]}, 1, "zenith angle", "Plate, 10 µm", "0.3"),
                 ({"spectrum.band_um": [3, 5], "grid.sigma": [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]}, 2, "zenith angle",
                  "painted plate, 3–5 µm", "0.6"),
+                ({"spectrum.response_file": str(HOST / "scenes/microbolometer.csv"), "spectrum.response_per": "photon",
+                  "grid.sigma": 0.2}, 1, "zenith angle", "painted plate, response of microbolometer.csv", "0.2"),
                 ({"geometry.mode": "bistatic", "source.irradiance": 1, "grid.sigma": 0.2}, 1, "zenith of the source",
                  "painted plate, 10 µm\nwith geometry.mode = bistatic, source.irradiance = 1", "0.2"),
                 ({**sea, "grid.wind_m_s": winds, "emission.bracket": True}, 2, "zenith angle",

@@ -192,7 +192,7 @@ void EffectBounds::add_beams(const EntriesExtent& extent, const std::vector<Face
     const double diffuse = surface.diffuse * std::pow(cos_sin_deg(theta_deg).cos, c + 1.0) * std::pow(cosine, c);
     if (surface.specular > 0.0) most_beam_qu_ = std::max(most_beam_qu_, to_exitance * f.most);
     most_beam_ = std::max(most_beam_, most_beam_qu_ + diffuse);
-    least_beam_ = std::min(least_beam_, to_exitance * f.least + diffuse);
+    least_beam_ = std::min(least_beam_, to_exitance * f.least + (surface.diffuse_table ? 0.0 : diffuse));
   }
   if (surface.scattering == Scattering::kMultiple)
     most_beam_ = most_beam_qu_ = kInfinity;  // further bounces have no closed form

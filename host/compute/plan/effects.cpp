@@ -242,7 +242,8 @@ Effect diffuse_row(const SceneValues& scene, const EffectPlan& plan) {
 Effect band_row(const SceneValues& scene, const EffectPlan& plan, const SceneEntries& entries) {
   if (!scene.spectrum.is_band()) return absent("band", "a single wavelength");
   const std::size_t count = first_rule(plan, entries)->samples.size();
-  const std::string band = fmt::format("{:g}..{:g} um", scene.spectrum.min_um, scene.spectrum.max_um);
+  const std::string band = fmt::format("{:g}..{:g} um{}", scene.spectrum.min_um, scene.spectrum.max_um,
+                                       scene.spectrum.response ? ", response of the camera" : "");
   return {"band", EffectState::kKept,
           scene.bands.size() > 1 ? fmt::format("{} bands, the first {}", scene.bands.size(), band) : band,
           count == 1 ? "one index for the whole band" : fmt::format("{} spectral samples", count)};

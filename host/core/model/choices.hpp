@@ -21,6 +21,8 @@ enum class EmissionModel { kMoments, kFresnel, kDirect };
 enum class DiffusePolarisation { kNone, kTransmission };
 enum class Mode { kHemispherical, kBistatic };
 enum class Precision { kAuto, kFloat, kDouble };
+/// Whether the response of a camera is its signal per radiant power or per photon.
+enum class ResponsePer { kPower, kPhoton };
 
 /// The names of the enumerators in scene files and reports, in the order of declaration.
 constexpr auto choice_names(Distribution) { return std::array{"cauchy", "gaussian"}; }
@@ -30,6 +32,7 @@ constexpr auto choice_names(EmissionModel) { return std::array{"moments", "fresn
 constexpr auto choice_names(DiffusePolarisation) { return std::array{"none", "transmission"}; }
 constexpr auto choice_names(Mode) { return std::array{"hemispherical", "bistatic"}; }
 constexpr auto choice_names(Precision) { return std::array{"auto", "float", "double"}; }
+constexpr auto choice_names(ResponsePer) { return std::array{"power", "photon"}; }
 
 template <class Choice>
 constexpr const char* to_name(Choice choice) requires requires {

@@ -182,6 +182,8 @@ Radiometry::Radiometry(const SceneModel& scene, SpectralRule rule, const Radiome
       kept_rule_(kept_rule(rule_, settings.kept)) {
   const KeptEffects& kept = settings.kept;
   if (!kept.moments) scene_.surface.specular = 0.0;
+  if (!kept.diffuse) rule_.diffuse.reset();
+  if (rule_.diffuse) scene_.surface.diffuse = rule_.diffuse->mean;
   if (!kept.diffuse) scene_.surface.diffuse = 0.0;
   if (!kept.emission && emission_model(scene) == EmissionModel::kDirect) {
     scene_.emission->model = EmissionModel::kMoments;  // the moments lack the direct emission
@@ -310,6 +312,7 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
   Stokes sum = stokes_sum(kept_rule_, reflectances, emissivities, model, cos_theta, !bistatic);
   Stokes sky;
   add_sky(sky, scene_.surface, kept_rule_, sky_, {diffuse.data(), diffuse.size()}, moments, cos_theta);
+  if (kept_rule_.diffuse) sky.i += kept_rule_.diffuse->surroundings + cos_theta_i * kept_rule_.diffuse->irradiance;
   sum.i += sky.i;
   sum.q += sky.q;
   sum.i_error += sky.i_error;

@@ -81,6 +81,8 @@ MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Refle
   };
   rho_i_error += spectral_error(&Reflectance::rho_i);
   rho_q_error += spectral_error(&Reflectance::rho_q);
+  if (rule.diffuse && light == MeanLight::kIncident)
+    mean.rho_i += rule.diffuse->surroundings + cos_theta * rule.diffuse->irradiance;
   mean.rho_i /= total;
   mean.rho_q /= total;
   mean.error = std::max(rho_i_error, rho_q_error) / total;

@@ -59,6 +59,7 @@ constexpr Synonyms kSynonyms[] = {
     {"", "k_d kd lambertian lambert albedo diffuse_weight diffuse_albedo", "surface.diffuse"},
     {"", "polarisation polarization", "surface.diffuse_polarisation", "the specular part is always polarised"},
     {"", "reflectance reflectivity reflectances", "surface.reflectance_file"},
+    {"", "spectral_response srf rsr quantum_efficiency qe detectivity filter", "spectrum.response_file"},
     {"", "wind wind_speed u10", "surface.wind_m_s"},
     {"", "film films layer layers coatings thin_film", "surface.coating"},
     {"", "temperature temp t surface_temperature", "emission.temperature_K"},

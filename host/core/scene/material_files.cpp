@@ -112,7 +112,7 @@ bool is_record_text(std::string_view text) { return text.starts_with("DATA:") ||
 bool is_lnk(const Material& material) { return lower_case(material.source).ends_with(".lnk"); }
 
 constexpr const char* kReflectanceHint =
-    "; if the file has a reflectance: a diffuse reflectance goes in surface.diffuse, one number from 0 to 1";
+    "; if the file has a reflectance: a diffuse reflectance goes in surface.diffuse_file";
 
 /// True if a file may be a spectrum of a reflectance library: ECOSTRESS, USGS, MODTRAN.
 bool mentions_reflectance(std::string_view text) {

@@ -64,9 +64,10 @@ struct Surface {
   double sigma = 0.0;
   std::optional<double> wind_m_s = {};  ///< wind from which sigma follows; nullopt if the scene gives sigma
   double q = 2.0;
-  double specular = 1.0;           ///< k_s in [0, 1]
-  double diffuse = 0.0;            ///< k_d in [0, 1]
-  double diffuse_exponent = -0.5;  ///< c in (-1, 0]
+  double specular = 1.0;  ///< k_s in [0, 1]
+  double diffuse = 0.0;   ///< k_d in [0, 1]; the largest k_d of the spectrum if there is a diffuse_table
+  std::shared_ptr<const SpectralTable> diffuse_table = nullptr;  ///< k_d over wavelength; null if it is a number
+  double diffuse_exponent = -0.5;                                ///< c in (-1, 0]
   DiffusePolarisation diffuse_polarisation = DiffusePolarisation::kNone;
   /// True if q must be in kSmithCauchyQRange, because smith masking needs a finite mean slope.
   bool needs_mean_slope() const { return masking == Masking::kSmith && distribution == Distribution::kCauchy; }
@@ -108,10 +109,18 @@ struct Path {
   std::optional<double> radiance;       ///< L in W m-2 sr-1 um-1, instead of a temperature
 };
 
+/// A single wavelength, a band, or the wavelengths at which the response of a camera is not 0.
 struct Spectrum {
   double min_um = 0.0;
-  double max_um = 0.0;  ///< equal to min_um for a single wavelength
+  double max_um = 0.0;                                      ///< equal to min_um for a single wavelength
+  std::shared_ptr<const SpectralTable> response = nullptr;  ///< null: 1 in the whole band
+  ResponsePer response_per = ResponsePer::kPower;
+  double photon_um = 0.0;  ///< lambda_0 of a response per photon, the wavelength of its largest row; else 0
   bool is_band() const { return max_um > min_um; }
+  /// The weight of the radiance at a wavelength of the band.
+  /// Equation: R(lambda), or R(lambda) lambda / lambda_0 for a response per photon.
+  double weight(double wavelength_um) const;
+  const char* key() const;  ///< the key of a band in the scene
   std::string label() const { return format_number(min_um) + '-' + format_number(max_um); }  ///< such as "8-14"
 };
 
@@ -132,10 +141,11 @@ struct SceneNames {
   struct OfLayer {
     std::string material, material_file;
   };
-  std::string material, material_file, reflectance_file;
+  std::string material, material_file, reflectance_file, diffuse_file;
   std::vector<OfLayer> coating;
   std::string source_preset, source_file;
   std::string profile;  ///< name of a built-in sky, or path of a file
+  std::string response_file;
 };
 
 class SceneDocument;

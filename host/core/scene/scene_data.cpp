@@ -199,6 +199,37 @@ void load_materials(SceneValues& scene, const SceneDocument& document) {
   surface.reflectance = std::make_shared<const ReflectanceTable>(std::move(table));
 }
 
+/// Makes the wavelengths of the camera's response the spectrum of the scene.
+void load_response(SceneValues& scene, const SceneDocument& document) {
+  if (!document.find("spectrum.response_file")) return;
+  const std::string prefix = document.prefix("spectrum.response_file");
+  const KnownData* const known = stored_data(scene, [](const SceneNames& all) { return all.response_file; });
+  SpectralTable table =
+      known && known->response
+          ? *known->response
+          : read_scene_file(scene, scene.names.response_file, prefix, known, [&](const std::string& path) {
+              return parse_response(read_named_file(path, prefix), path);
+            });
+  scene.spectrum = response_spectrum(std::move(table), scene.spectrum.response_per);
+}
+
+void load_diffuse(SceneValues& scene, const SceneDocument& document) {
+  if (!document.find("surface.diffuse_file")) return;
+  const std::string prefix = document.prefix("surface.diffuse_file");
+  const KnownData* const known = stored_data(scene, [](const SceneNames& all) { return all.diffuse_file; });
+  SpectralTable table =
+      known && known->diffuse
+          ? *known->diffuse
+          : read_scene_file(scene, scene.names.diffuse_file, prefix, known, [&](const std::string& path) {
+              return parse_diffuse(read_named_file(path, prefix), path);
+            });
+  check_covers(table, all_wavelengths(scene), prefix);
+  Surface& surface = scene.surface;
+  surface.diffuse = largest_value(table, all_wavelengths(scene));
+  surface.diffuse_table = std::make_shared<const SpectralTable>(std::move(table));
+  if (!scene.spectrum.is_band()) surface.diffuse = surface.diffuse_table->at(scene.spectrum.min_um);
+}
+
 void load_source(SceneValues& scene, const SceneDocument& document) {
   const bool is_preset = document.find("source.preset") != nullptr;
   if (!is_preset && !document.find("source.file")) return;
@@ -253,7 +284,9 @@ void load_named_data(SceneValues& scene, const SceneDocument& document) {
     scene.known->names = scene.names;
     scene.known->axis_names = scene.labels[Axis::kMaterial];
   }
+  load_response(scene, document);  // first, because the other data must cover its wavelengths
   load_materials(scene, document);
+  load_diffuse(scene, document);
   load_source(scene, document);
   load_profile(scene, document);
 }

@@ -249,10 +249,16 @@ std::vector<SceneKey> surface_keys() {
              [](auto& s) { return &s.surface.scattering; }),
       number("surface.specular", "1", kFractionRange, "1", "specular factor k_s",
              [](auto& s) { return &s.surface.specular; }),
-      number("surface.diffuse", "1", kFractionRange, "0", "diffuse factor k_d",
-             [](auto& s) { return &s.surface.diffuse; }),
+      number(
+          "surface.diffuse", "1", kFractionRange, "0", "diffuse factor k_d (instead of it: diffuse_file)",
+          [](auto& s) { return &s.surface.diffuse; },
+          [](const SceneValues& s) { return s.names.diffuse_file.empty(); }),
+      text("surface.diffuse_file",
+           "file with k_d over the wavelength, instead of diffuse: CSV (columns wavelength_um, reflectance), or a file "
+           "of the ECOSTRESS spectral library; with diffuse_exponent 0",
+           [](auto& s) { return &s.names.diffuse_file; }),
       number("surface.diffuse_exponent", "1", kDiffuseExponentRange, "-0.5",
-             "exponent c of the diffuse term (cos theta_i cos theta_r)^c",
+             "exponent c of the diffuse term (cos theta_i cos theta_r)^c; 0 with diffuse_file",
              [](auto& s) { return &s.surface.diffuse_exponent; }),
       choice("surface.diffuse_polarisation", Surface().diffuse_polarisation,
              "none: diffuse light is unpolarised; transmission: it is polarised when it leaves the body through the "
@@ -332,6 +338,12 @@ std::vector<SceneKey> geometry_keys() {
          if (!s.spectrum.is_band()) return std::nullopt;
          return KeyValue{.numbers = {s.spectrum.min_um, s.spectrum.max_um}};
        }},
+      text("spectrum.response_file",
+           "CSV file with the response of your camera (columns wavelength_um, response), instead of band_um",
+           [](auto& s) { return &s.names.response_file; }),
+      choice("spectrum.response_per", Spectrum().response_per,
+             "power: the response is the signal per radiant power; photon: per photon, as a quantum efficiency",
+             [](auto& s) { return &s.spectrum.response_per; }),
       choice("geometry.mode", Geometry().mode,
              "hemispherical: the results are exitances; bistatic: the results are radiances toward a fixed view; in "
              "both modes a source has the zenith theta",
@@ -420,7 +432,12 @@ const std::vector<KeyChoice>& key_choices() {
          {{{"surroundings.temperature_K"}},
           {{"surroundings.profile"}, {"surroundings.vapour_cm", "surroundings.air_temperature_K"}}}},
         {"path", {{{"path.temperature_K"}}, {{"path.radiance"}}}, false},
-        {"spectrum", {{{"spectrum.wavelength_um", "grid.wavelength_um"}}, {{"spectrum.band_um"}}, {{"grid.band_um"}}}},
+        {"surface", {{{"surface.diffuse"}}, {{"surface.diffuse_file"}}}, false},
+        {"spectrum",
+         {{{"spectrum.wavelength_um", "grid.wavelength_um"}},
+          {{"spectrum.band_um"}},
+          {{"spectrum.response_file"}, {"spectrum.response_per"}},
+          {{"grid.band_um"}}}},
     };
     for (std::size_t layer = 1; layer <= kMostLayers; ++layer) {
       const std::string table = fmt::format("surface.coating.{}", layer);

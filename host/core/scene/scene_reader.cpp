@@ -201,6 +201,15 @@ void fill_grid(SceneValues& scene, const SceneDocument& document) {
   if (grid[Axis::kQ].empty()) grid[Axis::kQ] = {scene.surface.q};
 }
 
+void fill_diffuse(SceneValues& scene, const SceneDocument& document) {
+  double& exponent = scene.surface.diffuse_exponent;
+  if (!scene.surface.diffuse_table) return;
+  if (document.find("surface.diffuse_exponent") && exponent != 0.0)
+    document.fail("surface.diffuse_exponent",
+                  fmt::format("{} must be 0, or absent, beside surface.diffuse_file", exponent));
+  exponent = 0.0;
+}
+
 void check_smith(const SceneValues& scene, const SceneDocument& document) {
   if (!scene.surface.needs_mean_slope()) return;
   const std::string what = "masking = \"smith\" with distribution = \"cauchy\" needs q in " + kSmithCauchyQRange.text();
@@ -223,7 +232,8 @@ void check_scattering(const SceneValues& scene, const SceneDocument& document) {
   }
   if (surface.diffuse_polarisation != DiffusePolarisation::kNone)
     check_needs(document, "surface.diffuse_polarisation",
-                {{surface.is_bare(), "no surface.coating or surface.reflectance_file"}});
+                {{surface.is_bare(), "no surface.coating or surface.reflectance_file"},
+                 {!surface.diffuse_table, "no surface.diffuse_file"}});
   const bool can_be_direct = keeps_projected_area(surface.masking);
   const char* const maskings = "surface.masking = \"smith\" or \"v-cavity\"";
   if (emission.has_bracket) {
@@ -278,6 +288,7 @@ SceneValues build_scene(const SceneDocument& document, const std::string& path_n
   scene.known = std::move(known);
   load_named_data(scene, document);
   fill_grid(scene, document);
+  fill_diffuse(scene, document);
   check_smith(scene, document);
   check_radiation(scene, document);
   check_scattering(scene, document);

@@ -14,8 +14,8 @@ namespace dolp {
 namespace {
 
 bool names_file(const std::string& key, const std::string& value) {
-  return key.ends_with("material_file") || key == "surface.reflectance_file" || key == "source.file" ||
-         (key == "surroundings.profile" && !built_in_sky(value));
+  const bool is_file = key.ends_with("_file") || key == "source.file";
+  return is_file || (key == "surroundings.profile" && !built_in_sky(value));
 }
 
 std::string last_part(const std::string& key) { return key.substr(key.rfind('.') + 1); }

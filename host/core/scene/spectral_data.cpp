@@ -16,9 +16,9 @@
 namespace dolp {
 namespace {
 
-SpectralTable parse_irradiance(std::string_view text, const std::string& name) {
-  const std::vector<CsvColumn> known = {{"wavelength_um", kPositiveRange, true},
-                                        {"irradiance", kNonNegativeRange, true, "irradiance_W_m2_um", "W m-2 um-1"}};
+/// Rows of a CSV with two columns, in the order of the file. A file without names has the columns in this order.
+std::vector<SpectralRow> read_rows(std::string_view text, const std::string& name,
+                                   const std::vector<CsvColumn>& known) {
   std::optional<CsvColumns> columns;
   std::vector<SpectralRow> rows;
   for (CsvReader row(text, name, kDataFile); row.next();) {
@@ -27,16 +27,62 @@ SpectralTable parse_irradiance(std::string_view text, const std::string& name) {
       continue;
     }
     if (!columns) columns = CsvColumns::in_comments(row, known).value_or(CsvColumns(known));
-    rows.push_back(
-        {columns->number(row, "wavelength_um").value(), columns->number(row, "irradiance").value(), row.line_number()});
+    rows.push_back({columns->number(row, "wavelength_um").value(), columns->number(row, known.back().name).value(),
+                    row.line_number()});
   }
+  return rows;
+}
+
+SpectralTable parse_irradiance(std::string_view text, const std::string& name) {
+  const std::vector<CsvColumn> known = {{"wavelength_um", kPositiveRange, true},
+                                        {"irradiance", kNonNegativeRange, true, "irradiance_W_m2_um", "W m-2 um-1"}};
   SpectralTable table;
-  append_rows(table, std::move(rows), {"irradiance", 0.0, kNonNegativeRange}, name);
+  append_rows(table, read_rows(text, name, known), {"irradiance", 0.0, kNonNegativeRange}, name);
   if (table.value.empty()) {
     throw InputError(
         fmt::format("{}:1: no rows; wavelength_um in {} and irradiance are expected", name, kWavelengthUmRange.text()));
   }
   return table;
+}
+
+constexpr double kPercent = 0.01;
+
+std::vector<CsvColumn> diffuse_columns(const NumberRange& range) {
+  return {{"wavelength_um", kWavelengthUmRange, true}, {"reflectance", range, true}};
+}
+
+/// True for a file of the ECOSTRESS spectral library. It begins with lines such as "Name: Concrete".
+bool is_ecostress(std::string_view text) {
+  const std::string_view first = trim(text.substr(0, text.find('\n')));
+  return first.starts_with("Name:") && text.find("Y Units:") != std::string_view::npos;
+}
+
+bool begins_with_number(std::string_view line) {
+  const std::vector<std::string_view> cells = split_cells(line, ' ');
+  return !cells.empty() && parse_number(cells.front()).has_value();
+}
+
+/// Reads the lines "Key: value" and the rows below, which have micrometres and percent.
+std::vector<SpectralRow> read_ecostress(std::string_view text, const std::string& name) {
+  const std::vector<std::string_view> lines = split_lines(text);
+  std::size_t i = 0;
+  for (; i < lines.size() && !begins_with_number(lines[i]); ++i) {
+    const std::string line = lower_case(lines[i]);
+    const auto check = [&](const char* key, const char* unit, const char* expected) {
+      if (line.starts_with(key) && line.find(unit) == std::string::npos)
+        throw InputError(fmt::format("{}:{}: {}: must be {}", name, i + 1, one_line(lines[i]), expected));
+    };
+    check("x units:", "micrometer", "Wavelength (micrometers)");
+    check("y units:", "reflectance (percent", "Reflectance (percent)");
+  }
+  std::vector<SpectralRow> rows;
+  if (i == lines.size()) return rows;
+  const CsvColumns columns(diffuse_columns({0.0, 100.0}));
+  const std::string_view body = text.substr(static_cast<std::size_t>(lines[i].data() - text.data()));
+  for (CsvReader row(body, name, {.separator = ' ', .first_line = i + 1}); row.next();)
+    rows.push_back({columns.number(row, "wavelength_um").value(), kPercent * columns.number(row, "reflectance").value(),
+                    row.line_number()});
+  return rows;
 }
 
 bool covers(const SpectralTable& table, const Spectrum& spectrum) {
@@ -77,6 +123,72 @@ double SpectralTable::at(double asked_um) const {
   }
   const double weight = std::log(clamped_um / from_um) / std::log(to_um / from_um);
   return value[i - 1] * std::pow(value[i] / value[i - 1], weight);
+}
+
+SpectralTable parse_response(std::string_view text, const std::string& name) {
+  std::vector<SpectralRow> rows =
+      read_rows(text, name, {{"wavelength_um", kWavelengthUmRange, true}, {"response", kNonNegativeRange, true}});
+  const auto fail = [&](std::size_t line, const std::string& what) {
+    throw InputError(fmt::format("{}:{}: {}", name, line, what));
+  };
+  if (rows.size() < 2) fail(1, fmt::format("{} rows; a response has at least 2 rows", rows.size()));
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const bool ascends = rows[i].wavelength_um > rows[i - 1].wavelength_um;
+    const bool should_ascend = rows[1].wavelength_um > rows[0].wavelength_um;
+    if (ascends != should_ascend || rows[i].wavelength_um == rows[i - 1].wavelength_um)
+      fail(rows[i].line, fmt::format("wavelength_um = {:.6g} after {:.6g}: the rows must be in the order of their "
+                                     "wavelengths, and each wavelength in one row",
+                                     rows[i].wavelength_um, rows[i - 1].wavelength_um));
+  }
+  if (std::ranges::all_of(rows, [](const SpectralRow& row) { return row.value == 0.0; }))
+    fail(rows.front().line, "response = 0 in all rows: must be greater than 0 in one row");
+  SpectralTable table;
+  append_rows(table, std::move(rows), {"response", 0.0, kNonNegativeRange}, name);
+  return table;
+}
+
+SpectralTable parse_diffuse(std::string_view text, const std::string& name) {
+  std::vector<SpectralRow> rows =
+      is_ecostress(text) ? read_ecostress(text, name) : read_rows(text, name, diffuse_columns(kFractionRange));
+  if (rows.empty()) throw InputError(fmt::format("{}:1: no rows; wavelength_um and reflectance are expected", name));
+  SpectralTable table;
+  append_rows(table, std::move(rows), {"reflectance", 0.0, kFractionRange}, name);
+  return table;
+}
+
+std::string spectral_text(const SpectralTable* table, const char* value) {
+  if (!table) return {};
+  std::string text = fmt::format("wavelength_um,{}\n", value);
+  for (std::size_t i = 0; i < table->value.size(); ++i)
+    text += fmt::format("{},{}\n", format_number(table->wavelength_um[i]), format_number(table->value[i]));
+  return text;
+}
+
+Spectrum response_spectrum(SpectralTable table, ResponsePer per) {
+  const auto is_positive = [](double response) { return response > 0.0; };
+  const auto first = std::ranges::find_if(table.value, is_positive) - table.value.begin();
+  const auto after = std::find_if(table.value.rbegin(), table.value.rend(), is_positive).base() - table.value.begin();
+  const double from_um = *(table.wavelength_um.begin() + std::max<std::ptrdiff_t>(first - 1, 0));
+  const double to_um = *(table.wavelength_um.begin() + std::min<std::ptrdiff_t>(after, std::ssize(table.value) - 1));
+  const auto largest = std::ranges::max_element(table.value) - table.value.begin();
+  const double photon_um = per == ResponsePer::kPhoton ? *(table.wavelength_um.begin() + largest) : 0.0;
+  return {from_um, to_um, std::make_shared<const SpectralTable>(std::move(table)), per, photon_um};
+}
+
+double Spectrum::weight(double wavelength_um) const {
+  if (!response) return 1.0;
+  return response->at(wavelength_um) * (photon_um > 0.0 ? wavelength_um / photon_um : 1.0);
+}
+
+const char* Spectrum::key() const { return response ? "spectrum.response_file" : "spectrum.band_um"; }
+
+double largest_value(const SpectralTable& table, const Spectrum& spectrum) {
+  double largest = std::max(table.at(spectrum.min_um), table.at(spectrum.max_um));
+  for (std::size_t i = 0; i < table.value.size(); ++i) {
+    const double at_um = table.wavelength_um[i];
+    if (at_um > spectrum.min_um && at_um < spectrum.max_um) largest = std::max(largest, table.value[i]);
+  }
+  return largest;
 }
 
 SpectralTable sun_irradiance() {
@@ -146,6 +258,10 @@ SceneModel at_wavelength(const SceneModel& scene, double wavelength_um) {
     material.tabulated.reset();
   };
   take_constant(at.surface.material, "surface.material: ");
+  if (const std::shared_ptr<const SpectralTable> diffuse = std::exchange(at.surface.diffuse_table, nullptr)) {
+    check_covers(*diffuse, at.spectrum, "surface.diffuse_file: ");
+    at.surface.diffuse = diffuse->at(wavelength_um);
+  }
   for (std::size_t i = 0; i < at.surface.coating.size(); ++i)
     take_constant(at.surface.coating[i].material, fmt::format("surface.coating.{}: ", i + 1));
   if (!scene.source) return at;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <dolp/number_range.hpp>
@@ -18,6 +19,24 @@ SpectralTable sun_irradiance();
 /// column names has these columns in this order. Errors: InputError if an irradiance is negative, or if the file has no
 /// rows. InputError that begins with `prefix` if the file cannot be opened.
 SpectralTable read_irradiance_file(const std::string& path, const std::string& prefix);
+
+/// The response of a camera from a CSV with the columns wavelength_um and response, in this order if they have no
+/// names. Errors: InputError if the rows are not in the order of their wavelengths, if a response is negative, or if
+/// all are 0.
+SpectralTable parse_response(std::string_view text, const std::string& name);
+
+/// A diffuse reflectance from a CSV with the columns wavelength_um and reflectance, or from a file of the ECOSTRESS
+/// spectral library. Errors: InputError with file and line.
+SpectralTable parse_diffuse(std::string_view text, const std::string& name);
+
+/// The table as a CSV that parse_response() or parse_diffuse() reads. Empty without rows. `value`: name of the column.
+std::string spectral_text(const SpectralTable* table, const char* value);
+
+/// The spectrum of a camera with the response `table`: from the first to the last wavelength at which it is not 0.
+Spectrum response_spectrum(SpectralTable table, ResponsePer per);
+
+/// The largest value of `table` in the spectrum.
+double largest_value(const SpectralTable& table, const Spectrum& spectrum);
 
 struct NamedValue {
   const char* name;

@@ -107,7 +107,9 @@ SpectralRule film_rule(SampledScene& sampled, const std::vector<double>& ends_um
   band.total.resize(band.cosines.size());
   std::vector<FilmSegment> segments;
   for (std::size_t i = 0; i + 1 < ends_um.size(); ++i) {
-    segments.push_back(film_segment(band, ends_um[i], ends_um[i + 1]));
+    FilmSegment segment = film_segment(band, ends_um[i], ends_um[i + 1]);
+    if (segment.fine.empty()) continue;  // the response is 0 in this segment
+    segments.push_back(std::move(segment));
     for (std::size_t j = 0; j < band.total.size(); ++j) add(band.total[j], segments.back().exact[j]);
   }
   SpectralRule rule;

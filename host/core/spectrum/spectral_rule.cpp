@@ -133,9 +133,10 @@ void append_fine_nodes(SampledScene& scene, double from_um, double to_um, std::v
   const double half_um = 0.5 * (to_um - from_um);
   for (std::size_t i = 0; i < FineRule::abscissa().size(); ++i) {
     const double offset_um = half_um * FineRule::abscissa()[i];
-    const double weight = half_um * FineRule::weights()[i];
-    nodes.push_back(fine_node(scene, middle_um - offset_um, weight));
-    nodes.push_back(fine_node(scene, middle_um + offset_um, weight));
+    for (const double at_um : {middle_um - offset_um, middle_um + offset_um}) {
+      const double response = scene.model.spectrum.weight(at_um);
+      if (response > 0.0) nodes.push_back(fine_node(scene, at_um, half_um * FineRule::weights()[i] * response));
+    }
   }
 }
 
@@ -151,6 +152,19 @@ std::vector<double> segment_ends(double from_um, double to_um,
   return ends;
 }
 
+std::vector<double> response_rows_um(const Spectrum& spectrum) {
+  return spectrum.response ? spectrum.response->wavelength_um : std::vector<double>{};
+}
+
+/// Rows at which the response is 0. Between two of them, a segment may have no radiation.
+std::vector<double> response_zeros_um(const Spectrum& spectrum) {
+  std::vector<double> zeros_um;
+  for (std::size_t i = 0; spectrum.response && i < spectrum.response->value.size(); ++i) {
+    if (spectrum.response->value[i] == 0.0) zeros_um.push_back(spectrum.response->wavelength_um[i]);
+  }
+  return zeros_um;
+}
+
 }  // namespace
 
 SampledScene::SampledScene(const SceneModel& scene) : model(scene) {
@@ -163,7 +177,8 @@ std::vector<FineNode> fine_nodes(SampledScene& scene, double from_um, double to_
   const SkyProfile* profile = scene_profile(scene.model);
   const std::vector<double> source_wavelengths = tabulated ? source->table.wavelength_um : std::vector<double>{};
   const std::vector<double> profile_breaks = profile ? profile->breaks_um() : std::vector<double>{};
-  const std::vector<double> ends = segment_ends(from_um, to_um, {&source_wavelengths, &profile_breaks});
+  const std::vector<double> response_rows = response_rows_um(scene.model.spectrum);
+  const std::vector<double> ends = segment_ends(from_um, to_um, {&source_wavelengths, &profile_breaks, &response_rows});
   std::vector<FineNode> nodes;
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) append_fine_nodes(scene, ends[i], ends[i + 1], nodes);
   return nodes;
@@ -358,6 +373,7 @@ void append_segment(SampledScene& sampled, double from_um, double to_um, Spectra
                     std::vector<SpectralSample>& panels) {
   const SceneModel& scene = sampled.model;
   const std::vector<FineNode> fine = fine_nodes(sampled, from_um, to_um);
+  if (fine.empty()) return;
   for (const FineNode& node : fine) rule.path_exitance += node.path;
   std::vector<double> cosines = critical_cosines(scene.surface, from_um, to_um);
   cosines.insert(cosines.end(), kProbeCosines.begin(), kProbeCosines.end());
@@ -375,6 +391,32 @@ void append_segment(SampledScene& sampled, double from_um, double to_um, Spectra
     if (segment.error <= kPanelShareOfTolerance * tolerance || 2 * count > most) break;
   }
   panels.insert(panels.end(), segment.samples.begin(), segment.samples.end());
+}
+
+SpectralRule smooth_rule(SampledScene& sampled, const std::vector<double>& ends_um) {
+  SpectralRule rule;
+  rule.relative_error = kPieceRelativeError;
+  std::vector<SpectralSample> panels;
+  for (std::size_t i = 0; i + 1 < ends_um.size(); ++i)
+    append_segment(sampled, ends_um[i], ends_um[i + 1], rule, panels);
+  rule.panels = panels.size() / kPanelNodes;
+  rule.samples.insert(rule.samples.end(), panels.begin(), panels.end());
+  return rule;
+}
+
+DiffuseSpectrum diffuse_spectrum(SampledScene& sampled) {
+  const Spectrum& band = sampled.model.spectrum;
+  const SpectralTable& k_d = *sampled.model.surface.diffuse_table;
+  const std::vector<double> ends_um = segment_ends(band.min_um, band.max_um, {&k_d.wavelength_um});
+  SpectralFactors all, diffuse;
+  for (std::size_t i = 0; i + 1 < ends_um.size(); ++i) {
+    for (const FineNode& node : fine_nodes(sampled, ends_um[i], ends_um[i + 1])) {
+      all.add(node, 1.0);
+      diffuse.add(node, k_d.at(node.wavelength_um));
+    }
+  }
+  const double mean = all.emitted > 0.0 ? diffuse.emitted / all.emitted : diffuse.width / all.width;
+  return {mean, diffuse.surroundings - mean * all.surroundings, diffuse.irradiance - mean * all.irradiance};
 }
 
 SpectralRule single_wavelength_rule(const SceneModel& scene, double wavelength_um) {
@@ -409,15 +451,12 @@ SpectralRule spectral_rule(const SceneModel& scene) {
   if (!scene.spectrum.is_band()) return single_wavelength_rule(scene, scene.spectrum.min_um);
   const std::vector<double> rows_um = scene.surface.optics_rows_um();
   const std::vector<double> fringes_um = fringe_ends(scene);
-  const std::vector<double> ends = segment_ends(scene.spectrum.min_um, scene.spectrum.max_um, {&rows_um, &fringes_um});
+  const std::vector<double> zeros_um = response_zeros_um(scene.spectrum);
+  const std::vector<double> ends =
+      segment_ends(scene.spectrum.min_um, scene.spectrum.max_um, {&rows_um, &fringes_um, &zeros_um});
   SampledScene sampled(scene);
-  if (!scene.surface.coating.empty()) return film_rule(sampled, ends);
-  SpectralRule rule;
-  rule.relative_error = kPieceRelativeError;
-  std::vector<SpectralSample> panels;
-  for (std::size_t i = 0; i + 1 < ends.size(); ++i) append_segment(sampled, ends[i], ends[i + 1], rule, panels);
-  rule.panels = panels.size() / kPanelNodes;
-  rule.samples.insert(rule.samples.end(), panels.begin(), panels.end());
+  SpectralRule rule = scene.surface.coating.empty() ? smooth_rule(sampled, ends) : film_rule(sampled, ends);
+  if (scene.surface.diffuse_table) rule.diffuse = diffuse_spectrum(sampled);
   return rule;
 }
 
@@ -431,6 +470,9 @@ SpectralRule kept_rule(SpectralRule rule, const KeptEffects& kept) {
     if (!kept.source) sample.irradiance = 0.0;
   }
   if (!kept.path_radiance) rule.path_exitance = 0.0;
+  if (!kept.diffuse) rule.diffuse.reset();
+  if (rule.diffuse && !kept.surroundings) rule.diffuse->surroundings = 0.0;
+  if (rule.diffuse && !kept.source) rule.diffuse->irradiance = 0.0;
   return rule;
 }
 

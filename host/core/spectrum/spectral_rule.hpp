@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "scene/scene.hpp"
@@ -21,7 +22,8 @@ struct KeptEffects {
   friend bool operator==(const KeptEffects&, const KeptEffects&) = default;
 };
 
-/// Integrals of radiation times a weight function over a band, in W m-2. At one wavelength: values in W m-2 um-1.
+/// Integrals of radiation times a weight function over a band, in W m-2. The response of a camera is a factor of it. At
+/// one wavelength: values in W m-2 um-1.
 struct SpectralFactors {
   double emitted = 0.0;          ///< pi B(T); 0 without [emission]
   double surroundings = 0.0;     ///< pi B(T_surr), or pi times the mean of a sky profile; 0 without [surroundings]
@@ -44,16 +46,27 @@ struct SpectralSample : SpectralFactors {
 /// Number of samples in a panel. A segment is cut into panels if rho is not smooth, as where total reflection begins.
 inline constexpr std::size_t kPanelNodes = 8;
 
+/// Diffuse reflection with a k_d that depends on the wavelength. Samples have the mean k_d, weighted with the emitted
+/// radiation, or with the width if nothing is emitted. Diffuse light is linear in k_d and does not depend on the index.
+/// So the integrals of k_d - mean times a radiation make the sums over samples exact.
+struct DiffuseSpectrum {
+  double mean = 0.0;
+  double surroundings = 0.0;  ///< with the radiation SpectralFactors::surroundings
+  double irradiance = 0.0;    ///< with the radiation SpectralFactors::irradiance
+};
+
 struct SpectralRule {
   std::vector<SpectralSample> samples;
-  double path_exitance = 0.0;   ///< pi times the path radiance; 0 without [path]
+  double path_exitance = 0.0;                   ///< pi times the path radiance; 0 without [path]
+  std::optional<DiffuseSpectrum> diffuse = {};  ///< nullopt if k_d is the same at all wavelengths
   double relative_error = 0.0;  ///< bound of the relative error of a sum over the samples outside panels
   std::size_t panels = 0;       ///< number of panels; each has kPanelNodes samples, at the end of `samples`
   std::vector<FacetOptics> indices() const;
 };
 
 /// Samples for the spectrum of a scene. A single wavelength or a constant index needs one sample. Otherwise the band is
-/// cut into segments at the rows of the material's table. A segment gets enough Gauss nodes for a smooth surface.
+/// cut into segments at the rows of the material's table. A segment gets enough Gauss nodes for a smooth surface. The
+/// rows of a response need no segments, because they are limits of the integrals of radiation times polynomials.
 /// Accuracy: SpectralRule::relative_error. It is about 1e-9 without films and panels (tests SpectralRule_*Band*).
 SpectralRule spectral_rule(const SceneModel& scene);
 

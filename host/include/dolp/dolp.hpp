@@ -108,7 +108,8 @@ class DOLP_EXPORT Scene {
   std::optional<double> number(std::string_view key) const;
   /// A key's word or text; "true" or "false" for a flag. Empty if the text is empty or the scene does not use the key.
   std::optional<std::string> word(std::string_view key) const;
-  /// The numbers of a key that has an axis, a pair of numbers or a list of pairs. Empty if the scene lacks the key.
+  /// The numbers of a key that has an axis, a pair of numbers or a list of pairs. Empty if the scene lacks the key. A
+  /// scene with a response of the camera has spectrum.band_um, the wavelengths between which the response is not 0.
   std::vector<double> numbers(std::string_view key) const;
   /// The materials and bands in [grid]. In points, the columns material and band_um contain positions in these lists.
   const AxisLabels& labels() const;
@@ -117,6 +118,8 @@ class DOLP_EXPORT Scene {
   std::string model_advice() const;  ///< the keys to change if entries have the status bit kModelInaccurate
   /// n and k of the surface at a wavelength. Errors: InputError if n or k is unknown at this wavelength.
   std::pair<double, double> refractive_index(double wavelength_um) const;
+  /// The weight of the radiance at a wavelength: the response of the camera, 1 in a band without one, and 0 outside.
+  double response(double wavelength_um) const;
 
   Scene(const Scene&) = default;
   Scene& operator=(const Scene&) = default;

@@ -154,9 +154,11 @@ std::vector<MuellerMatrix> Evaluator::mueller(const Scene& scene, const std::vec
 
 std::vector<Setting> surface_settings() {
   std::vector<Setting> settings;
-  for (const char* unused : {"emission", "source", "surroundings", "path", "surface.material", "surface.material_file",
-                             "surface.reflectance_file", "surface.coating", "surface.specular", "surface.diffuse",
-                             "spectrum.band_um", "surface.diffuse_exponent", "grid.wavelength_um", "grid.n", "grid.k"})
+  for (const char* unused :
+       {"emission", "source", "surroundings", "path", "surface.material", "surface.material_file",
+        "surface.reflectance_file", "surface.coating", "surface.specular", "surface.diffuse", "surface.diffuse_file",
+        "surface.diffuse_exponent", "spectrum.band_um", "spectrum.response_file", "spectrum.response_per",
+        "grid.wavelength_um", "grid.n", "grid.k"})
     settings.push_back({unused, {}});
   settings.push_back({"surface.n", 1.5});
   settings.push_back({"surface.k", 0.0});

@@ -135,6 +135,12 @@ std::pair<double, double> Scene::refractive_index(double wavelength_um) const {
   return {index.n, index.k};
 }
 
+double Scene::response(double wavelength_um) const {
+  const Spectrum& spectrum = impl_->scene.spectrum;
+  const bool is_inside = wavelength_um >= spectrum.min_um && wavelength_um <= spectrum.max_um;
+  return is_inside ? spectrum.weight(wavelength_um) : 0.0;
+}
+
 std::string example_scene() { return std::string(embedded_stainless_steel_toml()); }
 
 }  // namespace dolp

@@ -171,9 +171,10 @@ Model::Group Model::make_group(const SceneValues& scene, const MeasuredData& dat
 
 void Model::check_group(const Group& group) const {
   const MeasuredData& data = *group.data;
-  const bool is_tabulated = group.scene.source && group.scene.source->kind == Source::Kind::kTabulated;
-  if (varies("spectrum.wavelength_um") && (!group.scene.surface.material.is_constant() || is_tabulated))
-    throw InputError("spectrum.wavelength_um: to vary it needs n, k and a source that are constants of the scene");
+  const Surface& surface = group.scene.surface;
+  const bool has_table = group.scene.source && group.scene.source->kind == Source::Kind::kTabulated;
+  if (varies("spectrum.wavelength_um") && (!surface.material.is_constant() || surface.diffuse_table || has_table))
+    throw InputError("spectrum.wavelength_um: to vary it needs n, k, k_d and a source that are constants of the scene");
   if (data.zenith_column == "theta_i_deg" && group.scene.geometry.mode != Mode::kBistatic)
     throw InputError(data.name + ": column \"theta_i_deg\" needs geometry.mode = \"bistatic\"");
   if (!is_polarisation(data.measurements.front().observable) && !group.scene.emission)

@@ -54,9 +54,9 @@ std::vector<std::pair<Axis, std::vector<double>>> variant_columns(const SceneVal
 void check_wavelengths(const SceneValues& scene, const Points& points) {
   if (scene.spectrum.is_band()) {
     throw InputError(fmt::format(
-        "{}: column \"wavelength_um\" cannot be combined with spectrum.band_um; set spectrum.wavelength_um in "
-        "the scene, which replaces the band",
-        points.where()));
+        "{}: column \"wavelength_um\" cannot be combined with {}; set spectrum.wavelength_um in the scene, which "
+        "replaces the band",
+        points.where(), scene.spectrum.key()));
   }
   const std::vector<double>& all = *points[Axis::kWavelength];
   const auto [least, most] = std::ranges::minmax_element(all);

@@ -65,6 +65,14 @@ struct Sample {
   std::vector<double> weights;  ///< weights of the wavelengths in the integral over a band; {1} without a band
 };
 
+/// Multiplies the weights of the wavelengths at `shares` of the band by the response, unless it is 0 at all of them.
+void weight_by_response(std::vector<double>& weights, const Spectrum& band, const std::vector<double>& shares) {
+  std::vector<double> weighted;
+  for (std::size_t j = 0; j < weights.size(); ++j)
+    weighted.push_back(weights[j] * band.weight(std::lerp(band.min_um, band.max_um, shares[j])));
+  if (std::ranges::max(weighted) > 0.0) weights = weighted;
+}
+
 Sample draw_sample(const SceneValues& scene, const SceneEntries& entries, const SpectralRules& rules) {
   Sample sample{scene, spread_entries(entries), {1.0}};
   // Float is enough for an estimate. Repeating inaccurate entries in double could take longer than the whole table.
@@ -94,6 +102,7 @@ Sample draw_sample(const SceneValues& scene, const SceneEntries& entries, const 
     for (const double share : shares)
       variants.emplace_back(variant).wavelength_um = std::lerp(band.min_um, band.max_um, share);
   }
+  if (scene.spectrum.response) weight_by_response(sample.weights, scene.spectrum, shares);
   sample.scene.spectrum.max_um = sample.scene.spectrum.min_um;
   sample.entries = {std::move(all), std::move(variants)};
   return sample;

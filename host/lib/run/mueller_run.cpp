@@ -103,14 +103,15 @@ std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points&
   check_surface(scene, points);
   const Surface& surface = scene.surface;
   const bool has_own_index = points[Axis::kN] && points[Axis::kK];
-  const bool needs_one_wavelength = !surface.coating.empty() || (!surface.material.is_constant() && !has_own_index);
-  if (scene.spectrum.is_band() && needs_one_wavelength) {
-    throw InputError(
-        fmt::format("{}: spectrum.band_um: the Mueller matrix is that of one wavelength and {} depends on it; give "
-                    "spectrum.wavelength_um{}",
-                    scene.path_name,
-                    surface.coating.empty() ? fmt::format("the material \"{}\"", surface.material.name) : "a coating",
-                    surface.coating.empty() ? ", or columns n and k" : ""));
+  const bool needs_index = !surface.material.is_constant() && !has_own_index;
+  if (scene.spectrum.is_band() && (needs_index || !surface.coating.empty() || surface.diffuse_table)) {
+    const bool is_material = surface.coating.empty() && !surface.diffuse_table;
+    throw InputError(fmt::format(
+        "{}: {}: the Mueller matrix is that of one wavelength and {} depends on it; give spectrum.wavelength_um{}",
+        scene.path_name, scene.spectrum.key(),
+        is_material ? fmt::format("the material \"{}\"", surface.material.name)
+                    : (surface.diffuse_table ? "surface.diffuse_file" : "a coating"),
+        is_material ? ", or columns n and k" : ""));
   }
   if (surface.reflectance) {
     throw InputError(

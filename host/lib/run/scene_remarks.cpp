@@ -133,7 +133,7 @@ class Remarks {
     }
     add(has_grid                    ? "grid.wavelength_um"
         : !scene_.bands.empty()     ? "grid.band_um"
-        : scene_.spectrum.is_band() ? "spectrum.band_um"
+        : scene_.spectrum.is_band() ? scene_.spectrum.key()
                                     : "spectrum.wavelength_um",
         "is in micrometres; were nanometres meant?");
   }

@@ -16,6 +16,7 @@
 #include "base/text.hpp"
 #include "base/version.hpp"
 #include "run/table_scene.hpp"
+#include "scene/spectral_data.hpp"
 
 namespace dolp {
 namespace {
@@ -78,6 +79,8 @@ std::uint64_t data_hash(const SceneValues& scene) {
   hash = hashed(hashed(hash, coating_text(scene, StoredRows::kAll)), reflectance_text(scene.surface));
   hash = hashed(hash, axis_materials_text(scene, StoredRows::kAll));
   if (scene.source) add(scene.source->table);
+  for (const SpectralTable* table : {scene.spectrum.response.get(), scene.surface.diffuse_table.get()})
+    if (table) add(*table);
   if (scene.surroundings && scene.surroundings->profile) hash = hashed(hash, scene.surroundings->profile->hash());
   return hash;
 }
@@ -191,10 +194,13 @@ TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const
   const Dispersion& formula = recorded_material(axes, scene).n.formula;
   if (formula.number != 0 && !scene.materials) head.attributes.push_back({"index_n_formula", formula_text(formula)});
   const StoredRows rows = axes[Axis::kWavelength].empty() ? StoredRows::kOfSpectrum : StoredRows::kAll;
-  const std::initializer_list<Attribute> data_attributes = {{"coating", coating_text(scene, rows)},
-                                                            {"materials", axis_materials_text(scene, rows)},
-                                                            {"reflectance", reflectance_text(scene.surface)},
-                                                            {"surroundings_profile", profile_text(scene)}};
+  const std::initializer_list<Attribute> data_attributes = {
+      {"coating", coating_text(scene, rows)},
+      {"materials", axis_materials_text(scene, rows)},
+      {"reflectance", reflectance_text(scene.surface)},
+      {"diffuse", spectral_text(scene.surface.diffuse_table.get(), "reflectance")},
+      {"response", spectral_text(scene.spectrum.response.get(), "response")},
+      {"surroundings_profile", profile_text(scene)}};
   std::ranges::copy_if(data_attributes, std::back_inserter(head.attributes),
                        [](const Attribute& data) { return !std::get<std::string>(data.value).empty(); });
   layout.quantities = output_quantities(scene, &plan);

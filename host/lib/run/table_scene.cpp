@@ -72,6 +72,10 @@ std::shared_ptr<KnownData> stored_data(const TableHead& table, const std::string
   }
   if (const std::string* reflectance = find_attribute<std::string>(table, "reflectance"))
     known.reflectance = parse_reflectances(*reflectance, name + ": attribute \"reflectance\"");
+  if (const std::string* response = find_attribute<std::string>(table, "response"))
+    known.response = parse_response(*response, name + ": attribute \"response\"");
+  if (const std::string* diffuse = find_attribute<std::string>(table, "diffuse"))
+    known.diffuse = parse_diffuse(*diffuse, name + ": attribute \"diffuse\"");
   const std::string* profile = find_attribute<std::string>(table, "surroundings_profile");
   if (profile && !profile->empty()) {
     known.profile = parse_sky_profile(*profile, name + ": attribute \"surroundings_profile\"");

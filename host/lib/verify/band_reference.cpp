@@ -54,6 +54,8 @@ std::vector<double> band_breaks_um(const SceneModel& scene) {
   };
   add(scene.surface.optics_rows_um());
   if (scene.source) add(scene.source->table.wavelength_um);
+  if (scene.spectrum.response) add(scene.spectrum.response->wavelength_um);
+  if (scene.surface.diffuse_table) add(scene.surface.diffuse_table->wavelength_um);
   if (scene.surroundings && scene.surroundings->profile) add(scene.surroundings->profile->breaks_um());
   std::ranges::sort(breaks);
   return breaks;
@@ -65,6 +67,22 @@ double mean_weight_at(const SceneModel& scene, const SceneVariant& variant, doub
   if (sample.emitted != 0.0) return sample.emitted;
   const double incident = sample.irradiance * cosine + sample.surroundings;
   return incident != 0.0 ? incident : 1.0;
+}
+
+/// The response of the camera: a straight line between the rows around the wavelength, times the number of photons.
+double camera_response(const Spectrum& spectrum, double wavelength_um) {
+  if (!spectrum.response) return 1.0;
+  const std::vector<double>& rows_um = spectrum.response->wavelength_um;
+  const std::vector<double>& values = spectrum.response->value;
+  std::size_t largest = 0, after = 1;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i] > values[largest]) largest = i;
+    if (rows_um[i] < wavelength_um && i + 1 < values.size()) after = i + 1;
+  }
+  const double width_um = rows_um[after] - rows_um[after - 1];
+  const double response = values[after - 1] * (rows_um[after] - wavelength_um) / width_um +
+                          values[after] * (wavelength_um - rows_um[after - 1]) / width_um;
+  return spectrum.response_per == ResponsePer::kPower ? response : response * wavelength_um / rows_um[largest];
 }
 
 Integrals integrand(const PointResult& at, double weight) {
@@ -153,6 +171,7 @@ void integrate_new(const SceneValues& scene, std::vector<PointIntegral*>& points
       Integrals gauss = Integrals::Zero();
       for (const KronrodNode& node : kNodes) {
         const Integrals value =
+            camera_response(scene.spectrum, *variants[next].wavelength_um) *
             integrand(results[next], mean_weight_at(scene, variants[next], cos_sin_deg(zenith_deg).cos));
         interval.value += half_um * node.kronrod * value;
         gauss += half_um * node.gauss * value;

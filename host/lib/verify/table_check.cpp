@@ -96,7 +96,9 @@ BoundTerms bound_terms(const SceneModel& scene, const EffectPlan& plan) {
   terms.rounding += rule.relative_error;
   terms.tolerance = scene.accuracy.tolerance;
   if (scene.emission) terms.model = scene.emission->model;
-  if (scene.surface.diffuse > 0.0) terms.diffuse.emplace(scene.surface, scene.surface.optics_at(scene.spectrum.min_um));
+  Surface surface = scene.surface;
+  if (rule.diffuse) surface.diffuse = rule.diffuse->mean;
+  if (surface.diffuse > 0.0) terms.diffuse.emplace(surface, surface.optics_at(scene.spectrum.min_um));
   return terms;
 }
 

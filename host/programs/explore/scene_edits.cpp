@@ -23,6 +23,7 @@ bool has_air(const Scene& s) {
   const auto sky = s.word("surroundings.profile");
   return sky == "clear-sky" || sky == "overcast";
 }
+bool has_response(const Scene& s) { return s.word("spectrum.response_file").has_value(); }
 bool has_index(const Scene& s) { return !s.word("surface.reflectance_file"); }
 
 std::string with_number(const Scene& scene, const char* symbol, const std::string& key, const char* unit = "") {
@@ -103,6 +104,7 @@ std::vector<Control> controls_without_films() {
       {key("path.temperature_K"), "T_path", "L_path = (1 − τ) B(λ, T_path)", {0.0, 400.0}},
       {key("path.radiance"), "L_path", "I → τ I + L_path", {0.001, 100.0, true}},
       {key("spectrum.wavelength_um"), "λ", "B(λ, T), N(λ)", {1.0, 20.0}},
+      {key("spectrum.response_per"), "response", "weight R, or R λ/λ0 if R is per photon", {}, has_response},
       {key("geometry.mode"), "mode", "eq. (18) all around, or f of eq. (7) for one source and view"},
       {key("geometry.view_zenith_deg"), "θv", "direction of the view, eq. (2)", {0.0, 90.0}, is_bistatic},
       {key("geometry.relative_azimuth_deg"), "Δφ", "cos 2β = ωi · ωr, eq. (2)", {0.0, 360.0}, is_bistatic},

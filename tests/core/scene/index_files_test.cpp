@@ -9,7 +9,7 @@
 namespace dolp {
 namespace {
 
-constexpr Spectrum kCo2Line{10.6, 10.6};
+const Spectrum kCo2Line{10.6, 10.6};
 constexpr double kRounding = 1e-12;  // a few roundings of numbers near 1
 
 std::string sample(const std::string& name) { return fmt::format("{}/index_files/{}", DOLP_TEST_DATA_DIR, name); }
@@ -22,7 +22,7 @@ OpticalConstants index_in(const std::string& text, const std::string& name = "e.
 std::string refusal_of(const std::string& path) { return error_of(kMinimal, {"surface.material_file=" + path}); }
 
 TEST(IndexFile_SamplesOfOtherData, AreRefusedWithTheWayOut) {
-  const std::string reflectance = "a diffuse reflectance goes in surface.diffuse, one number from 0 to 1";
+  const std::string reflectance = "a diffuse reflectance goes in surface.diffuse_file";
   for (const auto& [name, expected] : {
            std::pair("opac_refr.dat",
                      "opac_refr.dat:1: the columns must be named first, in a line such as \"wavelength_um n k\""),

@@ -15,7 +15,7 @@
 namespace dolp {
 namespace {
 
-constexpr Spectrum kCo2Line{10.6, 10.6};
+const Spectrum kCo2Line{10.6, 10.6};
 // Accuracy of the expected values below, which were copied by hand.
 constexpr double kDigits = 1e-9;
 

@@ -316,6 +316,8 @@ struct Controls {
       set(is_band ? Setting{kKey, {8.0, 14.0}} : Setting{"spectrum.wavelength_um", 10.6});
     const std::vector<double> ends = session.scene().numbers(kKey);
     if (ends.empty()) return;
+    if (const auto file = session.scene().word("spectrum.response_file"))
+      coloured_text(kDimColour, "response of the camera: " + *file + "; a change of λ1 or λ2 makes it a band");
     row_label("λ1, λ2 [µm]");
     draw_ends(kKey, {ends[0], ends[1]}, [&](const std::string& low, const std::string& high) {
       return set({kKey, TomlText{fmt::format("[{}, {}]", low, high)}});
@@ -337,6 +339,7 @@ struct Controls {
     }
     heading("Spectrum and geometry");
     draw_spectrum();
+    draw_choices("spectrum");
     draw_numbers("spectrum");
     draw_choices("geometry");
     draw_numbers("geometry");

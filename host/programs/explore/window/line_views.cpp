@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t kSlopeCount = 181;
 constexpr std::size_t kMaterialCount = 240;
+constexpr std::size_t kResponseParts = 240;
 constexpr float kLineWidth = 2.0F;
 
 Scale values_range(const std::vector<NamedLine>& lines, bool is_log) {
@@ -47,13 +48,24 @@ std::string distribution_name(const Scene& scene) {
   return fmt::format("{} σ {:.4g}{}", name, scene.number("surface.sigma").value(), q);
 }
 
+/// Marks a wavelength, a band, or the response of the camera, whose largest value has the height of the plot.
 void mark_spectrum(const Plot& plot, const Scene& scene) {
   const auto [from_um, to_um] = spectrum_um(scene);
-  const float from = plot.at_position(plot.x().position(from_um), 0.0).x;
-  const float to = plot.at_position(plot.x().position(to_um), 0.0).x;
+  const std::size_t parts = scene.word("spectrum.response_file") ? kResponseParts : 1;
+  const double step_um = (to_um - from_um) / static_cast<double>(parts);
+  std::vector<double> responses;
+  for (std::size_t i = 0; i < parts; ++i)
+    responses.push_back(scene.response(from_um + (static_cast<double>(i) + 0.5) * step_um));
   plot.clip();
-  plot.list()->AddRectFilled({from, plot.min().y}, {std::max(to, from + 1.5F), plot.max().y},
-                             band_colour(current_style()));
+  for (std::size_t i = 0; i < parts; ++i) {
+    const double start_um = from_um + static_cast<double>(i) * step_um;
+    const float from = plot.at_position(plot.x().position(start_um), 0.0).x;
+    const float to = plot.at_position(plot.x().position(start_um + step_um), 0.0).x;
+    const auto height = static_cast<float>(responses[i] / std::ranges::max(responses));
+    plot.list()->AddRectFilled({from, std::lerp(plot.max().y, plot.min().y, height)},
+                               {std::max(to, parts == 1 ? from + 1.5F : to), plot.max().y},
+                               band_colour(current_style()));
+  }
   plot.unclip();
 }
 

@@ -7,8 +7,9 @@ namespace dolp {
 namespace {
 
 // A grid is cut along theta first, because kernels share work among the entries of one direction.
-constexpr std::array kCuttingOrder = {Axis::kTheta, Axis::kMaterial,    Axis::kBand,  Axis::kWavelength, Axis::kN,
-                                      Axis::kK,     Axis::kTemperature, Axis::kSigma, Axis::kQ};
+constexpr std::array kCuttingOrder = {Axis::kViewZenith,  Axis::kRelativeAzimuth, Axis::kTheta, Axis::kMaterial,
+                                      Axis::kBand,        Axis::kWavelength,      Axis::kN,     Axis::kK,
+                                      Axis::kTemperature, Axis::kSigma,           Axis::kQ};
 static_assert(kCuttingOrder.size() == kAxisCount);
 
 }  // namespace
@@ -110,6 +111,11 @@ SceneEntry SceneEntries::operator[](std::size_t entry) const {
   result.theta_deg = theta_deg()[at[Axis::kTheta]];
   result.shape = {sigma()[at[Axis::kSigma]], q()[at[Axis::kQ]]};
   if (has_own_index()) result.index = index_at(at);
+  const auto find = [&](Axis axis) {
+    return axes_[axis].empty() ? std::nullopt : std::optional(axes_[axis][at[axis]]);
+  };
+  result.view_zenith_deg = find(Axis::kViewZenith);
+  result.relative_azimuth_deg = find(Axis::kRelativeAzimuth);
   result.variant = static_cast<std::uint32_t>(variant_at(at));
   return result;
 }

@@ -136,6 +136,8 @@ const std::vector<KeyCase>& key_cases() {
       {"geometry.view_zenith_deg", "45", [](At s) { return s.geometry.view_zenith_deg == 45.0; }},
       {"geometry.relative_azimuth_deg", "-90", [](At s) { return s.geometry.relative_azimuth_deg == -90.0; }},
       {"grid.theta_deg", "[90, 0]", [](At s) { return is(s.grid[Axis::kTheta], 90.0, 0.0); }},
+      {"grid.view_zenith_deg", "[10, 70]", [](At s) { return is(s.grid[Axis::kViewZenith], 10.0, 70.0); }},
+      {"grid.relative_azimuth_deg", "[-90, 90]", [](At s) { return is(s.grid[Axis::kRelativeAzimuth], -90.0, 90.0); }},
       {"grid.sigma", "0.7", [](At s) { return is(s.grid[Axis::kSigma], 0.7); }},
       {"grid.wind_m_s", "[0, 5]",
        [](At s) {
@@ -174,6 +176,7 @@ std::vector<std::string> companions_of(const std::string& key) {
   if (key == "surroundings.air_temperature_K") return {"surroundings.profile=clear-sky"};
   if (key == "surroundings.vapour_cm") return {"surroundings.profile=clear-sky", "surroundings.air_temperature_K=330"};
   if (is_wind(key)) return {"surface.distribution=gaussian"};
+  if (key == "grid.view_zenith_deg" || key == "grid.relative_azimuth_deg") return {"geometry.mode=bistatic"};
   if (key.starts_with("surface.coating.1.material")) return {"surface.coating=[{thickness_um=1}]"};
   if (is_of_layer(key)) return {"surface.coating=[{n=1.5,thickness_um=1}]"};
   return {};

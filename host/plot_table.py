@@ -2,11 +2,14 @@
 """Draws a lookup table: DOLP against theta for several sigma, and a map over theta and sigma if both have many values.
 
 Usage: plot_table.py TABLE.nc OUT.png [--q Q] [--wavelength UM] [--temperature K] [--n N] [--k K] [--material NAME] [--band FROM-TO]
+                     [--theta DEG] [--sigma SIGMA] [--view_zenith_deg DEG] [--relative_azimuth_deg DEG]
        plot_table.py TABLE.nc OUT.png --rank THETA ...   ranks the materials of a table by DOLP at this zenith
-Of each axis except theta and sigma the picture shows one value. An option such as --q Q chooses the value nearest to Q.
-Without an option the picture shows the first band, and of other axes the value nearest to the scene's value (the middle
-value if it has none). One curve has the scene's sigma. In a table of wind speeds, wind replaces sigma. If a table has
-several materials and you choose none, each curve shows one material, with the scene's sigma.
+A bistatic table may have more view zeniths than thetas, or more relative azimuths than sigmas. Then view zenith replaces
+theta, or azimuth replaces sigma. Of each other axis the picture shows one value. An option such as --q Q chooses the
+value nearest to Q. Without an option the picture shows the first band, and of other axes the value nearest to the
+scene's value (the middle value if it has none). One curve has the scene's sigma. In a table of wind speeds, wind
+replaces sigma. If a table has several materials and you choose none, each curve shows one material, with the scene's
+sigma.
 Entries with nonzero status are faint or hatched. Needs python3-netcdf4, python3-numpy and python3-matplotlib.
 Exit status: 0 done, 2 usage or a file that is not such a table, 4 the picture could not be written.
 """
@@ -35,7 +38,7 @@ CONTOURS_PERCENT = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50)
 FAR_BEYOND = 2  # a curve that rises to more than FAR_BEYOND times the scale, at its end, leaves the axis
 SHOWN_SHARE_PERCENT = 97  # share of the entries that fit on the DOLP scale; a few much larger values may not fit
 FEW_ANGLES = 25  # a curve of at most this many zeniths has a dot at each entry
-# Least number of values of theta and of sigma for a map. A smaller map would suggest structure that the table lacks.
+# Least number of values on each of the two axes of a map. A smaller map would suggest structure that the table lacks.
 FEWEST_OF_MAP = 6
 SMALLEST_SPAN_PERCENT = 0.01  # least range of the DOLP axis, so that rounding noise does not look like a signal
 STATUS_MEANINGS = {
@@ -50,13 +53,17 @@ RHO_TOLERANCE_NOT_MET = 16
 MODEL_INACCURATE = 32  # the numbers are right for the model
 
 
-# The picture shows one value of each of these numeric axes. The texts are the symbols of the axes.
-SYMBOLS = {"q": "q", "wavelength": "λ", "temperature": "T", "n": "n", "k": "k"}
+# The numeric axes with their symbols. The picture shows one value of each axis that it is not drawn over.
+SYMBOLS = {"q": "q", "wavelength": "λ", "temperature": "T", "n": "n", "k": "k", "theta": r"$\theta$", "sigma": r"$\sigma$",
+           "view_zenith_deg": r"$\theta_v$", "relative_azimuth_deg": r"$\Delta\phi$"}
+ACROSS = {"theta": r"zenith angle $\theta$ (degree)", "view_zenith_deg": r"zenith of the view $\theta_v$ (degree)"}
+UPWARDS = {"sigma": r"roughness $\sigma$", "relative_azimuth_deg": r"relative azimuth $\Delta\phi$ (degree)"}
 NAMED = ("material", "band")  # axes whose values are names; the picture shows one of the names
 DEFAULTS = {"material": "one curve for each", "band": "the first"}
-UNITS = {"wavelength": " µm", "temperature": " K", "band": " µm"}
+UNITS = {"wavelength": " µm", "temperature": " K", "band": " µm", "theta": "°", "view_zenith_deg": "°", "relative_azimuth_deg": "°"}
 KEYS = {"temperature": ("emission", "temperature_K"), "q": ("surface", "q"), "wavelength": ("spectrum", "wavelength_um"), "n": ("surface", "n"), "k": ("surface", "k"),
-        "sigma": ("surface", "sigma"), "wind_m_s": ("surface", "wind_m_s")}  # the scene's key for each axis
+        "sigma": ("surface", "sigma"), "wind_m_s": ("surface", "wind_m_s"), "view_zenith_deg": ("geometry", "view_zenith_deg"),
+        "relative_azimuth_deg": ("geometry", "relative_azimuth_deg")}  # the scene's key for each axis
 
 
 def text_of(dataset, name):
@@ -98,7 +105,7 @@ def spectrum_of(dataset):
 
 def index_in_scene(dataset, axis):
     """Position of the axis value nearest to the scene's value; the middle position if the scene has none."""
-    part, key = KEYS[axis]
+    part, key = KEYS.get(axis, ("", ""))
     own = scene_part(dataset, part).get(key)
     along = np.asarray(dataset[axis][:])
     return int(np.argmin(np.abs(along - own))) if isinstance(own, (int, float)) else len(along) // 2
@@ -131,9 +138,17 @@ def position_of(dataset, axis, name):
     return (same or alike)[0]
 
 
+def drawn_axis(dataset, labels, wanted):
+    """The axis among `labels` with the most values, of those for which no value is wanted."""
+    axes = [axis for axis in labels if axis in dataset["dolp"].dimensions and wanted[axis] is None]
+    if not axes:
+        raise NotATable(f"needs one of the axes {', '.join(labels)} without a chosen value")
+    return max(axes, key=lambda axis: dataset.dimensions[axis].size)
+
+
 class Slice:
-    """A table's entries over theta and sigma, at one value of each other axis. Theta and sigma are sorted, DOLP is in
-    percent. In a table of wind speeds, `sigma` contains the wind speeds."""
+    """A table's entries over two axes, at one value of each other axis. The first, `x`, is a zenith. The second, `y`, is
+    sigma, the wind speed or the relative azimuth. Both are sorted, and DOLP is in percent."""
 
     def __init__(self, dataset, wanted):
         """`wanted`: a value for each axis in SYMBOLS and NAMED. If it is None, the scene's value or the first name."""
@@ -141,9 +156,12 @@ class Slice:
             if name not in dataset.variables:
                 raise NotATable(f"has no variable {name}; a table with DOLP is expected")
         axes = dataset["dolp"].dimensions
+        across, self.upwards = (drawn_axis(dataset, labels, wanted) for labels in (ACROSS, UPWARDS))
         at = {}
         self.replaced = []
         for axis, value in wanted.items():
+            if axis in (across, self.upwards):
+                continue
             if axis in axes and axis in NAMED:
                 at[axis] = 0 if value is None else position_of(dataset, axis, value)
             elif axis in axes:
@@ -155,13 +173,12 @@ class Slice:
                 raise NotATable(f"has no axis {axis}; its axes are {', '.join(axes)}")
         self.at = at
         place = tuple(at.get(axis, slice(None)) for axis in axes)
-        self.has_winds = "wind_m_s" in dataset.variables
-        theta = np.asarray(dataset["theta"][:])
-        roughness = "wind_m_s" if self.has_winds else "sigma"
-        sigma = np.asarray(dataset[roughness][:])
-        rows, columns = np.argsort(theta), np.argsort(sigma)
-        self.theta, self.sigma = theta[rows], sigma[columns]
-        self.column_in_scene = int(np.flatnonzero(columns == index_in_scene(dataset, roughness))[0])
+        self.has_winds = self.upwards == "sigma" and "wind_m_s" in dataset.variables
+        upwards = "wind_m_s" if self.has_winds else self.upwards
+        x, y = np.asarray(dataset[across][:]), np.asarray(dataset[upwards][:])
+        rows, columns = np.argsort(x), np.argsort(y)
+        self.x, self.y = x[rows], y[columns]
+        self.column_in_scene = int(np.flatnonzero(columns == index_in_scene(dataset, upwards))[0])
         self.material = names_of(dataset, "material")[at["material"]] if "material" in at else None
         self.place = ", ".join(f"{names_of(dataset, axis)[i]}{UNITS.get(axis, '')}" if axis in NAMED else
                                f"{SYMBOLS[axis]} = {dataset[axis][i]:g}{UNITS.get(axis, '')}"
@@ -169,7 +186,7 @@ class Slice:
 
         def values(name, fill):
             data = np.ma.filled(dataset[name][place], fill)
-            return data[np.ix_(rows, columns)]
+            return (data if axes.index(across) < axes.index(self.upwards) else data.T)[np.ix_(rows, columns)]
 
         self.dolp = 100.0 * values("dolp", np.nan)
         if "stokes_i" in dataset.variables:  # where I is NaN, at 90 degrees, DOLP is a limit; not drawn
@@ -182,11 +199,12 @@ class Slice:
         self.worst_error = self._worst(errors) if errors is not None else None
         self.title, self.spectrum, self.changes = title_of(dataset), spectrum_of(dataset), scene_changes(dataset)
         is_bistatic = "stokes_i" in dataset.variables and "sr-1" in dataset["stokes_i"].units
-        self.zenith = ("zenith of the source" if is_bistatic else "zenith angle") + r" $\theta$ (degree)"
-        self.is_map = min(self.theta.size, self.sigma.size) >= FEWEST_OF_MAP
+        is_source = is_bistatic and across == "theta"
+        self.zenith = r"zenith of the source $\theta$ (degree)" if is_source else ACROSS[across]
+        self.is_map = min(self.x.size, self.y.size) >= FEWEST_OF_MAP
 
-    def name_of(self, sigma):
-        return f"wind {sigma:.3g} m/s" if self.has_winds else f"$\\sigma$ = {sigma:.3g}"
+    def name_of(self, y):
+        return f"wind {y:.3g} m/s" if self.has_winds else f"{SYMBOLS[self.upwards]} = {y:.3g}{UNITS.get(self.upwards, '')}"
 
     def heading(self, subject=None):
         """The title of a picture. `subject`: what the picture shows instead of the material of the scene."""
@@ -206,7 +224,7 @@ class Slice:
         return max(np.percentile(shown, SHOWN_SHARE_PERCENT), SMALLEST_SPAN_PERCENT) if shown.size else 1.0
 
     def caption(self):
-        parts = [f"{self.theta.size} × {self.sigma.size} entries at {self.place}"]
+        parts = [f"{self.x.size} × {self.y.size} entries at {self.place}"]
         if self.worst_error is not None:
             parts.append(f"worst error estimate of DOLP {100.0 * self.worst_error:.2g} points")
         flagged = int(np.count_nonzero(self.status))
@@ -230,34 +248,34 @@ def highest_peak(curve):
 
 
 def drawn_columns(table):
-    """Indices of the sigmas to draw: at most MOST_CURVES, evenly spread. The scene's sigma replaces the nearest one."""
-    chosen = np.linspace(0, table.sigma.size - 1, min(MOST_CURVES, table.sigma.size)).round().astype(int)
+    """Positions of the values of y to draw: at most MOST_CURVES, evenly spread. The scene's value replaces the nearest."""
+    chosen = np.linspace(0, table.y.size - 1, min(MOST_CURVES, table.y.size)).round().astype(int)
     chosen[np.argmin(np.abs(chosen - table.column_in_scene))] = table.column_in_scene
     return chosen
 
 
 def table_curves(table):
-    """The curves of a table: for each drawn sigma the table, the position of sigma, and the name of the curve."""
-    return [(table, j, table.name_of(table.sigma[j])) for j in drawn_columns(table)]
+    """The curves of a table: for each drawn value of y the table, its position, and the name of the curve."""
+    return [(table, j, table.name_of(table.y[j])) for j in drawn_columns(table)]
 
 
 def draw_curves(axes, curves):
-    """`curves`: tuples of a table, the position of its sigma, and a name."""
+    """`curves`: tuples of a table, the position of a value of y, and a name."""
     colours = matplotlib.colormaps[COLOURS](np.linspace(0.0, 0.88, len(curves)))
     scale = max(table.largest(MODEL_INACCURATE) for table, _, _ in curves)
     highest = [scale]
     for colour, (table, j, name) in zip(colours, curves):
         good = np.where(table.status[:, j] == 0, table.dolp[:, j], np.nan)
-        style = {"color": colour, "marker": "o" if table.theta.size <= FEW_ANGLES else None, "markersize": 3.5}
-        axes.plot(table.theta, table.dolp[:, j], alpha=0.35, linewidth=1.2, linestyle="--", **style)
+        style = {"color": colour, "marker": "o" if table.x.size <= FEW_ANGLES else None, "markersize": 3.5}
+        axes.plot(table.x, table.dolp[:, j], alpha=0.35, linewidth=1.2, linestyle="--", **style)
         if table.bracket:
             low, high = (end[:, j] for end in table.bracket)
-            axes.fill_between(table.theta, low, high, color=colour, alpha=0.12, linewidth=0.0)
+            axes.fill_between(table.x, low, high, color=colour, alpha=0.12, linewidth=0.0)
             highest += list(high[np.isfinite(high)])
         right = table.dolp[(table.status[:, j] & ~MODEL_INACCURATE) == 0, j]
         end = np.nanmax(right, initial=0.0)
         highest.append(end if end < FAR_BEYOND * scale else highest_peak(good))
-        axes.plot(table.theta, good, linewidth=1.8, label=name, **style)
+        axes.plot(table.x, good, linewidth=1.8, label=name, **style)
     axes.set_ylim(0.0, 1.08 * max(highest))
     axes.set_ylabel("DOLP (%)")
     axes.grid(alpha=0.25, linewidth=0.6)
@@ -274,7 +292,7 @@ def draw_flags(axes, table):
     flagged = np.ma.masked_equal((table.status != 0).astype(float), 0.0)
     if flagged.count() == 0:
         return
-    grid = np.meshgrid(cell_edges(table.theta), cell_edges(table.sigma), indexing="ij")
+    grid = np.meshgrid(cell_edges(table.x), cell_edges(table.y), indexing="ij")
     grey = matplotlib.colors.ListedColormap(["0.72"])
     axes.pcolor(*grid, flagged, cmap=grey, hatch="////", edgecolor="0.55", linewidth=0)
     patch = Patch(facecolor="0.72", edgecolor="0.55", hatch="////", label="status $\\neq$ 0")
@@ -288,29 +306,29 @@ def draw_contours(axes, table):
     levels = [level for level in CONTOURS_PERCENT if shown.min() < level < table.largest()]
     if not levels:
         return
-    lines = axes.contour(table.theta, table.sigma, shown.T, levels=levels, colors="white", linewidths=0.8)
+    lines = axes.contour(table.x, table.y, shown.T, levels=levels, colors="white", linewidths=0.8)
     axes.clabel(lines, fontsize=8, fmt=lambda level: f"{level:g}%")
 
 
 def draw_map(figure, axes, table):
     shown = np.ma.masked_where((table.status != 0) | ~np.isfinite(table.dolp), table.dolp)
-    edges = cell_edges(table.theta), cell_edges(table.sigma)
+    edges = cell_edges(table.x), cell_edges(table.y)
     mesh = axes.pcolormesh(*edges, shown.T, cmap=COLOURS, vmin=0.0, vmax=table.largest(), rasterized=True)
     beyond = shown.count() > 0 and shown.max() > table.largest()
     figure.colorbar(mesh, ax=axes, pad=0.02, extend="max" if beyond else "neither").set_label("DOLP (%)")
     draw_contours(axes, table)
     draw_flags(axes, table)
-    ratio = table.sigma[-1] / table.sigma[0] if table.sigma[0] > 0.0 else 1.0
-    if ratio > 8.0:
+    ratio = table.y[-1] / table.y[0] if table.y[0] > 0.0 else 1.0
+    if ratio > 8.0 and table.upwards == "sigma":
         axes.set_yscale("log")
         axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axes.yaxis.set_major_formatter(FormatStrFormatter("%g"))
         axes.yaxis.set_minor_formatter(NullFormatter())
-    axes.set_ylabel("wind (m/s)" if table.has_winds else r"roughness $\sigma$")
+    axes.set_ylabel("wind (m/s)" if table.has_winds else UPWARDS[table.upwards])
 
 
 def draw(table, path):
-    """Draws curves and, if theta and sigma have many values, a map."""
+    """Draws curves and, if both axes have many values, a map."""
     width = 11.5 if table.is_map else 7.0
     figure, panels = new_figure(width, 1 + table.is_map)
     draw_curves(panels[0], table_curves(table))
@@ -329,7 +347,7 @@ def draw_materials(tables, path):
     some = f"The first {len(names)} of " if len(names) < len(tables) else ""
     advice = "--material NAME draws one of them, --rank THETA ranks all"
     finish(figure, panels, first, first.heading(f"{some}{len(tables)} materials"),
-           f"{first.name_of(first.sigma[first.column_in_scene])}, {first.place}; {advice}")
+           f"{first.name_of(first.y[first.column_in_scene])}, {first.place}; {advice}")
     picture_file.save(figure, path)
 
 
@@ -343,8 +361,8 @@ def new_figure(width, count):
 def finish(figure, panels, table, heading, caption):
     for axes in panels:
         axes.set_xlabel(table.zenith)
-        if table.theta.size > 1:
-            axes.set_xlim(table.theta[0], table.theta[-1])
+        if table.x.size > 1:
+            axes.set_xlim(table.x[0], table.x[-1])
     set_heading(figure, heading)
     figure.supxlabel(textwrap.fill(caption, int(14 * figure.get_figwidth())), fontsize=9, color="0.3")
 
@@ -358,7 +376,7 @@ def set_heading(figure, heading):
 def draw_ranking(tables, theta, path):
     """Draws for each material a bar (DOLP with the scene's sigma) and a line (range of DOLP over all sigma)."""
     first = next(iter(tables.values()))
-    row = int(np.argmin(np.abs(first.theta - theta)))
+    row = int(np.argmin(np.abs(first.x - theta)))
     own = {name: table.dolp[row, table.column_in_scene] for name, table in tables.items()}
     names = sorted(tables, key=lambda name: np.nan_to_num(own[name]))
     figure, axes = plt.subplots(figsize=(7.5, 1.4 + 0.22 * len(names)), dpi=150, layout="constrained")
@@ -366,15 +384,15 @@ def draw_ranking(tables, theta, path):
     bars = axes.barh(names, [own[name] for name in names], color=matplotlib.colormaps[COLOURS](0.45), height=0.7)
     for bar, is_faint in zip(bars, faint):
         bar.set_alpha(0.4 if is_faint else 1.0)
-    if first.sigma.size > 1:
+    if first.y.size > 1:
         ends = [(np.nanmin(tables[name].dolp[row]), np.nanmax(tables[name].dolp[row])) for name in names]
         axes.hlines(names, *zip(*ends), color="0.25", linewidth=1.0,
-                    label=f"{first.name_of(first.sigma[0])} to {first.sigma[-1]:.3g}")
+                    label=f"{first.name_of(first.y[0])} to {first.y[-1]:.3g}")
     if any(faint):
         axes.barh(names[:1], [0.0], color="0.5", alpha=0.4, label=r"status $\neq$ 0")
     if axes.get_legend_handles_labels()[0]:
         axes.legend(frameon=False, fontsize=9, loc="lower right")
-    axes.set_xlabel(f"DOLP (%) at {first.theta[row]:g}° with {first.name_of(first.sigma[first.column_in_scene])}, "
+    axes.set_xlabel(f"DOLP (%) at {first.x[row]:g}° with {first.name_of(first.y[first.column_in_scene])}, "
                     f"{first.place}")
     axes.set_xlim(left=0.0)
     axes.margins(y=0.01)
@@ -397,8 +415,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("table")
     parser.add_argument("picture")
-    for axis, symbol in SYMBOLS.items():
-        parser.add_argument(f"--{axis}", type=finite, help=f"draw the {symbol} nearest to it; default: the middle one")
+    for axis in SYMBOLS:
+        parser.add_argument(f"--{axis}", type=finite, help="draw the value nearest to it; default: the scene's value")
     for axis in NAMED:
         parser.add_argument(f"--{axis}", help=f"draw this {axis}; default: {DEFAULTS[axis]}")
     parser.add_argument("--rank", type=finite, metavar="THETA", help="rank the materials at this zenith")

@@ -124,8 +124,8 @@ TEST_F(Verify, GoodTable_Exit0AndEveryQuantityIsCompared) {
     names.insert(quantity["name"]);
     EXPECT_EQ(quantity["compared"], 16) << quantity;
   }
-  EXPECT_EQ(names, (std::set<std::string>{"dolp", "q_over_i", "rho_i", "rho_q", "stokes_i", "stokes_q", "stokes_u",
-                                          "stokes_v", "albedo", "emissivity_s", "emissivity_p"}));
+  EXPECT_EQ(names, (std::set<std::string>{"dolp", "q_over_i", "aolp_deg", "rho_i", "rho_q", "stokes_i", "stokes_q",
+                                          "stokes_u", "stokes_v", "albedo", "emissivity_s", "emissivity_p"}));
   const Outcome text = dolp({"verify", "t.nc"});
   EXPECT_EQ(text.status, kDone);
   EXPECT_NE(text.out.find("verdict    passed: 16 of 16 entries"), std::string::npos) << text.out;
@@ -308,8 +308,8 @@ TEST_F(Verify, ReducedVariables_AreComparedAsFarAsTheyAreThere) {
   }
   write_table(table, at("t.nc"));
   const nlohmann::json json = verify_json(kDone);
-  // These are dolp, q_over_i, stokes_i, stokes_q, albedo, emissivity_s and emissivity_p.
-  EXPECT_EQ(json["quantities"].size(), 7U);
+  // These are dolp, q_over_i, aolp_deg, stokes_i, stokes_q, albedo, emissivity_s and emissivity_p.
+  EXPECT_EQ(json["quantities"].size(), 8U);
 }
 
 TEST_F(Verify, ChangedScene_IsRefused) {

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests axes of materials, bands and temperatures, and lookups over keys."""
+"""Tests axes of materials, bands, temperatures and views, and lookups over keys."""
 import unittest
 import warnings
 
@@ -40,6 +40,21 @@ class Axes(PackageCase):
         self.assertEqual(found.material.values.tolist(), ["PET", "SiO2 amorphous quartz"])
         with self.assertRaisesRegex(dolp.InputError, "material = 'lead': must be one of gold"):
             dolp.lookup(table, material="lead", band_um="8-9", temperature_K=310, theta_deg=40)
+
+    def test_tables_and_points_over_the_view_agree(self):
+        glint = self.scene.with_({"geometry.mode": "bistatic", "source.irradiance": 5})
+        table = dolp.table(glint, view_zenith_deg=[10, 40, 70], relative_azimuth_deg=[0, 120], **{**AXES, "theta_deg": 30})
+        self.assertEqual(table.dolp.dims, ("view_zenith_deg", "relative_azimuth_deg", "theta", "sigma", "q"))
+        points = dolp.evaluate(glint, view_zenith_deg=[[10], [40], [70]], relative_azimuth_deg=[[0, 120]], theta_deg=30,
+                               evaluator="cpu")
+        self.assertEqual(points.dolp.dims, ("view_zenith_deg", "relative_azimuth_deg"))
+        own = table.squeeze(["theta", "sigma", "q"])
+        self.assertTrue(bool((abs(own.dolp - points.dolp) <= own.error_estimate + points.error_estimate).all()))
+        found = dolp.lookup(table, view_zenith_deg=55, relative_azimuth_deg=60)
+        self.assertEqual(float(found.dolp), float(dolp.evaluate(glint, view_zenith_deg=55, relative_azimuth_deg=60, theta_deg=30,
+                                                                evaluator="cpu").dolp))
+        with self.assertRaisesRegex(dolp.InputError, "are the same"):
+            dolp.evaluate(glint, theta_deg=3, view_zenith_deg=3, **{"geometry.view_zenith_deg": 4})
 
     def test_a_key_is_looked_up_between_its_values(self):
         key = "surroundings.temperature_K"

@@ -17,7 +17,7 @@ class Package(PackageCase):
     def test_examples_in_the_documentation_hold(self):
         names = {"dolp": dolp, "np": np, "tempfile": tempfile, "scene": dolp.Scene(text=TEXT, overrides={
             "title": None, "surroundings": None, "grid": None, "grid.theta_deg": {"from": 0, "to": 80, "count": 5}})}
-        rooms = [dolp, *(importlib.import_module(f"dolp.{room}") for room in ("_scene", "_runs", "_fit", "_response"))]
+        rooms = [dolp, *(importlib.import_module(f"dolp.{room}") for room in ("_scene", "_camera", "_runs", "_fit", "_response"))]
         results = [doctest.testmod(room, extraglobs=names) for room in rooms]
         self.assertEqual(sum(failed for failed, _ in results), 0)
         self.assertGreater(sum(tried for _, tried in results), 25)

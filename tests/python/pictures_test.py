@@ -42,6 +42,9 @@ class Pictures(PackageCase):
                   "grid.sigma": 0.2}, 1, "zenith angle", "painted plate, response of microbolometer.csv", "0.2"),
                 ({"geometry.mode": "bistatic", "source.irradiance": 1, "grid.sigma": 0.2}, 1, "zenith of the source",
                  "painted plate, 10 µm\nwith geometry.mode = bistatic, source.irradiance = 1", "0.2"),
+                ({"title": "Plate", "geometry.mode": "bistatic", "source.irradiance": 1, "grid.theta_deg": 50,
+                  "grid.view_zenith_deg": theta, "grid.relative_azimuth_deg": [0, 30, 60, 90, 120, 180]}, 2,
+                 "zenith of the view", "Plate, 10 µm\nwith geometry.mode = bistatic, source.irradiance = 1", "180°"),
                 ({**sea, "grid.wind_m_s": winds, "emission.bracket": True}, 2, "zenith angle",
                  "Sea, 10 µm\nwith surface.distribution = gaussian, surface.masking = smith, emission.bracket = true",
                  "14 m/s")):
@@ -66,7 +69,7 @@ class Pictures(PackageCase):
         with netCDF4.Dataset(self.folder / "t.nc") as dataset:
             table = plot_table.Slice(dataset, dict.fromkeys(plot_table.SYMBOLS))
         self.assertEqual(table.place, "q = 5, n = 1.4, k = 0.2")
-        np.testing.assert_allclose(table.sigma[plot_table.drawn_columns(table)], [0.1, 0.18, 0.24, 0.34, 0.42, 0.5])
+        np.testing.assert_allclose(table.y[plot_table.drawn_columns(table)], [0.1, 0.18, 0.24, 0.34, 0.42, 0.5])
         # The vertical axis of a picture includes the peak of every curve. With a diffuse part, I has no value at 90
         # degrees. A table then has the limit of DOLP towards 90 degrees, but a picture does not show it.
         for diffuse in (0, 0.1):
@@ -79,6 +82,18 @@ class Pictures(PackageCase):
             plot_table.draw(table, self.folder / "t.png")
             self.assertGreater(plot_table.plt.gcf().axes[0].get_ylim()[1], peak)
             plot_table.plt.close()
+
+    def test_picture_over_view_and_azimuth_has_the_entries_of_the_table(self):
+        glint = self.scene.with_({"geometry.mode": "bistatic", "source.irradiance": 1})
+        t = dolp.table(glint, evaluator="cpu", theta_deg=[30, 50], view_zenith_deg=[60, 20, 40], relative_azimuth_deg=[180, 90],
+                       sigma=0.2, q=3)
+        t.to_netcdf(self.folder / "t.nc")
+        with netCDF4.Dataset(self.folder / "t.nc") as dataset:
+            table = plot_table.Slice(dataset, {**dict.fromkeys(plot_table.SYMBOLS), "theta": 50})
+            with self.assertRaisesRegex(plot_table.NotATable, "without a chosen value"):
+                plot_table.Slice(dataset, {**dict.fromkeys(plot_table.SYMBOLS), "theta": 50, "view_zenith_deg": 20})
+        expected = t.dolp.sel(theta=50, sigma=0.2, q=3).sortby(["view_zenith_deg", "relative_azimuth_deg"])
+        np.testing.assert_array_equal(table.dolp, 100 * expected)
 
     def test_pictures_of_materials_name_what_they_show(self):
         """A picture of several materials has one curve for each, the titles name them, and no curve leaves the axis."""

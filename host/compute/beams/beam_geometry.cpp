@@ -24,14 +24,17 @@ CosSin mean_zenith(double theta_i_deg, double theta_r_deg) {
 
 }  // namespace
 
-BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_phi_deg) {
-  const CosSin i = cos_sin_deg(theta_i_deg);
-  const CosSin r = cos_sin_deg(theta_r_deg);
+BeamZeniths::BeamZeniths(double theta_i_deg, double theta_r_deg)
+    : i(cos_sin_deg(theta_i_deg)),
+      r(cos_sin_deg(theta_r_deg)),
+      mean(mean_zenith(theta_i_deg, theta_r_deg)),
+      difference(cos_sin_deg(0.5 * (theta_i_deg - theta_r_deg))) {}
+
+BeamGeometry beam_geometry(const BeamZeniths& zeniths, double delta_phi_deg) {
+  const auto& [i, r, mean, difference] = zeniths;
   // std::remainder does not round, so the half angle keeps all digits near 0 and 180 degrees.
   const double azimuth_deg = std::remainder(delta_phi_deg, 360.0);
   const CosSin half = cos_sin_deg(0.5 * std::abs(azimuth_deg));
-  const CosSin mean = mean_zenith(theta_i_deg, theta_r_deg);
-  const CosSin difference = cos_sin_deg(0.5 * (theta_i_deg - theta_r_deg));
   const double sin_difference = 2.0 * mean.cos * difference.sin;   // sin i - sin r
   const double cos_difference = -2.0 * mean.sin * difference.sin;  // cos i - cos r
   const double product = 4.0 * i.sin * r.sin;

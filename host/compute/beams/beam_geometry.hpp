@@ -21,9 +21,16 @@ struct BeamGeometry {
   double sin_2eta_r = 0.0;
 };
 
+/// The part of a BeamGeometry that beams with equal zeniths share.
+struct BeamZeniths {
+  BeamZeniths(double theta_i_deg, double theta_r_deg);
+  CosSin i, r;
+  CosSin mean, difference;  ///< half the sum and half the difference of the zeniths
+};
+
 /// The mirror direction has delta_phi = 180 degrees. If theta_i is 0, the plane of incidence has azimuth 0. If theta_r
 /// is 0, the plane of reflection has azimuth delta_phi. Domain: zeniths from 0 to 90 degrees, but not both 90.
-BeamGeometry beam_geometry(double theta_i_deg, double theta_r_deg, double delta_phi_deg);
+BeamGeometry beam_geometry(const BeamZeniths& zeniths, double delta_phi_deg);
 
 /// Cosine and sine of the zenith of the direction nearer to the horizon.
 CosSin lower_direction(const BeamGeometry& beam);

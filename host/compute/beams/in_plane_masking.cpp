@@ -40,9 +40,9 @@ InPlaneMasking::InPlaneMasking(Distribution distribution, Masking masking, const
   }
 }
 
-double InPlaneMasking::attenuation(const BeamGeometry& beam) const {
+double InPlaneMasking::attenuation(const BeamGeometry& beam) {
   if (masking_ == Masking::kIntegral) return 1.0 - shadowed(beam);
-  return 1.0 / (1.0 + lambda(beam.cos_i, beam.sin_i) + lambda(beam.cos_r, beam.sin_r));
+  return 1.0 / (1.0 + lambda(beam.cos_i, beam.sin_i, lambda_i_) + lambda(beam.cos_r, beam.sin_r, lambda_r_));
 }
 
 double InPlaneMasking::density(double slope) const {
@@ -118,10 +118,11 @@ InPlaneMasking::Integrals InPlaneMasking::between(double from, double to) const 
   return sum;
 }
 
-/// Smith's Lambda of one direction. At 90 degrees it is so large that G is 0.
-double InPlaneMasking::lambda(double cosine, double sine) const {
+/// At 90 degrees Lambda is so large that G is 0.
+double InPlaneMasking::lambda(double cosine, double sine, Lambda& last) const {
   const double cotangent = std::max(cosine / std::max(sine, kSmallestSine), kSmallestCotangent);
-  return between(cotangent, kInfinity).height / cotangent;
+  if (cotangent != last.cotangent) last = {cotangent, between(cotangent, kInfinity).height / cotangent};
+  return last.value;
 }
 
 /// 1 - G_1 of `integral`.

@@ -15,7 +15,7 @@ class InPlaneMasking {
  public:
   InPlaneMasking(Distribution distribution, Masking masking, const SlopeShape& shape);
 
-  double attenuation(const BeamGeometry& beam) const;
+  double attenuation(const BeamGeometry& beam);
 
  private:
   /// Integrals over slopes tau. p: density of the slopes in the plane of incidence; g: 1 for smith, 1 / sqrt(1 + tau^2)
@@ -32,7 +32,12 @@ class InPlaneMasking {
   Integrals within_panel(double from, double first_panel, double last_panel) const;
   Integrals power_law_above(double slope) const;
   Integrals between(double from, double to) const;
-  double lambda(double cosine, double sine) const;
+  /// Smith's Lambda at one zenith. Beams with the same zenith share it.
+  struct Lambda {
+    double cotangent = 0.0;
+    double value = 0.0;
+  };
+  double lambda(double cosine, double sine, Lambda& last) const;
   double shadowed(const BeamGeometry& beam) const;
 
   Distribution distribution_;
@@ -45,6 +50,7 @@ class InPlaneMasking {
   double length_ = 1.0;  ///< length of a panel
   std::vector<double> starts_;     ///< slope at the start of each panel
   std::vector<Integrals> panels_;  ///< integrals over each panel
+  Lambda lambda_i_, lambda_r_;     ///< of the last beam
 };
 
 }  // namespace dolp

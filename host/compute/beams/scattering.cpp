@@ -145,8 +145,13 @@ std::vector<std::size_t> order_by_shape(const ScatteringRequest& request) {
 std::vector<BeamGeometry> beam_geometries(const std::vector<BeamAngles>& angles) {
   std::vector<BeamGeometry> geometries(angles.size());
   parallel_ranges(angles.size(), kGeometriesAtOnce, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i)
-      geometries[i] = beam_geometry(angles[i].theta_i_deg, angles[i].theta_r_deg, angles[i].delta_phi_deg);
+    std::optional<BeamZeniths> zeniths;
+    for (std::size_t i = first; i < last; ++i) {
+      const bool has_new_zeniths = i == first || angles[i].theta_i_deg != angles[i - 1].theta_i_deg ||
+                                   angles[i].theta_r_deg != angles[i - 1].theta_r_deg;
+      if (has_new_zeniths) zeniths.emplace(angles[i].theta_i_deg, angles[i].theta_r_deg);
+      geometries[i] = beam_geometry(*zeniths, angles[i].delta_phi_deg);
+    }
   });
   return geometries;
 }

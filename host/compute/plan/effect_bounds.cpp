@@ -18,6 +18,8 @@ namespace {
 constexpr double kRounding = 1e-8;  // relative rounding error of the bounds, and of sums over spectral samples
 constexpr double kRoundingOfOne = 1e-13;
 constexpr double kSmallestCosine = 1e-300;  // safe as a divisor
+// Bounds of more beams would take as long as the beams. Such a run keeps the source.
+constexpr std::size_t kMostBoundedBeams = std::size_t{1} << 16U;
 
 constexpr std::array<bool KeptEffects::*, 8> kFlags = {  // in the order of Part
     &KeptEffects::further_bounces, &KeptEffects::moments,       &KeptEffects::source,  &KeptEffects::surroundings,
@@ -79,7 +81,7 @@ Range slope_density(Distribution distribution, const EntriesExtent& extent, doub
 Range beam_range(const Surface& surface, const BeamAngles& angles, const EntriesExtent& extent,
                  const std::vector<FacetOptics>& indices) {
   if (!has_facet(angles)) return {};
-  const BeamGeometry g = beam_geometry(angles.theta_i_deg, angles.theta_r_deg, angles.delta_phi_deg);
+  const BeamGeometry g = beam_geometry({angles.theta_i_deg, angles.theta_r_deg}, angles.delta_phi_deg);
   const double sec2 = 1.0 + g.slope * g.slope;
   Range masking{1.0, 1.0};
   if (surface.masking == Masking::kIntegral) masking.least = 0.5;
@@ -95,10 +97,12 @@ Range beam_range(const Surface& surface, const BeamAngles& angles, const Entries
           jacobian * density.most * masking.most * reflected.most};
 }
 
-EntriesExtent extent_of_grid(const SceneEntries& entries) {
+EntriesExtent extent_of_grid(const SceneModel& scene, const SceneEntries& entries) {
   const auto [sigma_low, sigma_high] = std::ranges::minmax(entries.sigma());
   const auto [q_low, q_high] = std::ranges::minmax(entries.q());
-  EntriesExtent extent{entries.theta_deg(), {sigma_high, q_low}, {sigma_low, q_high}, {}};
+  EntriesExtent extent{{}, {sigma_high, q_low}, {sigma_low, q_high}, {}};
+  for (std::size_t i = 0; i < entries.directions(); ++i)
+    extent.beams.push_back(beam_angles(scene, entries[i * entries.entries_per_direction()]));
   if (!entries.has_own_index()) return extent;
   PerAxis position{};
   for (position[Axis::kN] = 0; position[Axis::kN] < entries.counts()[Axis::kN]; ++position[Axis::kN]) {
@@ -125,12 +129,12 @@ std::vector<FacetOptics> bounding_indices(const SpectralRule& rule, const Entrie
 
 }  // namespace
 
-std::vector<EntriesExtent> entry_extents(const SceneEntries& entries) {
-  if (entries.is_grid()) return {extent_of_grid(entries)};
+std::vector<EntriesExtent> entry_extents(const SceneModel& scene, const SceneEntries& entries) {
+  if (entries.is_grid()) return {extent_of_grid(scene, entries)};
   std::vector<EntriesExtent> extents(entries.variants().size(), {{}, {0.0, kInfinity}, {kInfinity, 0.0}, {}});
   for (const SceneEntry& entry : entries.all()) {
     EntriesExtent& extent = extents[entry.variant];
-    extent.theta_deg.push_back(entry.theta_deg);
+    extent.beams.push_back(beam_angles(scene, entry));
     extent.roughest = {std::max(extent.roughest.sigma, entry.shape.sigma), std::min(extent.roughest.q, entry.shape.q)};
     extent.smoothest = {std::min(extent.smoothest.sigma, entry.shape.sigma),
                         std::max(extent.smoothest.q, entry.shape.q)};
@@ -165,10 +169,10 @@ EffectBounds::EffectBounds(const SceneModel& scene, const SpectralRule& rule, co
     has_negative_ |= sample.emitted < 0.0 || sample.surroundings < 0.0 || sample.irradiance < 0.0;
   }
   path_ = rule.path_exitance;
-  if (extent.theta_deg.empty()) return;
+  if (extent.beams.empty()) return;
   const Surface& surface = scene_.surface;
-  const double moment_zenith_deg =
-      is_bistatic_ ? scene_.geometry.view_zenith_deg : *std::ranges::max_element(extent.theta_deg);
+  const auto zenith = is_bistatic_ ? &BeamAngles::theta_r_deg : &BeamAngles::theta_i_deg;
+  const double moment_zenith_deg = (*std::ranges::max_element(extent.beams, {}, zenith)).*zenith;
   const CosSin a = cos_sin_deg(zenith_before_limit_deg(surface.masking, moment_zenith_deg));
   most_specular_ = surface.specular * most_albedo(surface, a, extent.roughest);
   const double c = surface.diffuse_exponent;
@@ -182,14 +186,18 @@ EffectBounds::EffectBounds(const SceneModel& scene, const SpectralRule& rule, co
 
 void EffectBounds::add_beams(const EntriesExtent& extent, const std::vector<FacetOptics>& indices) {
   const Surface& surface = scene_.surface;
-  const double view_deg = zenith_before_limit_deg(surface.masking, scene_.geometry.view_zenith_deg);
-  const double cosine = std::max(cos_sin_deg(view_deg).cos, kSmallestCosine);
+  if (extent.beams.size() > kMostBoundedBeams) {
+    most_beam_ = most_beam_qu_ = kInfinity;
+    return;
+  }
   const double c = surface.diffuse_exponent;
   least_beam_ = kInfinity;
-  for (const double theta_deg : extent.theta_deg) {
-    const Range f = beam_range(surface, {theta_deg, view_deg, scene_.geometry.relative_azimuth_deg}, extent, indices);
+  for (BeamAngles beam : extent.beams) {
+    beam.theta_r_deg = zenith_before_limit_deg(surface.masking, beam.theta_r_deg);
+    const double cosine = std::max(cos_sin_deg(beam.theta_r_deg).cos, kSmallestCosine);
+    const Range f = beam_range(surface, beam, extent, indices);
     const double to_exitance = std::numbers::pi * surface.specular / cosine;
-    const double diffuse = surface.diffuse * std::pow(cos_sin_deg(theta_deg).cos, c + 1.0) * std::pow(cosine, c);
+    const double diffuse = surface.diffuse * std::pow(cos_sin_deg(beam.theta_i_deg).cos, c + 1.0) * std::pow(cosine, c);
     if (surface.specular > 0.0) most_beam_qu_ = std::max(most_beam_qu_, to_exitance * f.most);
     most_beam_ = std::max(most_beam_, most_beam_qu_ + diffuse);
     least_beam_ = std::min(least_beam_, to_exitance * f.least + (surface.diffuse_table ? 0.0 : diffuse));

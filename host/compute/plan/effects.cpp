@@ -16,7 +16,7 @@ constexpr std::array kDroppingOrder = {Part::kSource,       Part::kSurroundings,
 
 std::vector<EffectBounds> scene_bounds(const SceneValues& scene, const SceneEntries& entries,
                                        const SpectralRules& rules) {
-  const std::vector<EntriesExtent> extents = entry_extents(entries);
+  const std::vector<EntriesExtent> extents = entry_extents(scene, entries);
   std::vector<EffectBounds> bounds;
   for (const SceneVariant& variant : entries.variants()) {
     const EntriesExtent& extent = extents[std::min(bounds.size(), extents.size() - 1)];
@@ -111,8 +111,7 @@ Effect part_row(const SceneValues& scene, const EffectPlan& plan, Part part, Eff
 
 std::string needs_of_moments(const SceneValues& scene, const EffectPlan& plan) {
   if (!plan.kept.moments) return "closed form";
-  return is_bistatic(scene) ? fmt::format("moments at {:g} deg", scene.geometry.view_zenith_deg)
-                            : "moments at each theta";
+  return is_bistatic(scene) ? "moments at each view zenith" : "moments at each theta";
 }
 
 Effect specular_row(const SceneValues& scene, const EffectPlan& plan) {
@@ -120,13 +119,13 @@ Effect specular_row(const SceneValues& scene, const EffectPlan& plan) {
   Effect row{"specular", EffectState::kKept, {}, {}, Part::kMoments};
   if (plan.kept.moments) {
     row.reason = "what is emitted or reflected depends on it";
-    row.needs = needs_of_moments(scene, plan) + (plan.needs_beams ? ", f at each theta" : "");
+    row.needs = needs_of_moments(scene, plan) + (plan.needs_beams ? ", f of each beam" : "");
     return row;
   }
   row.bound = 0.0;  // the moments are dropped only where they add exactly nothing
   row.reason = why_no_moments(scene, plan.kept);
   if (plan.needs_beams) {
-    row.needs = "f at each theta";
+    row.needs = "f of each beam";
     row.reason = "reflects the source; no moments: " + row.reason;
   } else {
     row.state = EffectState::kDropped;
@@ -156,7 +155,7 @@ Effect scattering_row(const SceneValues& scene, const EffectPlan& plan, const Sc
   }
   Effect row = model_row(scene, plan, "scattering", "all bounces in V-grooves", entries, "");
   if (row.state != EffectState::kKept) return row;
-  row.needs = plan.kept.moments ? needs_of_moments(scene, plan) : "f at each theta";
+  row.needs = plan.kept.moments ? needs_of_moments(scene, plan) : "f of each beam";
   return part_row(scene, plan, Part::kFurtherBounces, row);
 }
 
@@ -197,7 +196,7 @@ Effect source_row(const SceneValues& scene, const EffectPlan& plan) {
   Effect row{"source", EffectState::kKept, "a beam, reflected into the view", needs_of_moments(scene, plan)};
   if (is_bistatic(scene)) {
     row.reason = "one beam, one direction of view";
-    row.needs = plan.needs_beams ? "f at each theta" : "closed form";
+    row.needs = plan.needs_beams ? "f of each beam" : "closed form";
   }
   return part_row(scene, plan, Part::kSource, row);
 }

@@ -20,14 +20,14 @@ bool is_kept(const KeptEffects& kept, Part part);
 KeptEffects without(KeptEffects kept, Part part);
 
 struct EntriesExtent {
-  std::vector<double> theta_deg;
-  SlopeShape roughest;   ///< the largest sigma and the smallest q
-  SlopeShape smoothest;  ///< the smallest sigma and the largest q
+  std::vector<BeamAngles> beams;  ///< in hemispherical mode, theta_i_deg is theta and the other angles mean nothing
+  SlopeShape roughest;            ///< the largest sigma and the smallest q
+  SlopeShape smoothest;           ///< the smallest sigma and the largest q
   std::vector<FacetOptics> optics;
 };
 
 /// For a grid one extent, because all its SceneVariants have equal directions. For points, one for each SceneVariant.
-std::vector<EntriesExtent> entry_extents(const SceneEntries& entries);
+std::vector<EntriesExtent> entry_extents(const SceneModel& scene, const SceneEntries& entries);
 
 /// Bounds of the change of p = (Q, U) / I that each part of a scene causes at any of the entries.
 /// Derivation: let a part add (dI, dQ, dU) to the Stokes parameters, and let a prime mark values without the part. Then

@@ -7,8 +7,9 @@ namespace dolp {
 namespace {
 
 // A grid is cut along theta first, because kernels share work among the entries of one direction.
-constexpr std::array kCuttingOrder = {Axis::kTheta, Axis::kMaterial,    Axis::kBand,  Axis::kWavelength, Axis::kN,
-                                      Axis::kK,     Axis::kTemperature, Axis::kSigma, Axis::kQ};
+constexpr std::array kCuttingOrder = {Axis::kViewZenith,  Axis::kRelativeAzimuth, Axis::kTheta, Axis::kMaterial,
+                                      Axis::kBand,        Axis::kWavelength,      Axis::kN,     Axis::kK,
+                                      Axis::kTemperature, Axis::kSigma,           Axis::kQ};
 static_assert(kCuttingOrder.size() == kAxisCount);
 
 /// The member of the entry, or of its variant, that has the value on an axis of numbers.
@@ -24,6 +25,10 @@ double* value_at(SceneEntry& entry, SceneVariant& variant, Axis axis) {
       return &entry.index->n;
     case Axis::kK:
       return &entry.index->k;
+    case Axis::kViewZenith:
+      return &*entry.view_zenith_deg;
+    case Axis::kRelativeAzimuth:
+      return &*entry.relative_azimuth_deg;
     case Axis::kWavelength:
       return &*variant.wavelength_um;
     case Axis::kTemperature:
@@ -132,6 +137,11 @@ SceneEntry SceneEntries::operator[](std::size_t entry) const {
   result.theta_deg = theta_deg()[at[Axis::kTheta]];
   result.shape = {sigma()[at[Axis::kSigma]], q()[at[Axis::kQ]]};
   if (has_own_index()) result.index = index_at(at);
+  const auto find = [&](Axis axis) {
+    return axes_[axis].empty() ? std::nullopt : std::optional(axes_[axis][at[axis]]);
+  };
+  result.view_zenith_deg = find(Axis::kViewZenith);
+  result.relative_azimuth_deg = find(Axis::kRelativeAzimuth);
   result.variant = static_cast<std::uint32_t>(variant_at(at));
   return result;
 }
@@ -166,6 +176,11 @@ bool SceneEntries::has_values(Axis axis) const {
     case Axis::kK:
       return is_grid_ ? has_own_index()
                       : std::ranges::all_of(points_, [](const SceneEntry& point) { return point.index.has_value(); });
+    case Axis::kViewZenith:
+    case Axis::kRelativeAzimuth:
+      return is_grid_ ? !axes_[axis].empty() : std::ranges::all_of(points_, [&](const SceneEntry& point) {
+        return (axis == Axis::kViewZenith ? point.view_zenith_deg : point.relative_azimuth_deg).has_value();
+      });
     case Axis::kWavelength:
       return variants_.front().wavelength_um.has_value();
     case Axis::kTemperature:

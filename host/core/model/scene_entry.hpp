@@ -38,6 +38,8 @@ struct SceneEntry {
   SlopeShape shape;
   std::optional<OpticalConstants> index;  ///< nullopt: the material of the scene
   std::uint32_t variant = 0;              ///< position in SceneEntries::variants
+  /// Zenith of the view, and azimuth between source and view; nullopt: those of the scene's geometry.
+  std::optional<double> view_zenith_deg = {}, relative_azimuth_deg = {};
 };
 
 /// The n, k, thickness or its spread of one film, which an entry uses instead of the scene's value.
@@ -102,7 +104,12 @@ class SceneEntries {
   const std::vector<double>& sigma() const { return axes_[Axis::kSigma]; }
   const std::vector<double>& q() const { return axes_[Axis::kQ]; }
   PerAxis axis_positions(std::size_t entry) const { return positions_on_axes(entry, counts_); }
+  /// A direction of a grid is a combination of theta, view zenith and relative azimuth. A direction's entries are
+  /// consecutive, and so are the directions of one variant and index.
   std::size_t entries_per_direction() const { return sigma().size() * q().size(); }
+  std::size_t directions() const {
+    return counts_[Axis::kViewZenith] * counts_[Axis::kRelativeAzimuth] * counts_[Axis::kTheta];
+  }
   const OpticalConstants& index() const { return index_; }
   /// The subscript in variants() for the entry with the axis positions `on_axes`.
   std::size_t variant_at(const PerAxis& on_axes) const;

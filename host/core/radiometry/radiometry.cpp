@@ -31,6 +31,7 @@ EmissionModel emission_model(const SceneModel& scene) {
 void set_dolp(PointResult& result, const Stokes& sum) {
   result[kDolp] = std::hypot(sum.q, sum.u) / sum.i;
   result[kQOverI] = sum.q / sum.i + 0.0;  // adding 0 turns -0 into 0
+  result[kAolp] = polarisation_angle_deg(sum.q, sum.u);
   const double i = std::abs(sum.i);
   const double margin = i - sum.i_error;
   if (std::isnan(result[kDolp])) {
@@ -164,6 +165,13 @@ double dolp_with(const PointResult& result, double more_i, double more_q) {
 }
 
 }  // namespace
+
+double polarisation_angle_deg(double q, double u) {
+  if (q == 0.0 && u == 0.0) return kNan;
+  const double angle_deg = 90.0 / pi * std::atan2(u + 0.0, q);  // adding 0 turns -0 into 0
+  const double positive_deg = angle_deg < 0.0 ? angle_deg + 180.0 : angle_deg;
+  return positive_deg < 180.0 ? positive_deg : 0.0;  // a tiny negative angle is rounded to 180
+}
 
 std::vector<std::size_t> middle_samples(std::size_t samples) {
   const std::size_t groups = std::min(samples, kMostGroups);

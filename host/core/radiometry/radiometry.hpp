@@ -15,6 +15,9 @@
 
 namespace dolp {
 
+/// atan2(U, Q) / 2 in [0, 180) degrees; NaN if Q = U = 0.
+double polarisation_angle_deg(double q, double u);
+
 /// Neighbouring spectral samples form up to eight groups. Each group has one FurtherLight, computed for the sample in
 /// its middle. Returns the middle sample of each group, for a rule with `samples` samples.
 std::vector<std::size_t> middle_samples(std::size_t samples);

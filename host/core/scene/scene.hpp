@@ -10,6 +10,7 @@
 #include "base/text.hpp"
 #include "model/choices.hpp"
 #include "model/facet_optics.hpp"
+#include "model/scattering.hpp"
 #include "model/scene_entry.hpp"
 #include "scene/dispersion.hpp"
 #include "scene/sky_profile.hpp"
@@ -181,6 +182,12 @@ struct SceneValues : SceneModel {
 
 /// The scene at one wavelength instead of its spectrum. Errors: InputError if n, k or E0 are not known there.
 SceneModel at_wavelength(const SceneModel& scene, double wavelength_um);
+
+/// The beams of an entry in bistatic mode.
+BeamAngles beam_angles(const SceneModel& scene, const SceneEntry& entry);
+
+/// The zenith for which the moments of an entry are computed: in bistatic mode the view, otherwise theta of the entry.
+double moment_zenith_deg(const SceneModel& scene, const SceneEntry& entry);
 
 void set_films(Surface& surface, const std::vector<FilmValue>& films);
 

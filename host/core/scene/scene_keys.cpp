@@ -345,7 +345,7 @@ std::vector<SceneKey> geometry_keys() {
              "power: the response is the signal per radiant power; photon: per photon, as a quantum efficiency",
              [](auto& s) { return &s.spectrum.response_per; }),
       choice("geometry.mode", Geometry().mode,
-             "hemispherical: the results are exitances; bistatic: the results are radiances toward a fixed view; in "
+             "hemispherical: the results are exitances; bistatic: the results are radiances toward a view; in "
              "both modes a source has the zenith theta",
              [](auto& s) { return &s.geometry.mode; }),
       number("geometry.view_zenith_deg", "degree", kZenithDegRange, "60", "view zenith theta_v in bistatic mode",
@@ -355,6 +355,11 @@ std::vector<SceneKey> geometry_keys() {
              [](auto& s) { return &s.geometry.relative_azimuth_deg; }),
       grid_axis(Axis::kTheta, "{ from = 0, to = 90, count = 91 }",
                 "zenith theta of the view (hemispherical mode) or of the source (bistatic mode)"),
+      grid_axis(Axis::kViewZenith, "",
+                "view zeniths of a table in bistatic mode; the first one replaces a missing geometry.view_zenith_deg"),
+      grid_axis(Axis::kRelativeAzimuth, "",
+                "azimuths between source and view of a table in bistatic mode; the first one replaces a missing "
+                "geometry.relative_azimuth_deg"),
       grid_axis(Axis::kSigma, "surface.sigma", "slope widths sigma of the table"),
       wind_axis(),
       key_at(

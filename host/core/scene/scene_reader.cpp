@@ -170,6 +170,14 @@ void fill_from_grid(SceneValues& scene, const SceneDocument& document) {
   OpticalConstants& index = scene.surface.material.constant;
   if (document.find("grid.temperature_K"))
     check_needs(document, "grid.temperature_K", {{document.find("emission") != nullptr, "the table [emission]"}});
+  for (const char* key : {"grid.view_zenith_deg", "grid.relative_azimuth_deg"}) {
+    if (document.find(key))
+      check_needs(document, key, {{scene.geometry.mode == Mode::kBistatic, "geometry.mode = \"bistatic\""}});
+  }
+  if (!grid[Axis::kViewZenith].empty() && !document.find("geometry.view_zenith_deg"))
+    scene.geometry.view_zenith_deg = grid[Axis::kViewZenith].front();
+  if (!grid[Axis::kRelativeAzimuth].empty() && !document.find("geometry.relative_azimuth_deg"))
+    scene.geometry.relative_azimuth_deg = grid[Axis::kRelativeAzimuth].front();
   if (!grid[Axis::kWavelength].empty() && !document.find("spectrum.wavelength_um"))
     scene.spectrum = {grid[Axis::kWavelength].front(), grid[Axis::kWavelength].front()};
   if (!scene.bands.empty()) scene.spectrum = scene.bands.front();

@@ -288,6 +288,15 @@ void set_films(Surface& surface, const std::vector<FilmValue>& films) {
   }
 }
 
+BeamAngles beam_angles(const SceneModel& scene, const SceneEntry& entry) {
+  return {entry.theta_deg, entry.view_zenith_deg.value_or(scene.geometry.view_zenith_deg),
+          entry.relative_azimuth_deg.value_or(scene.geometry.relative_azimuth_deg)};
+}
+
+double moment_zenith_deg(const SceneModel& scene, const SceneEntry& entry) {
+  return scene.geometry.mode == Mode::kBistatic ? beam_angles(scene, entry).theta_r_deg : entry.theta_deg;
+}
+
 SceneModel with_variant(const SceneModel& scene, const SceneVariant& variant) {
   SceneModel changed = scene;
   if (variant.material) changed.surface.material = scene.materials->at(*variant.material);

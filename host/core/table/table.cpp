@@ -181,6 +181,10 @@ void add(ValueSums& sums, const ValueSums& part_sums) {
   for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += part_sums[i];
 }
 
+/// Axes that the hash contains even if a table lacks them. An axis that is not here leaves the hashes of older files
+/// as they are.
+constexpr std::array kAlwaysHashed = {Axis::kWavelength, Axis::kN, Axis::kK};
+
 std::string values_hash(const TableLayout& layout, const ValueSums& sums) {
   const TableHead& head = layout.head;
   std::uint64_t hash = kHashStart;
@@ -188,7 +192,7 @@ std::string values_hash(const TableLayout& layout, const ValueSums& sums) {
     const std::vector<double>& values = head.axes[axis];
     if (describe(axis).has_labels) {  // hashes the texts: their numbers differ in a file with a part of the table
       for (const double value : values) hash = hashed(hashed(hash, head.label(axis, value)), std::uint64_t{0});
-    } else if (axis != Axis::kTemperature || !values.empty()) {  // an old file, which lacks this axis, keeps its hash
+    } else if (!values.empty() || std::ranges::count(kAlwaysHashed, axis) > 0) {
       hash = hashed(hash, std::span(values));
     }
   }

@@ -272,7 +272,7 @@ struct TableReader::Impl {
       const QuantityDescription& described = describe(quantity);
       if (!find(described.name, sizeof(double))) continue;
       layout.quantities.push_back(quantity);
-      if (described.has_stokes_units)
+      if (!described.units)
         head.stokes_units = find_text(reader, open.back().second, "units").value_or(head.stokes_units);
     }
     for (const ResponseVariable variable : kAllResponseVariables) {

@@ -13,7 +13,19 @@
 namespace dolp {
 
 /// The axes, in the order in which tables have them. The last axis varies fastest.
-enum class Axis : std::uint8_t { kMaterial, kBand, kWavelength, kTemperature, kN, kK, kTheta, kSigma, kQ };
+enum class Axis : std::uint8_t {
+  kMaterial,
+  kBand,
+  kWavelength,
+  kTemperature,
+  kN,
+  kK,
+  kViewZenith,
+  kRelativeAzimuth,
+  kTheta,
+  kSigma,
+  kQ
+};
 inline constexpr std::size_t kAxisCount = static_cast<std::size_t>(Axis::kQ) + 1;
 
 template <class Value>
@@ -38,6 +50,9 @@ inline constexpr std::array<AxisDescription, kAxisCount> kAxes = {{
     {"temperature", "temperature_K", "K", "temperature of the surface", kEmissionTemperatureRange, false},
     {"n", "n", "1", "refractive index n of the surface", kNRange, false},
     {"k", "k", "1", "refractive index k of the surface", kKRange, false},
+    {"view_zenith_deg", "view_zenith_deg", "degree", "zenith angle of the view", kZenithDegRange, false},
+    {"relative_azimuth_deg", "relative_azimuth_deg", "degree", "azimuth between source and view", kAzimuthDegRange,
+     false},
     {"theta", "theta_deg", "degree", "zenith angle", kZenithDegRange, true},
     {"sigma", "sigma", "1", "roughness sigma of the slope distribution", kSigmaRange, true},
     {"q", "q", "1", "exponent q of the slope distribution", kQRange, true},
@@ -62,9 +77,10 @@ inline constexpr AxisDescription kBandHigh = {"band_high",        "band_um", "um
                                               kWavelengthUmRange, false};
 
 /// The order in which error messages list the columns of points.
-inline constexpr std::array<Axis, kAxisCount> kColumnOrder = {Axis::kTheta,    Axis::kSigma,       Axis::kQ,
-                                                              Axis::kN,        Axis::kK,           Axis::kWavelength,
-                                                              Axis::kMaterial, Axis::kTemperature, Axis::kBand};
+inline constexpr std::array<Axis, kAxisCount> kColumnOrder = {
+    Axis::kTheta,          Axis::kSigma,    Axis::kQ,           Axis::kN,    Axis::kK,
+    Axis::kWavelength,     Axis::kMaterial, Axis::kTemperature, Axis::kBand, Axis::kViewZenith,
+    Axis::kRelativeAzimuth};
 
 /// The values of each axis, in ascending or descending order, without repetition. A grid has at least one value of each
 /// required axis.

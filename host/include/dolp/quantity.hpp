@@ -15,12 +15,14 @@ namespace dolp {
 /// A quantity of results, with one number per entry or point. Table files have the quantities in this order, and the
 /// status after the last one.
 /// Units: Stokes parameters are exitances, in W m-2 um-1 at one wavelength and W m-2 over a band; in bistatic mode they
-/// are radiances, in W m-2 sr-1 um-1 and W m-2 sr-1. The other quantities have unit 1.
+/// are radiances, in W m-2 sr-1 um-1 and W m-2 sr-1. The angle of polarisation is in degrees. The other quantities
+/// have unit 1.
 /// Q = I_s - I_p; U = V = 0 in hemispherical mode. Over a band, the reflectance rho is a weighted mean. The weight is
 /// the emission pi B(T) or, in a scene without emission, the incident radiation. Without both, the weight is constant.
 enum class Quantity : std::uint8_t {
   kDolp,    ///< sqrt(Q^2 + U^2) / I; negative if I is negative, NaN if I is 0
   kQOverI,  ///< Q / I, signed: positive if s-polarised radiation prevails
+  kAolp,    ///< atan2(U, Q) / 2 in degrees, in [0, 180): 0 is the direction s, 90 is p; NaN if Q = U = 0
   kStokesI,
   kStokesQ,
   kStokesU,
@@ -51,7 +53,7 @@ enum class QuantityNeeds : std::uint8_t { kNothing, kReflectance, kMoments, kEmi
 struct QuantityDescription {
   const char* name;
   const char* long_name;
-  bool has_stokes_units;  ///< false: the unit is 1
+  const char* units;      ///< null: the units of Stokes parameters, which depend on the scene
   const char* ancillary;  ///< names of the variables with the quantity's error bound and status; "" if none
   QuantityNeeds needs;
 
@@ -64,30 +66,31 @@ inline constexpr const char* kRhoQualifiers = "rho_error_estimate status";
 inline constexpr const char* kStatusQualifier = "status";
 
 inline constexpr std::array<QuantityDescription, kQuantityCount> kQuantities = {{
-    {"dolp", "degree of linear polarisation", false, kDolpQualifiers, QuantityNeeds::kNothing},
-    {"q_over_i", "degree of linear polarisation Q / I, positive where s prevails", false, kDolpQualifiers,
+    {"dolp", "degree of linear polarisation", "1", kDolpQualifiers, QuantityNeeds::kNothing},
+    {"q_over_i", "degree of linear polarisation Q / I, positive where s prevails", "1", kDolpQualifiers,
      QuantityNeeds::kNothing},
-    {"stokes_i", "Stokes parameter I of the radiation that leaves the surface and reaches the sensor", true,
+    {"aolp_deg", "angle of linear polarisation from the s direction", "degree", kStatusQualifier,
+     QuantityNeeds::kNothing},
+    {"stokes_i", "Stokes parameter I of the radiation that leaves the surface and reaches the sensor", nullptr,
      kStatusQualifier, QuantityNeeds::kNothing},
-    {"stokes_q", "Stokes parameter Q = I_s - I_p", true, kStatusQualifier, QuantityNeeds::kNothing},
-    {"stokes_u", "Stokes parameter U", true, kStatusQualifier, QuantityNeeds::kNothing},
-    {"stokes_v", "Stokes parameter V", true, kStatusQualifier, QuantityNeeds::kNothing},
-    {"rho_i", "hemispherical-directional reflectance, mean of s and p", false, kRhoQualifiers,
+    {"stokes_q", "Stokes parameter Q = I_s - I_p", nullptr, kStatusQualifier, QuantityNeeds::kNothing},
+    {"stokes_u", "Stokes parameter U", nullptr, kStatusQualifier, QuantityNeeds::kNothing},
+    {"stokes_v", "Stokes parameter V", nullptr, kStatusQualifier, QuantityNeeds::kNothing},
+    {"rho_i", "hemispherical-directional reflectance, mean of s and p", "1", kRhoQualifiers,
      QuantityNeeds::kReflectance},
-    {"rho_q", "hemispherical-directional reflectance, half the difference of s and p", false, kRhoQualifiers,
+    {"rho_q", "hemispherical-directional reflectance, half the difference of s and p", "1", kRhoQualifiers,
      QuantityNeeds::kReflectance},
-    {"albedo", "albedo of the surface model with perfectly reflecting facets", false, kStatusQualifier,
+    {"albedo", "albedo of the surface model with perfectly reflecting facets", "1", kStatusQualifier,
      QuantityNeeds::kMoments},
-    {"emissivity_s", "emissivity of s-polarised radiation that the emission uses", false, kStatusQualifier,
+    {"emissivity_s", "emissivity of s-polarised radiation that the emission uses", "1", kStatusQualifier,
      QuantityNeeds::kEmission},
-    {"emissivity_p", "emissivity of p-polarised radiation that the emission uses", false, kStatusQualifier,
+    {"emissivity_p", "emissivity of p-polarised radiation that the emission uses", "1", kStatusQualifier,
      QuantityNeeds::kEmission},
-    {"dolp_low", "least degree of linear polarisation with all bounces", false, kDolpQualifiers,
+    {"dolp_low", "least degree of linear polarisation with all bounces", "1", kDolpQualifiers, QuantityNeeds::kBracket},
+    {"dolp_high", "largest degree of linear polarisation with all bounces", "1", kDolpQualifiers,
      QuantityNeeds::kBracket},
-    {"dolp_high", "largest degree of linear polarisation with all bounces", false, kDolpQualifiers,
-     QuantityNeeds::kBracket},
-    {"error_estimate", "bound of the absolute errors of dolp and q_over_i", false, "", QuantityNeeds::kNothing},
-    {"rho_error_estimate", "bound of the errors of rho_i and rho_q relative to rho_i", false, "",
+    {"error_estimate", "bound of the absolute errors of dolp and q_over_i", "1", "", QuantityNeeds::kNothing},
+    {"rho_error_estimate", "bound of the errors of rho_i and rho_q relative to rho_i", "1", "",
      QuantityNeeds::kReflectance},
 }};
 
@@ -98,7 +101,8 @@ constexpr const QuantityDescription& describe(Quantity quantity) {
 }
 
 inline std::string quantity_units(Quantity quantity, const std::string& stokes_units) {
-  return describe(quantity).has_stokes_units ? stokes_units : "1";
+  const char* const units = describe(quantity).units;
+  return units ? units : stokes_units;
 }
 
 /// The quantities in the order of their columns in CSV files of results at points.
@@ -110,7 +114,7 @@ inline constexpr std::array<Quantity, kQuantityCount> kCsvOrder = {
     Quantity::kErrorEstimate, Quantity::kRhoErrorEstimate,
     Quantity::kEmissivityS,   Quantity::kEmissivityP,
     Quantity::kDolpLow,       Quantity::kDolpHigh,
-    Quantity::kQOverI};
+    Quantity::kQOverI,        Quantity::kAolp};
 static_assert(std::ranges::is_permutation(kCsvOrder, kAllQuantities), "each quantity is in it once");
 
 }  // namespace dolp

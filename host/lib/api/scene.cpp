@@ -66,6 +66,8 @@ Scene Scene::for_points() const {
                                                     {Axis::kTemperature, "emission.temperature_K"},
                                                     {Axis::kN, "surface.n"},
                                                     {Axis::kK, "surface.k"},
+                                                    {Axis::kViewZenith, "geometry.view_zenith_deg"},
+                                                    {Axis::kRelativeAzimuth, "geometry.relative_azimuth_deg"},
                                                     {Axis::kSigma, "surface.sigma"},
                                                     {Axis::kQ, "surface.q"}};
   std::vector<Setting> settings;

@@ -24,14 +24,17 @@ constexpr const char* kThetaKey = "grid.theta_deg";
 constexpr const char* kWindKey = "surface.wind_m_s";
 
 /// Keys whose values entries may have themselves.
-constexpr std::array<std::pair<Axis, const char*>, 8> kAxisKeys = {{{Axis::kTheta, kThetaKey},
-                                                                    {Axis::kSigma, "surface.sigma"},
-                                                                    {Axis::kSigma, kWindKey},
-                                                                    {Axis::kQ, "surface.q"},
-                                                                    {Axis::kN, "surface.n"},
-                                                                    {Axis::kK, "surface.k"},
-                                                                    {Axis::kWavelength, "spectrum.wavelength_um"},
-                                                                    {Axis::kTemperature, "emission.temperature_K"}}};
+constexpr std::array<std::pair<Axis, const char*>, 10> kAxisKeys = {
+    {{Axis::kViewZenith, "geometry.view_zenith_deg"},
+     {Axis::kRelativeAzimuth, "geometry.relative_azimuth_deg"},
+     {Axis::kTheta, kThetaKey},
+     {Axis::kSigma, "surface.sigma"},
+     {Axis::kSigma, kWindKey},
+     {Axis::kQ, "surface.q"},
+     {Axis::kN, "surface.n"},
+     {Axis::kK, "surface.k"},
+     {Axis::kWavelength, "spectrum.wavelength_um"},
+     {Axis::kTemperature, "emission.temperature_K"}}};
 
 /// The axis on which the entries have the values of the key; nullopt if the scene has the value.
 std::optional<Axis> key_axis(const SceneEntries& entries, const std::string& key) {

@@ -27,6 +27,11 @@ void check_columns(const SceneValues& scene, const Points& points) {
       throw InputError(
           fmt::format("{}: columns \"material\" and \"{}\" cannot be combined", points.where(), describe(axis).column));
   }
+  for (const Axis axis : {Axis::kViewZenith, Axis::kRelativeAzimuth}) {
+    if (points[axis] && scene.geometry.mode != Mode::kBistatic)
+      throw InputError(fmt::format("{}: column \"{}\" needs geometry.mode = \"bistatic\" in the scene", points.where(),
+                                   describe(axis).column));
+  }
   const Material& material = scene.surface.material;
   const bool is_dispersive = !material.is_constant() || (points[Axis::kWavelength] && material.tabulated);
   const bool has_n = points[Axis::kN].has_value();
@@ -147,7 +152,9 @@ SceneEntries point_entries(const SceneValues& scene, const Points& points) {
   const bool has_own_index = points[Axis::kN] || points[Axis::kK];
   const auto columns = variant_columns(scene, points);
   const bool has_variants = !columns.empty() || !points.films.empty();
-  if (points[Axis::kTheta] && !points[Axis::kSigma] && !points[Axis::kQ] && !has_own_index && !has_variants) {
+  const bool has_views = points[Axis::kViewZenith] || points[Axis::kRelativeAzimuth];
+  const bool has_shapes = points[Axis::kSigma] || points[Axis::kQ];
+  if (points[Axis::kTheta] && !has_shapes && !has_views && !has_own_index && !has_variants) {
     return SceneEntries::grid(*points[Axis::kTheta], {surface.sigma}, {surface.q});
   }
   if (points[Axis::kWavelength] && points.size() > 0) check_wavelengths(scene, points);
@@ -162,6 +169,8 @@ SceneEntries point_entries(const SceneValues& scene, const Points& points) {
     if (has_own_index)
       entry.index =
           OpticalConstants{value_or(points[Axis::kN], row, index.n), value_or(points[Axis::kK], row, index.k)};
+    if (points[Axis::kViewZenith]) entry.view_zenith_deg = (*points[Axis::kViewZenith])[row];
+    if (points[Axis::kRelativeAzimuth]) entry.relative_azimuth_deg = (*points[Axis::kRelativeAzimuth])[row];
     SceneVariant variant{.films = points.films_at(row)};
     for (const auto& [axis, values] : columns) set_value(variant, axis, values[row]);
     entry.variant = variants.try_emplace(std::move(variant), static_cast<std::uint32_t>(variants.size())).first->second;

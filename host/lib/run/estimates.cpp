@@ -29,8 +29,8 @@ constexpr std::size_t kDrawnPoints = 24;  // number of entries that an estimate 
 /// How many values of an axis an estimate uses at most. For sigma and q, 2 suffice: effects are largest at an end.
 std::size_t most_values(Axis axis) {
   if (axis == Axis::kMaterial) return 64;
-  if (axis == Axis::kTheta || axis == Axis::kBand) return 8;
-  return axis == Axis::kWavelength ? 3 : 2;
+  if (axis == Axis::kTheta || axis == Axis::kViewZenith || axis == Axis::kBand) return 8;
+  return axis == Axis::kWavelength || axis == Axis::kRelativeAzimuth ? 3 : 2;
 }
 
 std::vector<std::size_t> spread_positions(std::size_t size, std::size_t most) {

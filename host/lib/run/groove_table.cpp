@@ -22,7 +22,8 @@ constexpr double kLeastReflected = 1e-12;  // replaces i = 0 and 1 - i = 0, whos
 constexpr std::size_t kWavelengthNodes = 8;
 constexpr std::size_t kNodesAtOnce = 8;
 
-/// The nodes of an axis are Chebyshev-Lobatto points of `to(value)`; `from` is the inverse of `to`.
+/// The nodes of an axis are Chebyshev-Lobatto points of `to(value)`; `from` is the inverse of `to`. An axis with at
+/// most `most` values has its values as nodes.
 struct Scale {
   std::size_t most = 1;
   std::function<double(double)> to, from;
@@ -44,9 +45,13 @@ GrooveTable::AxisNodes polynomial_nodes(const std::vector<double>& values, const
   std::vector<double> places;
   std::ranges::transform(values, std::back_inserter(places), scale.to);
   const auto [low, high] = std::ranges::minmax(places);
-  const auto count = static_cast<Eigen::Index>(std::min(scale.most, values.size()));
+  const auto count = static_cast<Eigen::Index>(scale.most);
   const auto size = static_cast<Eigen::Index>(values.size());
-  if (count < 2 || low == high) return {{scale.from(low)}, Eigen::MatrixXd::Ones(size, 1)};
+  if (size <= count) {
+    std::ranges::transform(places, places.begin(), scale.from);
+    return {places, Eigen::MatrixXd::Identity(size, size)};
+  }
+  if (low == high) return {{scale.from(low)}, Eigen::MatrixXd::Ones(size, 1)};
   const std::vector<double> points = lobatto_points(count);
   GrooveTable::AxisNodes axis{{}, Eigen::MatrixXd(size, count)};
   for (const double point : points) axis.nodes.push_back(scale.from(std::lerp(low, high, 0.5 * (point + 1.0))));
@@ -81,13 +86,12 @@ GrooveTable::AxisNodes linear_nodes(const std::vector<double>& values, std::size
 
 }  // namespace
 
-GrooveTable::GrooveTable(const SceneValues& scene, const SceneEntries& grid, const SpectralRules& rules) {
+GrooveTable::GrooveTable(const SceneValues& scene, const SceneEntries& grid, const SpectralRules& rules)
+    : zenith_axis_(moment_axis(scene)) {
   const Axes& axes = grid.whole_axes();
   for (const Axis axis : {Axis::kN, Axis::kK, Axis::kTheta, Axis::kSigma, Axis::kQ}) {
-    std::vector<double> values = axes[axis];
-    if (axis == Axis::kTheta) {
-      for (double& theta_deg : values) theta_deg = moment_zenith_deg(scene, theta_deg);
-    }
+    std::vector<double> values = axes[axis == Axis::kTheta ? zenith_axis_ : axis];
+    if (values.empty() && axis == Axis::kTheta) values = {scene.geometry.view_zenith_deg};
     if (values.empty()) values = {axis == Axis::kN ? grid.index().n : grid.index().k};
     axes_[axis] = polynomial_nodes(values, axis_scale(axis));
   }
@@ -180,10 +184,11 @@ void GrooveTable::Reader::begin_row(std::size_t position) {
   PerAxis on = part_.axis_positions(position);
   first_ = position - on[Axis::kQ];
   for (const Axis axis : kAllAxes) on[axis] += part_first[axis];
-  if (const std::size_t direction = position / part_.entries_per_direction() + 1; direction != direction_) {
-    direction_ = direction;
-    begin_direction(on);
-  }
+  PerAxis direction{};
+  on[Axis::kTheta] = on[table_.zenith_axis_];
+  for (const Axis axis : {Axis::kMaterial, Axis::kBand}) direction[axis] = on[axis];
+  for (const Axis axis : kOuterAxes) direction[axis] = on[axis];
+  if (direction_ != direction) begin_direction(*(direction_ = direction));
   const auto sigma = table_.axes_[Axis::kSigma].weights.row(static_cast<Eigen::Index>(on[Axis::kSigma]));
   const auto count = static_cast<Eigen::Index>(part_.q().size());
   const auto qs =
@@ -203,7 +208,7 @@ void GrooveTable::Reader::begin_row(std::size_t position) {
 
 std::span<const FurtherLight> GrooveTable::Reader::at(std::size_t position) {
   const std::size_t count = part_.q().size();
-  if (direction_ == 0 || position - first_ >= count) begin_row(position);
+  if (!direction_ || position - first_ >= count) begin_row(position);
   return std::span(row_).subspan((position - first_) * groups_, groups_);
 }
 

@@ -38,8 +38,8 @@ class GrooveTable {
 
     const GrooveTable& table_;
     const SceneEntries& part_;
-    std::size_t direction_ = 0;  ///< entries with the same number differ only in sigma and q; 0: none was read
-    std::size_t first_ = 0;      ///< position of the first entry of a row, whose entries differ only in q
+    std::optional<PerAxis> direction_;  ///< position of the entries in logits_, on the axes that these depend on
+    std::size_t first_ = 0;             ///< position of the first entry of a row, whose entries differ only in q
     std::size_t groups_ = 1;
     Eigen::MatrixXd logits_, quotients_;  ///< as in Block. Shape: (groups x nodes of sigma) x nodes of q
     std::vector<FurtherLight> row_;
@@ -62,6 +62,7 @@ class GrooveTable {
                                            const SpectralRules& rules) const;
   void fill(Block& block, const SceneValues& scene, const std::vector<FacetOptics>& optics) const;
 
+  Axis zenith_axis_;  ///< moment_axis() of the scene; its nodes are those of kTheta
   AxisArray<AxisNodes> axes_;
   std::vector<Block> blocks_;  ///< for each material, for each band
   std::size_t bands_ = 1;

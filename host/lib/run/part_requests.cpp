@@ -13,10 +13,11 @@
 namespace dolp {
 namespace {
 
-BeamAngles beam_angles(const SceneValues& scene, double theta_deg) {
-  const Geometry& geometry = scene.geometry;
-  return {theta_deg, zenith_before_limit_deg(scene.surface.masking, geometry.view_zenith_deg),
-          geometry.relative_azimuth_deg};
+/// The beams of an entry as an evaluator gets them.
+BeamAngles requested_angles(const SceneModel& scene, const SceneEntry& entry) {
+  BeamAngles angles = beam_angles(scene, entry);
+  angles.theta_r_deg = zenith_before_limit_deg(scene.surface.masking, angles.theta_r_deg);
+  return angles;
 }
 
 SlopeShape normalised(const SceneValues& scene, const SlopeShape& shape) {
@@ -24,7 +25,7 @@ SlopeShape normalised(const SceneValues& scene, const SlopeShape& shape) {
 }
 
 Treatment treatment(const SceneValues& scene, const SceneEntry& entry) {
-  return choose_treatment(scene.surface.distribution, scene.surface.masking, moment_zenith_deg(scene, entry.theta_deg),
+  return choose_treatment(scene.surface.distribution, scene.surface.masking, moment_zenith_deg(scene, entry),
                           entry.shape);
 }
 
@@ -59,7 +60,7 @@ std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const Scene
   std::size_t points = 0;
   const auto add = [&](const FacetOptics& index) { indices.insert(index); };
   for (const SceneEntry& entry : entries.all()) {
-    shapes.insert({moment_zenith_deg(scene, entry.theta_deg), entry.shape.sigma, entry.shape.q});
+    shapes.insert({moment_zenith_deg(scene, entry), entry.shape.sigma, entry.shape.q});
     const std::vector<FacetOptics>& samples = spectral[entry.variant];
     if (entry.index) std::ranges::for_each(with_index(samples, entry.index), add);
     if (!entry.index) std::ranges::for_each(samples, add);
@@ -69,9 +70,9 @@ std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const Scene
   return {indices.begin(), indices.end()};
 }
 
-std::vector<FacetOptics> indices_of_grid(const EffectPlan& plan, const SceneEntries& entries) {
+std::vector<FacetOptics> indices_of_grid(const SceneModel& scene, const EffectPlan& plan, const SceneEntries& entries) {
   const PerAxis& counts = entries.whole();
-  if (counts[Axis::kTheta] * counts[Axis::kSigma] * counts[Axis::kQ] < kLeastEntries) return {};
+  if (counts[moment_axis(scene)] * counts[Axis::kSigma] * counts[Axis::kQ] < kLeastEntries) return {};
   const SceneEntries whole = SceneEntries::grid(entries.whole_axes(), entries.index());
   std::vector<FacetOptics> indices;
   if (whole.has_own_index()) {
@@ -97,8 +98,8 @@ std::vector<FacetOptics> indices_of_grid(const EffectPlan& plan, const SceneEntr
 
 }  // namespace
 
-double moment_zenith_deg(const SceneValues& scene, double theta_deg) {
-  return scene.geometry.mode == Mode::kBistatic ? scene.geometry.view_zenith_deg : theta_deg;
+Axis moment_axis(const SceneModel& scene) {
+  return scene.geometry.mode == Mode::kBistatic ? Axis::kViewZenith : Axis::kTheta;
 }
 
 bool wants_moments(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan) {
@@ -106,11 +107,11 @@ bool wants_moments(const SceneValues& scene, const SceneEntry& entry, const Effe
 }
 
 bool wants_beam(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan) {
-  return plan.needs_beams && !is_mirror(entry.shape) && has_facet(beam_angles(scene, entry.theta_deg));
+  return plan.needs_beams && !is_mirror(entry.shape) && has_facet(requested_angles(scene, entry));
 }
 
-Scattered beam_without_evaluator(const SceneValues& scene, double theta_deg) {
-  const BeamAngles angles = beam_angles(scene, theta_deg);
+Scattered beam_without_evaluator(const SceneValues& scene, const SceneEntry& entry) {
+  const BeamAngles angles = requested_angles(scene, entry);
   const bool is_undefined = !has_facet(angles) || is_specular(angles);
   const double glare = is_undefined ? std::numeric_limits<double>::quiet_NaN() : 0.0;
   return {.i = glare, .q = glare};
@@ -174,19 +175,23 @@ void PartRequests::request_grid(const Selection& selection) {
   const bool is_whole = selection.chosen.empty();
   const std::size_t variants = !grid.has_own_index() || has_films() ? grid.variants().size() : 1;
   const std::size_t sets = grid.has_own_index() ? variants * counts[Axis::kN] * counts[Axis::kK] : variants;
-  std::vector<char> theta(grid.theta_deg().size(), 0), sigma(grid.sigma().size(), 0), q(grid.q().size(), 0);
+  const Axis zenith_axis = moment_axis(scene_);
+  std::vector<double> zeniths = grid.axes()[zenith_axis];
+  if (zeniths.empty()) zeniths = {scene_.geometry.view_zenith_deg};
+  std::vector<char> theta(zeniths.size(), 0), sigma(grid.sigma().size(), 0), q(grid.q().size(), 0);
   std::vector<char> set(sets, is_whole ? 1 : 0);
   for (const std::size_t i : selection.chosen) {
     if (!wants_moments(scene_, grid[i], plan_)) continue;
     const PerAxis on_axes = grid.axis_positions(i);
-    theta[on_axes[Axis::kTheta]] = set[index_set(grid, on_axes)] = 1;
+    theta[on_axes[zenith_axis]] = set[index_set(grid, on_axes)] = 1;
   }
   for (std::size_t i = 0; i < sigma.size(); ++i) {
     for (std::size_t j = 0; j < q.size(); ++j) {
       const SlopeShape shape{grid.sigma()[i], grid.q()[j]};
       if (!is_mirror(shape)) sigma[i] = q[j] = 1;
       for (std::size_t t = 0; is_whole && t < theta.size(); ++t) {
-        if (theta[t] == 0) theta[t] = wants_moments(scene_, {grid.theta_deg()[t], shape, {}}, plan_) ? 1 : 0;
+        const SceneEntry entry{.theta_deg = zeniths[t], .shape = shape, .view_zenith_deg = zeniths[t]};
+        if (theta[t] == 0) theta[t] = wants_moments(scene_, entry, plan_) ? 1 : 0;
       }
     }
   }
@@ -200,12 +205,7 @@ void PartRequests::request_grid(const Selection& selection) {
   } else {
     q_at_ = compact_used_values(grid.q(), q, moments_.q);
   }
-  if (scene_.geometry.mode == Mode::kBistatic) {
-    moments_.theta_deg = {scene_.geometry.view_zenith_deg};
-    theta_at_.assign(theta.size(), 0);
-  } else {
-    theta_at_ = compact_used_values(grid.theta_deg(), theta, moments_.theta_deg);
-  }
+  theta_at_ = compact_used_values(zeniths, theta, moments_.theta_deg);
   for (double& theta_deg : moments_.theta_deg) {
     theta_deg = zenith_before_limit_deg(scene_.surface.masking, theta_deg);
   }
@@ -247,7 +247,7 @@ PartRequests::MomentsSpan PartRequests::member_moments(std::size_t member) const
   const PerAxis on_axes = grid.axis_positions(selection_.position(member));
   const std::size_t entries_per_index = moments_.theta_deg.size() * moments_.shapes();
   const std::size_t shape = sigma_at_[on_axes[Axis::kSigma]] * moments_.q.size() + q_at_[on_axes[Axis::kQ]];
-  const std::size_t theta_offset = theta_at_[on_axes[Axis::kTheta]] * moments_.shapes();
+  const std::size_t theta_offset = theta_at_[on_axes[moment_axis(scene_)]] * moments_.shapes();
   const bool has_one_index = grid.has_own_index() && !has_films();
   return {index_set_offset_[index_set(grid, on_axes)] * entries_per_index + theta_offset + shape,
           has_one_index ? std::size_t{0} : entries_per_index};
@@ -255,7 +255,7 @@ PartRequests::MomentsSpan PartRequests::member_moments(std::size_t member) const
 
 std::optional<std::size_t> PartRequests::requested_direction(std::size_t member) const {
   if (theta_at_.empty()) return std::nullopt;
-  const std::uint32_t at = theta_at_[selection_.part.axis_positions(selection_.position(member))[Axis::kTheta]];
+  const std::uint32_t at = theta_at_[selection_.part.axis_positions(selection_.position(member))[moment_axis(scene_)]];
   return at == kUnused ? std::nullopt : std::optional<std::size_t>(at);
 }
 
@@ -269,8 +269,7 @@ void PartRequests::request_points(const Selection& selection) {
       spans_of_points_.emplace_back();
       continue;
     }
-    const double zenith_deg =
-        zenith_before_limit_deg(scene_.surface.masking, moment_zenith_deg(scene_, entry.theta_deg));
+    const double zenith_deg = zenith_before_limit_deg(scene_.surface.masking, moment_zenith_deg(scene_, entry));
     const SlopeShape shape = normalised(scene_, entry.shape);
     // An entry without its own n and k has the key (number of its variant, -1). No real index has k = -1.
     const OpticalConstants key = entry.index.value_or(OpticalConstants{static_cast<double>(entry.variant), -1.0});
@@ -287,10 +286,12 @@ void PartRequests::request_points(const Selection& selection) {
 }
 
 void PartRequests::request_beams(const Selection& selection) {
-  const bool is_grid = selection.part.is_grid();
-  const auto q_count = static_cast<std::uint32_t>(selection.part.q().size());
+  // All entries of a grid: each direction and each slope distribution is listed once.
+  const bool is_grid = selection.part.is_grid() && selection.chosen.empty();
+  const std::size_t shapes = is_grid ? selection.part.entries_per_direction() : 1;
   if (is_grid) {
-    for (const double theta_deg : selection.part.theta_deg()) beams_.angles.push_back(beam_angles(scene_, theta_deg));
+    for (std::size_t i = 0; i < selection.part.directions(); ++i)
+      beams_.angles.push_back(requested_angles(scene_, selection.part[i * shapes]));
     for (const double sigma : selection.part.sigma()) {
       for (const double q : selection.part.q()) beams_.shapes.push_back({sigma, q});
     }
@@ -307,13 +308,11 @@ void PartRequests::request_beams(const Selection& selection) {
     if (!wants_beam(scene_, entry, plan_)) continue;
     ScatteringEntry wanted;
     if (is_grid) {
-      const PerAxis on_axes = selection.part.axis_positions(selection.position(i));
-      wanted.angles = static_cast<std::uint32_t>(on_axes[Axis::kTheta]);
-      wanted.shape =
-          static_cast<std::uint32_t>(on_axes[Axis::kSigma]) * q_count + static_cast<std::uint32_t>(on_axes[Axis::kQ]);
+      wanted.angles = static_cast<std::uint32_t>(i / shapes % selection.part.directions());
+      wanted.shape = static_cast<std::uint32_t>(i % shapes);
     } else {
       wanted.angles = wanted.shape = static_cast<std::uint32_t>(beams_.angles.size());
-      beams_.angles.push_back(beam_angles(scene_, entry.theta_deg));
+      beams_.angles.push_back(requested_angles(scene_, entry));
       beams_.shapes.push_back(entry.shape);
     }
     for (std::uint32_t j = 0; j < samples_[entry.variant].size(); ++j) {
@@ -334,7 +333,7 @@ std::shared_ptr<const ResponseBasis> run_basis(const SceneValues& scene, const S
   const bool has_bounces = plan.kept.further_bounces && scene.surface.scattering == Scattering::kMultiple;
   if (!scene.accuracy.may_interpolate || !plan.kept.moments || has_bounces) return nullptr;
   const std::vector<FacetOptics> indices = entries.is_grid()
-                                               ? indices_of_grid(plan, entries)
+                                               ? indices_of_grid(scene, plan, entries)
                                                : indices_of_points(scene, entries, spectral_indices(plan, entries));
   const std::size_t passes = response_passes(plan.needs_direct, plan.sky ? plan.sky->size() : 0);
   return indices.empty() ? nullptr : ResponseBasis::of(indices, scene.accuracy.tolerance, passes);

@@ -29,8 +29,8 @@ struct Selection {
   SceneEntry operator[](std::size_t member) const { return part[position(member)]; }
 };
 
-/// The zenith for which the moments of an entry are computed: in bistatic mode the view, otherwise theta of the entry.
-double moment_zenith_deg(const SceneValues& scene, double theta_deg);
+/// The axis of a grid that has the zeniths of the moments: in bistatic mode the view, otherwise theta.
+Axis moment_axis(const SceneModel& scene);
 
 bool wants_moments(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan);
 
@@ -39,7 +39,7 @@ bool wants_beam(const SceneValues& scene, const SceneEntry& entry, const EffectP
 
 /// The specular pBRDF of an entry for which wants_beam() is false. It is NaN in the specular direction of a mirror, and
 /// if source and view are both at 90 degrees. Otherwise it is 0.
-Scattered beam_without_evaluator(const SceneValues& scene, double theta_deg);
+Scattered beam_without_evaluator(const SceneValues& scene, const SceneEntry& entry);
 
 /// For each variant (material, band, wavelength or temperature) of the entries: n and k at each spectral sample.
 using SpectralIndices = std::vector<std::vector<FacetOptics>>;
@@ -90,7 +90,7 @@ class PartRequests {
   const Selection selection_;
   MomentsRequest moments_;
   ScatteringRequest beams_;
-  // For a grid: value i of the part's axis theta is value theta_at_[i] in moments_.theta_deg, unless nothing is
+  // For a grid: value i of the part's moment_axis() is value theta_at_[i] in moments_.theta_deg, unless nothing is
   // requested at this zenith, and so on for sigma and q. index_set_offset_[i] is the position in moments_.optics of the
   // first index (n, k) of the index set i. An index set has the indices of one variant (such as a band). If the grid
   // has axes n and k, an index set has one value of each, with the films of one variant.

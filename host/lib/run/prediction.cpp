@@ -14,18 +14,24 @@
 namespace dolp {
 namespace {
 
+/// The axis from which a sample of directions draws zeniths: theta, unless moments are at several view zeniths.
+Axis drawn_axis(const SceneValues& scene, const SceneEntries& grid) {
+  return grid.axes()[moment_axis(scene)].empty() ? Axis::kTheta : moment_axis(scene);
+}
+
 /// The entries of `count` directions, spread evenly over the grid, at one temperature. If `has_responses`, they have
 /// all wavelengths and indices of the grid, which share responses (see run_basis). Otherwise they have one of each.
-SceneEntries entries_of_drawn_directions(const SceneEntries& grid, std::size_t count, bool has_responses) {
+SceneEntries entries_of_drawn_directions(const SceneEntries& grid, Axis drawn_from, std::size_t count,
+                                         bool has_responses) {
   Axes axes = grid.axes();
-  std::vector<double>& theta_deg = axes[Axis::kTheta];
+  std::vector<double>& theta_deg = axes[drawn_from];
   std::ranges::sort(theta_deg);
   std::vector<double> drawn;
   for (std::size_t i = 0; i < count; ++i) drawn.push_back(theta_deg[(2 * i + 1) * theta_deg.size() / (2 * count)]);
   theta_deg = drawn;
   for (const Axis axis : kAllAxes) {
-    if (axis >= Axis::kTheta || axes[axis].empty()) continue;
-    const bool is_whole = has_responses && axis != Axis::kTemperature;
+    if (axis >= Axis::kSigma || axis == drawn_from || axes[axis].empty()) continue;
+    const bool is_whole = has_responses && axis < Axis::kViewZenith && axis != Axis::kTemperature;
     if (!is_whole) axes[axis] = {axes[axis][axes[axis].size() / 2]};
   }
   return SceneEntries::grid(axes, grid.index());
@@ -111,9 +117,9 @@ struct CountedPart {
 /// Computes a sample of `count` entries or, if the entries of a direction share work, of `count` directions.
 CountedPart counted(const RunPrediction& run, const SceneValues& scene, const SceneEntries& entries,
                     const EffectPlan& plan, std::size_t count) {
-  const SceneEntries drawn = run.counts_directions
-                                 ? entries_of_drawn_directions(entries, count, run.first.basis != nullptr)
-                                 : drawn_entries(entries, count);
+  const SceneEntries drawn = run.counts_directions ? entries_of_drawn_directions(entries, drawn_axis(scene, entries),
+                                                                                 count, run.first.basis != nullptr)
+                                                   : drawn_entries(entries, count);
   CountedPart sample{run_parts(drawn, run.spectral_samples).front(), {}, {}};
   RefinementLevel level = run.first;
   level.basis = run_basis(scene, sample.entries, plan);
@@ -154,7 +160,7 @@ CountedScene counted_scene(const RunPrediction& run, const SceneValues& scene, c
 /// much in their work, so each sample decides whether a larger one is affordable.
 CountedPart counted_sample(RunPrediction& run, const CountedScene& given, const SceneEntries& entries) {
   constexpr std::size_t kGrowth = 2;
-  const std::size_t all = run.counts_directions ? entries.theta_deg().size() : entries.size();
+  const std::size_t all = run.counts_directions ? entries.counts()[drawn_axis(given.scene, entries)] : entries.size();
   const std::size_t most = std::min(all, run.counts_directions ? kCountedDirections : kCountedEntries);
   const std::size_t entries_of_few = std::max<std::size_t>(1, kFewCountedMoments / run.spectral_samples);
   std::size_t count = run.counts_directions ? 1 : std::min(most, entries_of_few);
@@ -178,7 +184,7 @@ void count_work(RunPrediction& run, const SceneValues& scene, const SceneEntries
   const double moments_scale = count_ratio(run.moments, moments);
   const double beams_scale = count_ratio(run.beams, beams);
   run.counted_entries = sample.entries.size();
-  if (run.counts_directions) run.counted_directions = sample.entries.theta_deg().size();
+  if (run.counts_directions) run.counted_directions = sample.entries.counts()[drawn_axis(scene, entries)];
   run.first_evaluations = moments_scale * moments.first_evaluations;
   run.again_evaluations = moments_scale * moments.again_evaluations;
   run.again_beams = beams_scale * static_cast<double>(beams.again);

@@ -127,14 +127,13 @@ std::vector<std::size_t> checked_positions(std::size_t size, std::size_t count, 
 }
 
 void RunSummary::add(const SceneValues& scene, const SceneEntries& part, std::span<const PointResult> results) {
-  const bool bistatic = scene.geometry.mode == Mode::kBistatic;
   std::vector<RunSummary> summaries((results.size() + kSummaryEntriesAtOnce - 1) / kSummaryEntriesAtOnce);
   parallel_ranges(results.size(), kSummaryEntriesAtOnce, [&](std::size_t first, std::size_t last) {
     RunSummary& summary = summaries[first / kSummaryEntriesAtOnce];
     summary.entries = last - first;
     for (std::size_t i = first; i < last; ++i) {
       const SceneEntry entry = part[i];
-      add_result(summary, bistatic ? scene.geometry.view_zenith_deg : entry.theta_deg, entry.shape.sigma, results[i]);
+      add_result(summary, moment_zenith_deg(scene, entry), entry.shape.sigma, results[i]);
     }
   });
   for (const RunSummary& summary : summaries) add(summary);

@@ -114,7 +114,7 @@ class MemberResults {
   /// The direction for which an entry needs moments. It is cached, because neighbouring entries mostly share it.
   const Direction& view_direction(const SceneEntry& entry) {
     const Surface& surface = context_.scene.surface;
-    const double theta_deg = moment_zenith_deg(context_.scene, entry.theta_deg);
+    const double theta_deg = moment_zenith_deg(context_.scene, entry);
     const Treatment treatment = choose_treatment(surface.distribution, surface.masking, theta_deg, entry.shape);
     if (!has_direction_ || theta_deg != direction_.theta_deg || treatment != direction_.treatment) {
       direction_ = make_direction(surface.distribution, surface.masking, theta_deg, entry.shape);
@@ -144,7 +144,7 @@ class MemberResults {
   void fill_beams(std::size_t member, const SceneEntry& entry) {
     if (!context_.plan.needs_beams) return;
     if (!wants_beam(context_.scene, entry, context_.plan)) {
-      std::ranges::fill(beams_, beam_without_evaluator(context_.scene, entry.theta_deg));
+      std::ranges::fill(beams_, beam_without_evaluator(context_.scene, entry));
       return;
     }
     const std::size_t first = requests_.first_beam(member);

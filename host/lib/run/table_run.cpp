@@ -25,8 +25,8 @@ constexpr std::size_t kMergedAtOnce = std::size_t{1} << 19U;  // entries
 constexpr const char* kShard = "shard";                       // attribute of a file with one shard (part) of a table
 
 // Shards divide the values of these axes among them, but not sigma and q, along which entries share work.
-constexpr std::array kCutAxes = {Axis::kTheta,       Axis::kMaterial, Axis::kBand, Axis::kWavelength,
-                                 Axis::kTemperature, Axis::kN,        Axis::kK};
+constexpr std::array kCutAxes = {Axis::kViewZenith, Axis::kRelativeAzimuth, Axis::kTheta, Axis::kMaterial, Axis::kBand,
+                                 Axis::kWavelength, Axis::kTemperature,     Axis::kN,     Axis::kK};
 using Cuts = std::array<std::size_t, kCutAxes.size()>;
 
 /// Finds the number of parts of each axis for `count` shards: large for the first axes. False if it is impossible.

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "model/angles.hpp"
+#include "radiometry/radiometry.hpp"
 #include "run/scene_run.hpp"
 #include "spectrum/spectral_rule.hpp"
 
@@ -163,8 +164,7 @@ void integrate_new(const SceneValues& scene, std::vector<PointIntegral*>& points
   const std::vector<PointResult> results = evaluate_scene(at_one, {entries, variants}, evaluator, progress);
   std::size_t next = 0;
   for (PointIntegral* point : points) {
-    const double zenith_deg =
-        scene.geometry.mode == Mode::kBistatic ? scene.geometry.view_zenith_deg : point->entry.theta_deg;
+    const double zenith_deg = moment_zenith_deg(scene, point->entry);
     for (std::size_t i = point->first_new; i < point->intervals.size(); ++i) {
       BandPiece& interval = point->intervals[i];
       const double half_um = 0.5 * (interval.to_um - interval.from_um);
@@ -197,6 +197,7 @@ PointResult band_result(const PointIntegral& point) {
   const double intensity = std::abs(value[0]);
   result[kDolp] = std::hypot(value[1], value[2]) / value[0];
   result[kQOverI] = value[1] / value[0];
+  result[kAolp] = polarisation_angle_deg(value[1], value[2]);
   result[kErrorEstimate] =
       (value[kDolpError] + std::hypot(error[1], error[2]) + std::abs(result[kDolp]) * error[0]) / intensity;
   result[kRhoErrorEstimate] = (value[kRhoError] + error.segment(kWeight + 1, 2).sum()) / std::abs(value[kWeight + 1]) +

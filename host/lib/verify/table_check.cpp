@@ -30,16 +30,19 @@ namespace {
 // The tolerance of the reference is a hundredth of the table's tolerance, but not below this value.
 constexpr double kReferenceTolerance = 1e-11;
 
+constexpr double kRightAngle_deg = 90.0;
+
 /// Ways in which the error bound of a quantity follows from the columns error_estimate and rho_error_estimate.
-enum class Bound { kDolp, kReflectance, kPolarisedRadiation, kRadiation, kEmissivity, kAlbedo };
+enum class Bound { kDolp, kAngle, kReflectance, kPolarisedRadiation, kRadiation, kEmissivity, kAlbedo };
 
 struct Compared {
   Quantity quantity;
   Bound bound;
 };
-constexpr std::array<Compared, 13> kCompared{{
+constexpr std::array<Compared, 14> kCompared{{
     {Quantity::kDolp, Bound::kDolp},
     {Quantity::kQOverI, Bound::kDolp},
+    {Quantity::kAolp, Bound::kAngle},
     {Quantity::kDolpLow, Bound::kDolp},
     {Quantity::kDolpHigh, Bound::kDolp},
     {Quantity::kRhoI, Bound::kReflectance},
@@ -59,8 +62,8 @@ constexpr double kRounding = 1e-12;
 /// The same for an albedo from kernels in float: some roundings. At 90 degrees rho is known better, from its limit.
 constexpr double kFloatRounding = 1e-6;
 
-/// Terms of the error bounds that all entries of one variant (material, band, wavelength, temperature) share. They have
-/// the unit of I: radiances in bistatic mode, else exitances.
+/// Terms of the error bounds. All but specular_share depend only on the variant (material, band, wavelength,
+/// temperature) of an entry. They have the unit of I: radiances in bistatic mode, else exitances.
 struct BoundTerms {
   double emitted = 0.0;    ///< emission of a black surface, at the sensor
   double radiation = 0.0;  ///< emission, surroundings and source, before the surface reflects them
@@ -71,6 +74,7 @@ struct BoundTerms {
   double tolerance = 0.0;
   EmissionModel model = EmissionModel::kMoments;
   std::optional<DiffuseReflection> diffuse = {};  ///< nullopt if the surface has no diffuse part
+  double specular_share = 1.0;                    ///< specular part of rho_I, relative to rho_I
 };
 
 BoundTerms bound_terms(const SceneModel& scene, const EffectPlan& plan) {
@@ -111,8 +115,7 @@ std::vector<BoundTerms> bound_terms(const SceneValues& scene, const SceneEntries
 /// Error bounds that the table states, or those of the reference.
 struct Estimates {
   double dolp = kInfinity;
-  double rho = kInfinity;       ///< relative to rho_I
-  double specular_share = 1.0;  ///< specular part of rho_I, relative to rho_I
+  double rho = kInfinity;  ///< relative to rho_I
 };
 
 double absolute(double relative, double value) { return std::isinf(relative) ? relative : relative * std::abs(value); }
@@ -135,6 +138,11 @@ double error_bound(Bound bound, const Estimates& estimates, const PointResult& r
   switch (bound) {
     case Bound::kDolp:
       return estimates.dolp;
+    case Bound::kAngle:  // an error d of (Q, U) turns it by at most asin(d / p)
+      return kRightAngle_deg / std::numbers::pi *
+                 std::asin(std::min(
+                     1.0, dolp_bound / std::hypot(reference[Quantity::kStokesQ], reference[Quantity::kStokesU]))) +
+             terms.rounding;
     case Bound::kReflectance:
       return rho_bound;
     case Bound::kPolarisedRadiation:
@@ -144,7 +152,7 @@ double error_bound(Bound bound, const Estimates& estimates, const PointResult& r
     case Bound::kEmissivity:
       return 2.0 * (terms.model == EmissionModel::kMoments ? rho_bound : dolp_bound / terms.emitted) + terms.rounding;
     case Bound::kAlbedo:
-      return absolute(estimates.rho / estimates.specular_share + terms.albedo_rounding, reference[Quantity::kAlbedo]);
+      return absolute(estimates.rho / terms.specular_share + terms.albedo_rounding, reference[Quantity::kAlbedo]);
   }
   return kInfinity;
 }
@@ -179,9 +187,15 @@ void add(TableCheck& check, QuantityCheck& quantity_check, const CheckedValue& v
 }
 
 /// The albedo belongs to the specular part, and the error bound of rho is relative to rho_I with its diffuse part.
-double specular_share(const BoundTerms& terms, const PointResult& reference, double theta_deg) {
+double specular_share(const BoundTerms& terms, const PointResult& reference, double zenith_deg) {
   if (!terms.diffuse) return 1.0;
-  return 1.0 - terms.diffuse->rho(cos_sin_deg(theta_deg).cos).i / reference[Quantity::kRhoI];
+  return 1.0 - terms.diffuse->rho(cos_sin_deg(zenith_deg).cos).i / reference[Quantity::kRhoI];
+}
+
+/// Angles that differ by 180 degrees are equal. Where Q = U = 0 on one side only, the comparison of Q and U decides.
+void make_comparable(CheckedValue& angle) {
+  angle.stored = angle.reference + std::remainder(angle.stored - angle.reference, 2.0 * kRightAngle_deg);
+  if (std::isnan(angle.stored)) angle.reference = angle.stored;
 }
 
 CheckedValue compare(const TableSample& sample, const Compared& compared, std::size_t i, const PointResult& reference,
@@ -190,12 +204,10 @@ CheckedValue compare(const TableSample& sample, const Compared& compared, std::s
   CheckedValue value{describe(compared.quantity).name, entry_axis_values(sample.positions[i], table)};
   value.stored = table[compared.quantity][i];
   value.reference = reference[compared.quantity];
-  const double theta_deg = std::ranges::find(value.position, Axis::kTheta, &AxisValue::axis)->value;
-  const double share = specular_share(terms, reference, theta_deg);
+  if (compared.bound == Bound::kAngle) make_comparable(value);
   const Estimates stated{estimate_at(table[Quantity::kErrorEstimate], i),
-                         estimate_at(table[Quantity::kRhoErrorEstimate], i), share};
-  const Estimates reference_estimates{reference[Quantity::kErrorEstimate], reference[Quantity::kRhoErrorEstimate],
-                                      share};
+                         estimate_at(table[Quantity::kRhoErrorEstimate], i)};
+  const Estimates reference_estimates{reference[Quantity::kErrorEstimate], reference[Quantity::kRhoErrorEstimate]};
   BoundTerms keeps_all = terms;
   keeps_all.dropped = 0.0;
   value.stated = error_bound(compared.bound, stated, reference, terms);
@@ -306,7 +318,9 @@ TableCheck check_table(const TableSample& sample, const SceneValues& scene, cons
     QuantityCheck& quantity_check = check.quantities.emplace_back();
     quantity_check.name = describe(compared.quantity).name;
     for (std::size_t i = 0; i < results.size(); ++i) {
-      add(check, quantity_check, compare(sample, compared, i, results[i], terms[grid[sample.positions[i]].variant]));
+      BoundTerms& entry_terms = terms[grid[sample.positions[i]].variant];
+      entry_terms.specular_share = specular_share(entry_terms, results[i], moment_zenith_deg(scene, chosen[i]));
+      add(check, quantity_check, compare(sample, compared, i, results[i], entry_terms));
     }
   }
   return check;

@@ -25,7 +25,9 @@ const std::vector<AxisOfNumber>& axes_of_numbers() {
                                       {"n", "surface.n"},
                                       {"k", "surface.k", Scale{1e-3, 100.0, true}},
                                       {"wavelength", "spectrum.wavelength_um"},
-                                      {"temperature", "emission.temperature_K"}};
+                                      {"temperature", "emission.temperature_K"},
+                                      {"view zenith", "geometry.view_zenith_deg"},
+                                      {"azimuth", "geometry.relative_azimuth_deg", Scale{0.0, 180.0}}};
     for (const Key& key : keys()) {
       if (key.key.ends_with(".thickness_um"))
         axes.push_back({fmt::format("film {}", key.layer), key.key, Scale{1e-2, 10.0, true}});

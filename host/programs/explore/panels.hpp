@@ -10,10 +10,21 @@ namespace dolp::explore {
 inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< in radians
 
 /// A view beside the curve, computed only while it is shown. kPanelNames has the names of the views in the same order.
-enum class Panel : std::uint8_t { kMap, kSlopes, kMaterial, kSmooth, kSpectrum, kScattering, kShapes, kSky, kFit };
+enum class Panel : std::uint8_t {
+  kMap,
+  kSlopes,
+  kMaterial,
+  kSmooth,
+  kSpectrum,
+  kScattering,
+  kShapes,
+  kSky,
+  kCamera,
+  kFit
+};
 
 inline constexpr std::array kPanelNames = {"map",   "slopes", "material", "smooth", "spectrum",
-                                           "pBRDF", "sphere", "sky",      "fit"};
+                                           "pBRDF", "sphere", "sky",      "camera", "fit"};
 
 Panel find_panel(const std::string& name);  ///< Errors: InputError that lists the names
 

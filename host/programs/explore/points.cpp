@@ -15,7 +15,9 @@ Scene with_grid(const Scene& scene, const PointList& list) {
   for (const auto& [axis, key] : {std::pair{"wavelength_um", "spectrum.wavelength_um"},
                                   {"temperature_K", "emission.temperature_K"},
                                   {"n", "surface.n"},
-                                  {"k", "surface.k"}}) {
+                                  {"k", "surface.k"},
+                                  {"view_zenith_deg", "geometry.view_zenith_deg"},
+                                  {"relative_azimuth_deg", "geometry.relative_azimuth_deg"}}) {
     const bool is_listed = std::ranges::count(axes, axis, &Setting::key) > 0;
     if (!is_listed && !scene.numbers(std::string("grid.") + axis).empty())
       axes.push_back({axis, scene.number(key).value()});

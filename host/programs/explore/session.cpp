@@ -273,6 +273,7 @@ void Session::follow() {
   follow_overlay(content);
   follow_map();
   follow_sweeps(content);
+  follow_camera(content);
   if (shows(Panel::kSky) && is_bistatic(scene()))
     source_sky_.follow(content_key(scene(), state_.edits.changes_without({"geometry.relative_azimuth_deg"}), false),
                        scene());
@@ -344,6 +345,17 @@ void Session::follow_sweeps(const std::string& content) {
   follow_wavelengths(smooth_spectrum_, smooth_scene(spectral_scene_), kSmooth, true);
 }
 
+void Session::follow_camera(const std::string& content) {
+  if (!shows(Panel::kCamera) || !is_bistatic(scene())) return;
+  PointList list = points_at(scene(), std::vector<double>(Curve::kFineCount, state_.theta_deg));
+  list["view_zenith_deg"] = zeniths(0.0, 90.0, Curve::kFineCount);
+  camera_.follow({.key = fmt::format("camera, source at {}\n{}", state_.theta_deg, content),
+                  .scene = scene(),
+                  .parts = {list},
+                  .keep_all = keeps_all()},
+                 "view_zenith_deg");
+}
+
 std::vector<Job> Session::wanted_in_drag() const {
   JobList list;
   const auto add_other = [&](bool is_map) {
@@ -357,6 +369,7 @@ std::vector<Job> Session::wanted_in_drag() const {
   for (const Sweep* sweep : {&smooth_, &smooth_spectrum_}) {
     if (shows(Panel::kSmooth)) list.add(sweep->wanted());
   }
+  if (shows(Panel::kCamera)) list.add(camera_.wanted());
   add_other(!is_map_next_);
   return list.jobs;
 }
@@ -372,6 +385,7 @@ std::vector<Job> Session::wanted() const {
     if (shows(Panel::kSmooth)) list.add(sweep->wanted());
   }
   if (shows(Panel::kSpectrum)) list.add(spectrum_.wanted());
+  if (shows(Panel::kCamera)) list.add(camera_.wanted());
   list.add(peak_.wanted());
   list.add(residuals_.wanted());
   for (const Pin& pin : state_.pins) list.add(pin.curve.wanted(Curve::Stage::kFine));
@@ -391,7 +405,7 @@ void Session::take(const std::vector<JobPart>& news) {
     if (!is_curve) is_map_next_ = !is_map;
     if (is_map && part.is_last && is_dragged()) follow();
     source_sky_.take(part);
-    for (Sweep* sweep : {&spectrum_, &smooth_, &smooth_spectrum_}) sweep->take(part);
+    for (Sweep* sweep : {&spectrum_, &smooth_, &smooth_spectrum_, &camera_}) sweep->take(part);
     if (peak_.take(part) && peak_.answer()) {
       for (Pin& pin : state_.pins) {
         if (pin.curve.key() == curve_.key()) pin.curve.set_peak(peak_.answer()->at);

@@ -140,6 +140,7 @@ class Session {
   const Sweep& spectrum() const { return spectrum_; }              ///< results at the cursor's zenith, over wavelength
   const Sweep& smooth_spectrum() const { return smooth_spectrum_; }  ///< results for sigma = 0, over wavelength
   const Sweep& smooth() const { return smooth_; }                    ///< results for sigma = 0, over zenith
+  const Sweep& camera() const { return camera_; }  ///< bistatic results over the view's zenith, source at the cursor
   const Peak& peak() const { return peak_; }
   const Residuals& residuals() const { return residuals_; }
   bool is_foreign(const Scene& other) const { return other.name() != scene().name() || other.text() != scene().text(); }
@@ -184,6 +185,7 @@ class Session {
   }
   std::vector<Job> wanted_in_drag() const;
   void follow_sweeps(const std::string& content);
+  void follow_camera(const std::string& content);
   bool shows(Panel panel) const { return state_.view.panel == panel; }
   void estimate_influences();
 
@@ -198,7 +200,7 @@ class Session {
   SourceSky source_sky_;
   Scene spectral_scene_;
   MapAxis wavelengths_;
-  Sweep spectrum_, smooth_, smooth_spectrum_;
+  Sweep spectrum_, smooth_, smooth_spectrum_, camera_;
   Peak peak_;
   Residuals residuals_;
   std::optional<Fit> fit_;

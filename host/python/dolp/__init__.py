@@ -22,6 +22,7 @@ Scene                   a scene, from a file or a text, with changed values of k
 table, write_table      DOLP and the other quantities over the scene's grid: as a Dataset, or in a file
 evaluate, mueller       DOLP and the other quantities at points; Mueller matrices for pairs of directions
 lookup                  values between the entries of a table, computed
+camera_stokes           Stokes parameters in the axes of a camera, for a map of surface normals
 response, moments       a response table, which serves any material; reflectances of materials from such a table
 fit                     values of a scene's keys from measured data
 plan                    what a table would compute and cost
@@ -47,6 +48,7 @@ from __future__ import annotations
 
 from . import _native
 from ._arguments import MissingFileError
+from ._camera import camera_stokes
 from ._fit import Fit, fit
 from ._model_warning import ModelWarning
 from ._native import DeviceError, InputError, InputWarning, IoError
@@ -55,7 +57,7 @@ from ._runs import Plan, devices, evaluate, lookup, mueller, plan, table, write_
 from ._scene import Material, Scene, keys, material, materials
 
 # Omits the exceptions: for each of them `help` would print many inherited methods. The text above names them.
-__all__ = ["Fit", "Material", "Plan", "Scene", "citation", "devices", "evaluate", "fit", "keys", "lookup", "material", "materials",
+__all__ = ["Fit", "Material", "Plan", "Scene", "camera_stokes", "citation", "devices", "evaluate", "fit", "keys", "lookup", "material", "materials",
            "moments", "mueller", "plan", "response", "table", "write_table"]
 __version__ = _native.version()
 

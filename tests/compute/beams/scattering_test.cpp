@@ -231,7 +231,7 @@ TEST(BeamGeometry, BeamsInOnePlane_HaveTheFacetBetweenThem) {
                                           {0, 60, 180, 30, 30},
                                           {20, 60, 180, 20, 40},
                                           {20, 60, 0, 40, 20}}) {
-    const BeamGeometry geometry = beam_geometry(theta_i_deg, theta_r_deg, delta_phi_deg);
+    const BeamGeometry geometry = beam_geometry({theta_i_deg, theta_r_deg}, delta_phi_deg);
     EXPECT_NEAR(geometry.slope, tan_deg(slope_deg), 1e-15) << theta_i_deg << " " << theta_r_deg;
     EXPECT_NEAR(geometry.cos_beta, cos_sin_deg(beta_deg).cos, 1e-15) << theta_i_deg << " " << theta_r_deg;
     EXPECT_NEAR(geometry.sin2_beta, std::pow(cos_sin_deg(beta_deg).sin, 2.0), 1e-15) << theta_i_deg;

@@ -32,8 +32,8 @@ TEST(SceneError_InTheFile, NamesFileLineKeyValueAndWhatIsAllowed) {
   const std::vector<ErrorCase> cases = {
       {"[surfaces]\n", {"s.toml:8: surfaces: unknown key", "surface"}},
       {"wavelenght_um = 3\n", {"s.toml:8: spectrum.wavelenght_um = 3: unknown key", "spectrum.wavelength_um"}},
-      {"[grid]\nview_zenith_deg = 3\n",
-       {"s.toml:9: grid.view_zenith_deg = 3: unknown key", "geometry.view_zenith_deg"}},
+      {"[grid]\nview_zenith_deg = 3\n", {"s.toml:9: grid.view_zenith_deg = 3: needs geometry.mode = \"bistatic\""}},
+      {"[grid]\nview_zenith = 3\n", {"s.toml:9: grid.view_zenith = 3: unknown key", "view_zenith_deg"}},
       {"[path]\ntemperature_k = 3\n", {"s.toml:9: path.temperature_k", "nearest known key is path.temperature_K"}},
       {"[geometry]\nmode = \"bistatical\"\n",
        {"s.toml:9: geometry.mode = \"bistatical\": ", "hemispherical, bistatic"}},

@@ -28,6 +28,7 @@ std::vector<std::string> companions_of(const std::string& key) {
   if (key == "surroundings.air_temperature_K") return {"surroundings.profile=clear-sky"};
   if (key == "surroundings.vapour_cm") return {"surroundings.profile=clear-sky", "surroundings.air_temperature_K=330"};
   if (is_wind(key)) return {"surface.distribution=gaussian"};
+  if (key == "grid.view_zenith_deg" || key == "grid.relative_azimuth_deg") return {"geometry.mode=bistatic"};
   if (key.starts_with("surface.coating.1.material")) return {"surface.coating=[{thickness_um=1}]"};
   if (is_of_layer(key)) return {"surface.coating=[{n=1.5,thickness_um=1}]"};
   return {};
@@ -131,6 +132,8 @@ const std::vector<KeyCase>& key_cases() {
       {"surface.coating.1.material_file", "\"index.csv\"",
        [](At s) { return s.surface.coating[0].material.at(10.0).n == 2.0; }},
       {"surface.coating.1.thickness_um", "2", [](At s) { return s.surface.coating[0].thickness_um == 2.0; }},
+      {"surface.coating.1.thickness_spread_um", "0.5",
+       [](At s) { return s.surface.coating[0].thickness_spread_um == 0.5; }},
       {"emission.temperature_K", "290", [](At s) { return s.emission->temperature_K == 290.0; }},
       {"emission.model", "\"fresnel\"", [](At s) { return s.emission->model == EmissionModel::kFresnel; }},
       {"emission.bracket", "false", [](At s) { return !s.emission->has_bracket; }},
@@ -156,6 +159,8 @@ const std::vector<KeyCase>& key_cases() {
       {"geometry.view_zenith_deg", "45", [](At s) { return s.geometry.view_zenith_deg == 45.0; }},
       {"geometry.relative_azimuth_deg", "-90", [](At s) { return s.geometry.relative_azimuth_deg == -90.0; }},
       {"grid.theta_deg", "[90, 0]", [](At s) { return is(s.grid[Axis::kTheta], 90.0, 0.0); }},
+      {"grid.view_zenith_deg", "[10, 70]", [](At s) { return is(s.grid[Axis::kViewZenith], 10.0, 70.0); }},
+      {"grid.relative_azimuth_deg", "[-90, 90]", [](At s) { return is(s.grid[Axis::kRelativeAzimuth], -90.0, 90.0); }},
       {"grid.sigma", "0.7", [](At s) { return is(s.grid[Axis::kSigma], 0.7); }},
       {"grid.wind_m_s", "[0, 5]",
        [](At s) {

@@ -242,8 +242,8 @@ TEST_F(TableFiles, Csv_Rows_ReadBackAsTheSameDoubles) {
   EXPECT_NE(comments.find("# scene: a = 1\n#   b = 2\n# driver: \n"), std::string::npos) << comments;
   EXPECT_NE(comments.find("# tolerance: 1e-04\n"), std::string::npos) << comments;
   EXPECT_EQ(names,
-            "theta_deg,sigma,q,dolp,q_over_i,stokes_i,stokes_q,stokes_u,stokes_v,rho_i,rho_q,albedo,emissivity_s,"
-            "emissivity_p,dolp_low,dolp_high,error_estimate,rho_error_estimate,status");
+            "theta_deg,sigma,q,dolp,q_over_i,aolp_deg,stokes_i,stokes_q,stokes_u,stokes_v,rho_i,rho_q,albedo,"
+            "emissivity_s,emissivity_p,dolp_low,dolp_high,error_estimate,rho_error_estimate,status");
   for (std::size_t i = 0; i < table.size(); ++i) {
     ASSERT_TRUE(std::getline(lines, line));
     std::istringstream cells(line);
@@ -282,7 +282,7 @@ TEST_F(TableFiles, Npy_Bytes_AreAStructuredArray) {
   for (std::size_t i = 0; i < table.size(); ++i) {
     std::array<double, kReals> record{};
     std::memcpy(record.data(), bytes.data() + start + i * kRecord, sizeof record);
-    expect_same({record[0], record[1], record[2], record[3], record[5]},
+    expect_same({record[0], record[1], record[2], record[3], record[6]},
                 {table.axes[Axis::kTheta][i / 2], table.axes[Axis::kSigma][0], table.axes[Axis::kQ][i % 2],
                  table[Quantity::kDolp][i], table[Quantity::kStokesI][i]},
                 "record");

@@ -102,10 +102,13 @@ theta_deg = [20, 60]
 TEST(ExtentsOf, PointsAtTheirWavelengths_AreEachInOne) {
   const SceneEntries points({{10.0, {0.1, 2.0}, {}, 1}, {20.0, {0.3, 3.0}, {}, 0}, {30.0, {0.2, 4.0}, {}, 1}},
                             grid_variants(make_axes({}, {}, {}, {8.0, 9.0})));
-  const std::vector<EntriesExtent> extents = entry_extents(points);
+  const std::vector<EntriesExtent> extents = entry_extents(SceneValues(), points);
   ASSERT_EQ(extents.size(), 2U);
-  EXPECT_EQ(extents[0].theta_deg, std::vector<double>{20.0});
-  EXPECT_EQ(extents[1].theta_deg, (std::vector<double>{10.0, 30.0}));
+  ASSERT_EQ(extents[0].beams.size(), 1U);
+  EXPECT_EQ(extents[0].beams[0].theta_i_deg, 20.0);
+  ASSERT_EQ(extents[1].beams.size(), 2U);
+  EXPECT_EQ(extents[1].beams[0].theta_i_deg, 10.0);
+  EXPECT_EQ(extents[1].beams[1].theta_i_deg, 30.0);
   EXPECT_EQ(extents[1].roughest, (SlopeShape{0.2, 2.0}));
   EXPECT_EQ(extents[1].smoothest, (SlopeShape{0.1, 4.0}));
 }
@@ -118,7 +121,7 @@ TEST(EffectBounds, RandomScenes_HoldWhatEachPartChanges) {
     SceneValues scene = scenes.next();
     scene.accuracy.tolerance = 1e-3;
     const std::vector<SceneEntry> entries = scenes.entries(scene);
-    const EffectBounds bounds(scene, spectral_rule(scene), entry_extents(entries).front());
+    const EffectBounds bounds(scene, spectral_rule(scene), entry_extents(scene, entries).front());
     const std::vector<PointResult> whole = run(scene, entries, keep_everything(scene));
     for (const Part part : kBounded) {
       const double bound = bounds.bound(part, {});

@@ -65,6 +65,8 @@ TEST(ExploreSession, TypedRangeOfTheMap_IsTakenIfTheSceneTakesIt) {
 TEST(HeatMap, EachPairOfAxes_HasTheValuesOfTheScene) {
   const SceneEdits oxide = paint({"surface.coating=[{n=1.3,k=0.1,thickness_um=1},{n=2,thickness_um=0.5}]"});
   const SceneEdits many = paint({"grid.material=[\"PET\", \"gold (Ordal)\"]", "grid.temperature_K=[280, 300]"});
+  const SceneEdits glint =
+      paint({"geometry.mode=bistatic", "source.irradiance=20", "grid.view_zenith_deg=[20, 70]", "grid.theta_deg=40"});
   Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
   struct Case {
     const char *x, *y;
@@ -79,6 +81,8 @@ TEST(HeatMap, EachPairOfAxes_HasTheValuesOfTheScene) {
                                     {"wavelength", "temperature", oxide},
                                     {"n", "k", oxide},
                                     {"q", "wavelength", oxide},
+                                    {"view zenith", "azimuth", glint},
+                                    {"theta", "view zenith", glint},
                                     {"theta", "sigma", many},
                                     {"temperature", "theta", many}}) {
     SCOPED_TRACE(std::string(x) + ' ' + y);

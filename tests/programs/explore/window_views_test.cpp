@@ -164,6 +164,24 @@ TEST(ExplorePanels, Sky_OfABistaticScene_IsComputedWhileItIsShown) {
   EXPECT_FALSE(session.source_sky().is_finished());
 }
 
+TEST(ExplorePanels, Camera_IsTheCurveOverTheViewZenith_WithTheSourceAtTheCursor) {
+  Driver driver(paint({"geometry.mode=bistatic", "source.irradiance=20"}));
+  Session& session = driver.session;
+  session.set_view(&View::panel, Panel::kCamera);
+  session.set_theta(35.0);
+  driver.settle();
+  ASSERT_TRUE(session.camera().is_finished());
+  const std::size_t at = 100;
+  EXPECT_EQ(session.camera().at()[at], 50.0);
+  const Scene scene = session.scene().with("geometry.view_zenith_deg", 50.0);
+  const Point exact = truth(scene, points_at(scene, {35.0})).front();
+  const Point& shown = session.camera().points()[at];
+  EXPECT_NEAR(shown[Quantity::kDolp], exact[Quantity::kDolp],
+              shown[Quantity::kErrorEstimate] + exact[Quantity::kErrorEstimate]);
+  session.set_theta(36.0);
+  EXPECT_FALSE(session.camera().is_finished());
+}
+
 TEST_F(Window, Panels_ClickedOneByOne_AreDrawn_AndTheMapIsComputedWhileItIsShown) {
   const Area map = app_->control_area("panel map");
   const auto below = [&] {

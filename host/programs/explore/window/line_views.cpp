@@ -79,6 +79,11 @@ NamedLine sweep_line(const Sweep& sweep, Plotted quantity, const CurveStyle& sty
   return line;
 }
 
+void mark_zenith(const Plot& plot, double zenith_deg) {
+  const float x = plot.at_position(plot.x().position(zenith_deg), 0.0).x;
+  plot.list()->AddLine({x, plot.min().y}, {x, plot.max().y}, kCursorColour, scaled(1.0F));
+}
+
 void draw_wavelengths(const char* id, Session& session, AxisEditor& editor, ImVec2 size,
                       const std::vector<NamedLine>& lines, const Sweep& sweep, const PlotAxis& values) {
   const MapAxis axis = session.wavelengths();
@@ -134,6 +139,20 @@ void draw_spectrum(Session& session, AxisEditor& editor, ImVec2 size) {
                    {quantity.label(), value_scale(line.values, session.view().is_log)});
 }
 
+void draw_camera(Session& session, ImVec2 size) {
+  constexpr const char* kZenith = "geometry.view_zenith_deg";
+  if (!is_bistatic(session.scene()))
+    return coloured_text(kDimColour, "A camera beside a source: choose the mode bistatic.");
+  const PlottedDescription& quantity = described(session.view().quantity);
+  const NamedLine line = sweep_line(session.camera(), quantity.quantity, current_style(),
+                                    fmt::format("source at θ = {:.4g}°", session.theta_deg()));
+  const Plot plot("camera", size, {"zenith θv of the camera [°]", {0.0, 90.0}},
+                  {quantity.label(), value_scale(line.values, session.view().is_log)});
+  draw_lines(plot, session.camera().at(), {line}, true);
+  mark_zenith(plot, session.scene().number(kZenith).value());
+  if (plot.is_dragged()) session.set(kZenith, plot.x().rounded(plot.mouse_x()));
+}
+
 void draw_smooth(Session& session, AxisEditor& editor, ImVec2 size) {
   const ImVec2 half{size.x, 0.5F * (size.y - ImGui::GetStyle().ItemSpacing.y)};
   const auto both_lines = [&](const Sweep& sweep) {
@@ -147,8 +166,7 @@ void draw_smooth(Session& session, AxisEditor& editor, ImVec2 size) {
       {is_band ? "R_s, R_p, mean over the band" : "R_s, R_p", values_range(over_angle, session.view().is_log)});
   if (plot.is_dragged()) session.set_theta(plot.x().value(plot.mouse_x()));
   draw_lines(plot, session.smooth().at(), over_angle, true);
-  const float x = plot.at_position(plot.x().position(session.theta_deg()), 0.0).x;
-  plot.list()->AddLine({x, plot.min().y}, {x, plot.max().y}, kCursorColour, scaled(1.0F));
+  mark_zenith(plot, session.theta_deg());
   draw_wavelengths(
       "smooth spectrum", session, editor, half, over, session.smooth_spectrum(),
       {fmt::format("R_s, R_p at β = {:.4g}°", session.theta_deg()), values_range(over, session.view().is_log)});

@@ -206,6 +206,7 @@ void draw_panel(Ui& ui, ImVec2 size) {
       [](Ui& u, ImVec2 room) { u.scattering_view.draw(u.session, room); },
       [](Ui& u, ImVec2 room) { u.shape_view.draw(u.session, room); },
       [](Ui& u, ImVec2 room) { draw_sky(u.session, room); },
+      [](Ui& u, ImVec2 room) { draw_camera(u.session, room); },
       [](Ui& u, ImVec2) { draw_fit_result(u.session); }};
   kDraw.at(static_cast<std::size_t>(ui.session.view().panel))(ui, size);
 }

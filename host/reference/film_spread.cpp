@@ -11,16 +11,17 @@ namespace dolp::reference {
 namespace {
 
 constexpr double kSpreads = 8.0;
-constexpr double kPanelsPerFringe = 6.0;
+constexpr double kMostPanelsPerFringe = 12.0;
 constexpr double kFewestPanels = 8.0;
 
 /// Thicknesses of a film and their weights.
-std::vector<std::pair<double, double>> thickness_rule(const Film& film) {
+std::vector<std::pair<double, double>> thickness_rule(const Film& film, double cos_beta) {
   using Rule = boost::math::quadrature::gauss<double, 16>;
   const double from = std::max(0.0, film.thickness - kSpreads * film.spread);
   const double to = film.thickness + kSpreads * film.spread;
   const double fringes = 2.0 * (to - from) * std::hypot(film.index.n, film.index.k);
-  const double panels = std::max(kFewestPanels, std::ceil(kPanelsPerFringe * fringes));
+  const double per_fringe = std::min(2.0 + 0.2 / cos_beta, kMostPanelsPerFringe);  // resonances near grazing are narrow
+  const double panels = std::max(kFewestPanels, std::ceil(per_fringe * fringes));
   const double half = 0.5 * (to - from) / panels;
   std::vector<std::pair<double, double>> rule;
   double sum = 0.0;
@@ -48,20 +49,19 @@ struct MeanCurves {
 };
 
 MeanCurves mean_curves(const FacetOptics& optics) {
-  constexpr double kPoints = 200.0;
-  constexpr double kPointsPerFringe = 16.0;
+  constexpr double kPoints = 150.0;
+  constexpr double kPointsPerFringe = 4.0;
   constexpr std::size_t kOrder = 8;
   constexpr double kLeastRoot = 1e-6;
   double fringes = 0.0;
-  for (const Film& film : optics.films) fringes += 2.0 * film.thickness * film.index.n;
+  for (const Film& film : optics.films) fringes += 2.0 * film.thickness * film.index.n;  // more than any film has
   const double last = kPoints + kPointsPerFringe * fringes;
-  const auto stacks = single_stacks(optics);
   std::vector<double> at, absorbed_s, absorbed_p;
   for (double i = 0.0; i <= last; ++i) {
     at.push_back(std::max(i / last, kLeastRoot));
     absorbed_s.push_back(0.0);
     absorbed_p.push_back(0.0);
-    for (const auto& [stack, weight] : stacks) {
+    for (const auto& [stack, weight] : single_stacks(optics, at.back() * at.back())) {
       const FresnelCoefficients own = fresnel(stack, at.back() * at.back());
       absorbed_s.back() += weight * own.absorbed_s;
       absorbed_p.back() += weight * own.absorbed_p;
@@ -77,13 +77,13 @@ bool has_spread(const FacetOptics& optics) {
   return std::ranges::any_of(optics.films, [](const Film& film) { return film.spread > 0.0; });
 }
 
-std::vector<std::pair<FacetOptics, double>> single_stacks(const FacetOptics& optics) {
+std::vector<std::pair<FacetOptics, double>> single_stacks(const FacetOptics& optics, double cos_beta) {
   std::vector<std::pair<FacetOptics, double>> stacks = {{optics, 1.0}};
   for (std::size_t j = 0; j < optics.films.size(); ++j) {
     if (optics.films[j].spread == 0.0) continue;
     std::vector<std::pair<FacetOptics, double>> product;
     for (const auto& [stack, weight] : stacks) {
-      for (const auto& [thickness, share] : thickness_rule(optics.films[j])) {
+      for (const auto& [thickness, share] : thickness_rule(optics.films[j], cos_beta)) {
         auto& [single, own] = product.emplace_back(stack, weight * share);
         single.films[j] = {optics.films[j].index, thickness, 0.0};
       }

@@ -281,7 +281,7 @@ ReferenceMueller reference_scattering(const Surface& surface, const FacetOptics&
   const Real cos2_beta = dot(facet, facet) / 4;
   const auto tan2_alpha = static_cast<double>((facet[0] * facet[0] + facet[1] * facet[1]) / (facet[2] * facet[2]));
   ReferenceMueller facet_matrix{};
-  for (const auto& [stack, weight] : reference::single_stacks(constants)) {
+  for (const auto& [stack, weight] : reference::single_stacks(constants, static_cast<double>(sqrt(cos2_beta)))) {
     const auto r = fresnel_amplitudes<Complex>(stack, sqrt(cos2_beta), 1 - cos2_beta);
     add(facet_matrix, scaled_matrix(mueller_from_jones(jones_matrix(in, out, r)), weight));
   }

@@ -59,8 +59,8 @@ bool is_number_of(const SceneValues& scene, const SceneEntries& entries, const s
 /// The step from x. It is 0, which makes the derivative NaN, if x is outside the range or at one of its ends.
 double step_at(double x, const NumberRange& range) {
   if (!range.contains(x)) return 0.0;
-  const double below = std::isfinite(range.min) ? x - range.min : std::max(std::abs(x), 1.0);
-  return std::min(kStep * below, 0.5 * (range.max - x));
+  const double size = std::min(std::max(std::abs(x), 1.0), x - range.min);
+  return std::min(kStep * size, 0.5 * (range.max - x));
 }
 
 double wind_from_sigma(double sigma) {

@@ -106,7 +106,7 @@ TEST(Films, Reflection_AgreesWithCharacteristicMatrices) {
 /// The mean over single thicknesses, from the reference.
 FilmReflection mean_of_stacks(const FacetOptics& optics, double cosine) {
   FilmReflection mean;
-  for (const auto& [stack, weight] : reference::single_stacks(optics)) {
+  for (const auto& [stack, weight] : reference::single_stacks(optics, cosine)) {
     const reference::FresnelCoefficients r = reference::fresnel(stack, cosine);
     mean.r_s += weight * std::norm(r.r_s);
     mean.r_p += weight * std::norm(r.r_p);

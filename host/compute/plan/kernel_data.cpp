@@ -100,7 +100,13 @@ std::uint8_t most_nodes(const KernelData& data, const Loops& loops) {
   return static_cast<std::uint8_t>(most);
 }
 
-void add_direction(KernelData& data, const MomentsRequest& request, double theta_deg, const DirectionVariant& variant) {
+struct DirectionNode {
+  kernel::ThetaNode theta;
+  Pieces pieces;
+};
+
+DirectionNode direction_node(const KernelData& data, const MomentsRequest& request, double theta_deg,
+                             const DirectionVariant& variant) {
   const CosSin a = cos_sin_deg(theta_deg);
   kernel::ThetaNode node{};
   node.c = a.cos;
@@ -121,8 +127,7 @@ void add_direction(KernelData& data, const MomentsRequest& request, double theta
     pieces.most_nodes[i] = most_nodes(data, loops);
     pieces.lockstep[i] = static_cast<std::uint16_t>(kMostArcs * loops.turns + loops.arcs);
   }
-  data.thetas.push_back(node);
-  data.pieces.push_back(pieces);
+  return {node, pieces};
 }
 
 // The slope at which the integral ends. Steeper facets are less than `share` of all facets. They contribute at most
@@ -228,8 +233,11 @@ void add_grid_directions(KernelData& data, const MomentsRequest& request) {
   }
   for (const double critical_cos : critical) {
     for (std::uint32_t line = 0; line < lines; ++line) {
-      for (const double theta_deg : request.theta_deg)
-        add_direction(data, request, theta_deg, {critical_cos, line == 1});
+      for (const double theta_deg : request.theta_deg) {
+        const auto [theta, pieces] = direction_node(data, request, theta_deg, {critical_cos, line == 1});
+        data.thetas.push_back(theta);
+        data.pieces.push_back(pieces);
+      }
     }
   }
 }
@@ -265,12 +273,24 @@ void add_grid(KernelData& data, const MomentsRequest& request) {
 }
 
 void add_points(KernelData& data, const MomentsRequest& request) {
-  for (std::size_t i = 0; i < request.size(); ++i) {
-    const bool is_new = i == 0 || request[i].shape != request[i - 1].shape;
-    if (is_new) add_shape(data, request, request[i].shape);
+  constexpr std::size_t kPointsAtOnce = 512;
+  const std::size_t count = request.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool is_new = i == 0 || request.sigma[i] != request.sigma[i - 1] || request.q[i] != request.q[i - 1];
+    if (is_new) add_shape(data, request, {request.sigma[i], request.q[i]});
     data.shape_positions.push_back(static_cast<std::uint32_t>(data.shapes.size() - 1));
-    add_direction(data, request, request.theta_deg[i], {data.indices[i].critical_cos, data.needs_line.back() != 0});
   }
+  data.thetas.resize(count);
+  data.pieces.resize(count);
+  parallel_ranges(count, kPointsAtOnce, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const bool has_line = data.needs_line[data.shape_positions[i]] != 0;
+      const auto [theta, pieces] =
+          direction_node(data, request, request.theta_deg[i], {data.indices[i].critical_cos, has_line});
+      data.thetas[i] = theta;
+      data.pieces[i] = pieces;
+    }
+  });
 }
 
 }  // namespace

@@ -57,7 +57,9 @@ std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const Scene
   if (has_one_index) return {};
   std::set<FacetOptics> indices;
   std::set<std::tuple<double, double, double>> shapes;
-  std::size_t points = 0;
+  std::size_t points = 0, most_points = 0;
+  for (const std::vector<FacetOptics>& samples : spectral) most_points = std::max(most_points, samples.size());
+  most_points *= entries.size();
   const auto add = [&](const FacetOptics& index) { indices.insert(index); };
   for (const SceneEntry& entry : entries.all()) {
     shapes.insert({moment_zenith_deg(scene, entry), entry.shape.sigma, entry.shape.q});
@@ -65,6 +67,7 @@ std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const Scene
     if (entry.index) std::ranges::for_each(with_index(samples, entry.index), add);
     if (!entry.index) std::ranges::for_each(samples, add);
     points += entry.index && samples.front().is_bare() ? 1 : samples.size();
+    if (shapes.size() * indices.size() > kMostOfPoints * most_points) return {};
   }
   if (shapes.size() * indices.size() > kMostOfPoints * points) return {};
   return {indices.begin(), indices.end()};

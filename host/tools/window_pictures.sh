@@ -15,5 +15,6 @@ picture explore_material material night_paint --set "surface.material='water 25C
 picture explore_pbrdf pBRDF night_paint
 picture explore_sphere sphere night_paint
 picture explore_sky sky glint
+picture explore_camera camera mwir_glint
 picture explore_smooth smooth paint_on_metal --tolerance 1e-3
 picture explore_spectrum spectrum oxide_on_aluminium

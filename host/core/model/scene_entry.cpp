@@ -63,7 +63,11 @@ Axes axes_part(const Axes& axes, const PerAxis& first, const PerAxis& count) {
 
 PerAxis positions_on_axes(std::size_t position, const PerAxis& counts) {
   PerAxis on_axes = {};
-  for (std::size_t i = kAxisCount; i-- > 0 && position > 0; position /= counts[i]) on_axes[i] = position % counts[i];
+  for (std::size_t i = kAxisCount; i-- > 0 && position > 0;) {
+    if (counts[i] == 1) continue;  // most tables lack most axes, and a division takes time
+    on_axes[i] = position % counts[i];
+    position /= counts[i];
+  }
   return on_axes;
 }
 

@@ -44,6 +44,17 @@ auto read_scene_file(SceneValues& scene, const std::string& file, const std::str
   }
 }
 
+/// The data that the scene's table stores for a file, or read(path, prefix) of the file. `name`: the file in
+/// SceneNames.
+template <class Data, class Read>
+Data stored_or_read(SceneValues& scene, std::string SceneNames::*name, std::optional<Data> KnownData::*stored,
+                    const std::string& prefix, const Read& read) {
+  const KnownData* const known = stored_data(scene, [name](const SceneNames& all) { return all.*name; });
+  if (known && known->*stored) return *(known->*stored);
+  return read_scene_file(scene, scene.names.*name, prefix, known,
+                         [&](const std::string& path) { return read(path, prefix); });
+}
+
 Spectrum all_wavelengths(const SceneValues& scene) {
   Spectrum all = scene.spectrum;
   for (const double wavelength_um : scene.grid[Axis::kWavelength]) {
@@ -189,12 +200,8 @@ void load_materials(SceneValues& scene, const SceneDocument& document) {
   if (!document.find("surface.reflectance_file")) return;
   const std::string prefix = document.prefix("surface.reflectance_file");
   if (!surface.coating.empty()) throw InputError(prefix + "cannot be combined with surface.coating");
-  known = stored_data(scene, [](const SceneNames& all) { return all.reflectance_file; });
   ReflectanceTable table =
-      known && known->reflectance
-          ? *known->reflectance
-          : read_scene_file(scene, scene.names.reflectance_file, prefix, known,
-                            [&](const std::string& path) { return read_reflectance_file(path, prefix); });
+      stored_or_read(scene, &SceneNames::reflectance_file, &KnownData::reflectance, prefix, read_reflectance_file);
   if (!table.wavelength_um.empty()) check_covers({table.wavelength_um, {}}, all_wavelengths(scene), prefix);
   surface.reflectance = std::make_shared<const ReflectanceTable>(std::move(table));
 }
@@ -203,26 +210,20 @@ void load_materials(SceneValues& scene, const SceneDocument& document) {
 void load_response(SceneValues& scene, const SceneDocument& document) {
   if (!document.find("spectrum.response_file")) return;
   const std::string prefix = document.prefix("spectrum.response_file");
-  const KnownData* const known = stored_data(scene, [](const SceneNames& all) { return all.response_file; });
-  SpectralTable table =
-      known && known->response
-          ? *known->response
-          : read_scene_file(scene, scene.names.response_file, prefix, known, [&](const std::string& path) {
-              return parse_response(read_named_file(path, prefix), path);
-            });
+  const auto read = [](const std::string& path, const std::string& origin) {
+    return parse_response(read_named_file(path, origin), path);
+  };
+  SpectralTable table = stored_or_read(scene, &SceneNames::response_file, &KnownData::response, prefix, read);
   scene.spectrum = response_spectrum(std::move(table), scene.spectrum.response_per);
 }
 
 void load_diffuse(SceneValues& scene, const SceneDocument& document) {
   if (!document.find("surface.diffuse_file")) return;
   const std::string prefix = document.prefix("surface.diffuse_file");
-  const KnownData* const known = stored_data(scene, [](const SceneNames& all) { return all.diffuse_file; });
-  SpectralTable table =
-      known && known->diffuse
-          ? *known->diffuse
-          : read_scene_file(scene, scene.names.diffuse_file, prefix, known, [&](const std::string& path) {
-              return parse_diffuse(read_named_file(path, prefix), path);
-            });
+  const auto read = [](const std::string& path, const std::string& origin) {
+    return parse_diffuse(read_named_file(path, origin), path);
+  };
+  SpectralTable table = stored_or_read(scene, &SceneNames::diffuse_file, &KnownData::diffuse, prefix, read);
   check_covers(table, all_wavelengths(scene), prefix);
   Surface& surface = scene.surface;
   surface.diffuse = largest_value(table, all_wavelengths(scene));

@@ -22,10 +22,10 @@ struct KnownData {
   bool may_open_files = false;  ///< allows opening files for missing data; error messages quote no text of the files
 };
 
-/// Loads the data that a scene names: response of the camera, materials, measured
-/// reflectances, diffuse reflectance, irradiance of the source, and sky. Takes them
-/// from scene.known if the name is the same there; else from built-in data, or from files, whose paths are relative to
-/// the folder of scene.path_name. Errors: InputError that begins with the file, line and key.
+/// Loads the data that a scene names: response of the camera, materials, measured reflectances, diffuse reflectance,
+/// irradiance of the source, and sky. Takes them from scene.known if the name is the same there; else from built-in
+/// data, or from files, whose paths are relative to the folder of scene.path_name. Errors: InputError that begins with
+/// the file, line and key.
 void load_named_data(SceneValues& scene, const SceneDocument& document);
 
 }  // namespace dolp

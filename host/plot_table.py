@@ -86,7 +86,8 @@ def scene_part(dataset, part):
     try:
         keys = tomllib.loads(text_of(dataset, "scene")).get(part, {})
         for line in text_of(dataset, "scene_overrides").splitlines():
-            if line.startswith(f"{part}.") and not line.startswith("spectrum.response_per"):  # no picture shows this key
+            is_shown = not line.startswith("spectrum.response_per")
+            if line.startswith(f"{part}.") and is_shown:
                 kept = {} if part == "spectrum" else keys  # has one key: a wavelength, a band or a response
                 keys = {**kept, **tomllib.loads(line.removeprefix(f"{part}."))}
         return keys

@@ -57,16 +57,16 @@ bool is_ecostress(std::string_view text) {
   return first.starts_with("Name:") && text.find("Y Units:") != std::string_view::npos;
 }
 
-bool begins_with_number(std::string_view line) {
+bool is_pair_of_numbers(std::string_view line) {
   const std::vector<std::string_view> cells = split_cells(line, ' ');
-  return !cells.empty() && parse_number(cells.front()).has_value();
+  return cells.size() == 2 && parse_number(cells[0]) && parse_number(cells[1]);
 }
 
-/// Reads the lines "Key: value" and the rows below, which have micrometres and percent.
+/// Reads the lines "Key: value", which may go on in the next line, and the rows below in micrometres and percent.
 std::vector<SpectralRow> read_ecostress(std::string_view text, const std::string& name) {
   const std::vector<std::string_view> lines = split_lines(text);
   std::size_t i = 0;
-  for (; i < lines.size() && !begins_with_number(lines[i]); ++i) {
+  for (; i < lines.size() && !is_pair_of_numbers(lines[i]); ++i) {
     const std::string line = lower_case(lines[i]);
     const auto check = [&](const char* key, const char* unit, const char* expected) {
       if (line.starts_with(key) && line.find(unit) == std::string::npos)

@@ -66,6 +66,8 @@ TEST(DiffuseFile_OfEcostress, HasThePercentOfItsRowsAsFractions) {
     std::string other = text;
     return error_text([&] { parse_diffuse(other.replace(other.find(old), old.size(), replacement), "e.txt"); });
   };
+  EXPECT_EQ(changed("made up", "made up, with grains of\n75 micrometers"), "no error");
+  EXPECT_EQ(changed("Reflectance (percent)", "Reflectance (percentage)"), "no error");
   EXPECT_EQ(changed("Reflectance (percent)", "Transmittance (percent)"),
             "e.txt:16: Y Units: Transmittance (percent): must be Reflectance (percent)");
   EXPECT_TRUE(contains(changed("10.6000\t6.2", "10.6000\t106.2"), "e.txt:23: reflectance = 106.2: out of range"));

@@ -23,7 +23,7 @@ inline const std::string kPoints = "theta_deg,sigma,q\n0,0.1,2\n60.0,0.4,3.5\n 8
 inline const std::vector<std::string> kResultColumns = {
     "rho_i",        "rho_q",        "albedo",   "stokes_i",       "stokes_q",
     "stokes_u",     "stokes_v",     "dolp",     "error_estimate", "rho_error_estimate",
-    "emissivity_s", "emissivity_p", "q_over_i", "status"};
+    "emissivity_s", "emissivity_p", "q_over_i", "aolp_deg",       "status"};
 
 /// Environment in which the Vulkan loader finds no driver.
 inline const std::vector<std::pair<std::string, std::string>> kNoDriver = {{"VK_DRIVER_FILES", "/nonexistent.json"},

@@ -43,20 +43,20 @@ struct Sums {
 constexpr int kSteps = 3000;  // the kinks of response and n, k leave errors below kSumError
 constexpr double kSumError = 2e-6;
 
-Sums wavelength_sums(SceneValues scene, const std::function<double(double)>& weight) {
+Sums wavelength_sums(SceneValues scene, const std::function<double(double)>& weight, int steps = kSteps) {
   const Spectrum band = scene.spectrum;
   std::vector<SceneEntry> entries;
   std::vector<SceneVariant> variants;
-  for (int step = 0; step < kSteps; ++step) {
+  for (int step = 0; step < steps; ++step) {
     entries.push_back({60.0, {scene.surface.sigma, scene.surface.q}, {}, static_cast<std::uint32_t>(step)});
-    variants.emplace_back().wavelength_um = std::lerp(band.min_um, band.max_um, (step + 0.5) / kSteps);
+    variants.emplace_back().wavelength_um = std::lerp(band.min_um, band.max_um, (step + 0.5) / steps);
   }
   scene.spectrum = {band.min_um, band.min_um};
   Sums sums;
   double all = 0.0;
   const std::vector<PointResult> results = results_of(scene, {entries, variants});
-  for (int step = 0; step < kSteps; ++step) {
-    const double width = weight(*variants[step].wavelength_um) * (band.max_um - band.min_um) / kSteps;
+  for (int step = 0; step < steps; ++step) {
+    const double width = weight(*variants[step].wavelength_um) * (band.max_um - band.min_um) / steps;
     sums.i += width * results[step][kStokesI];
     sums.q += width * results[step][kStokesQ];
     sums.rho += width * results[step][kRhoI];
@@ -151,17 +151,21 @@ TEST(DiffuseFile, Band_IsTheIntegralOfItsWavelengths) {
       {"emission=none"},
       {"emission=none", "surroundings=none"},
       {"surroundings.profile=clear-sky"},
-      {"surface.n=1.5", "surface.sigma=0.1", "surroundings.profile=clear-sky", "emission.model=direct"},
-      {"surface.n=1.5", "surface.sigma=0.1", "geometry.mode=bistatic", "source.irradiance=50"}};
+      {"surroundings.profile=clear-sky", "emission.model=direct"},
+      {"surface.sigma=0.1", "surface.specular=0", "geometry.mode=bistatic", "source.irradiance=50"}};
   for (std::vector<std::string> settings : cases) {
-    settings.insert(settings.end(), {"surface.specular=0.4", diffuse});
+    settings.insert(settings.begin(), {"surface.specular=0.4", diffuse});
     const SceneValues scene = parse(kSilica, settings);
     const std::string name = fmt::format("{}", fmt::join(settings, " "));
-    const Sums expected = wavelength_sums(scene, [](double) { return 1.0; });
+    // A sky makes each wavelength slow. With a fifth of the steps, the error of the sums is 25 times as large.
+    const bool has_sky = scene.surroundings && scene.surroundings->profile;
+    const Sums expected = wavelength_sums(
+        scene, [](double) { return 1.0; }, has_sky ? kSteps / 5 : kSteps);
+    const double sum_error = has_sky ? 25.0 * kSumError : kSumError;
     const PointResult result = results_of(scene).front();
-    EXPECT_NEAR(result[kStokesI] / expected.i, 1.0, 2.0 * kSumError) << name;
-    EXPECT_NEAR(result[kQOverI], expected.q / expected.i, kSumError + result[kErrorEstimate]) << name;
-    const bool has_flat_light = settings[0] == "emission=none" && settings[1] == "surroundings=none";
+    EXPECT_NEAR(result[kStokesI] / expected.i, 1.0, 2.0 * sum_error) << name;
+    EXPECT_NEAR(result[kQOverI], expected.q / expected.i, sum_error + result[kErrorEstimate]) << name;
+    const bool has_flat_light = !scene.emission && !scene.surroundings;
     if (has_flat_light) {
       EXPECT_NEAR(result[kRhoI], expected.rho, kSumError) << name;
     }

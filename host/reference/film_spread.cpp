@@ -20,7 +20,7 @@ std::vector<std::pair<double, double>> thickness_rule(const Film& film, double c
   const double from = std::max(0.0, film.thickness - kSpreads * film.spread);
   const double to = film.thickness + kSpreads * film.spread;
   const double fringes = 2.0 * (to - from) * std::hypot(film.index.n, film.index.k);
-  const double per_fringe = std::min(2.0 + 0.2 / cos_beta, kMostPanelsPerFringe);  // resonances near grazing are narrow
+  const double per_fringe = std::min(6.0 + 0.2 / cos_beta, kMostPanelsPerFringe);  // resonances near grazing are narrow
   const double panels = std::max(kFewestPanels, std::ceil(per_fringe * fringes));
   const double half = 0.5 * (to - from) / panels;
   std::vector<std::pair<double, double>> rule;

@@ -117,7 +117,8 @@ Control film_control(const Key& key) {
   const std::string name = key.key.substr(key.key.rfind('.') + 1);
   if (name == "n") return {&key, fmt::format("n_{}", key.layer), "N = n + ik of the film", {0.1, 10.0, true}};
   if (name == "k") return {&key, fmt::format("k_{}", key.layer), "N = n + ik of the film", {0.0, 10.0}};
-  if (name == "thickness_spread_um") return {&key, fmt::format("s_{}", key.layer), "⟨M⟩ over d = d̄ ± s", {0.0, 10.0}};
+  if (name == "thickness_spread_um")
+    return {&key, fmt::format("s_{}", key.layer), "the mean of M over d, with the standard deviation s", {0.0, 10.0}};
   return {&key, fmt::format("d_{}", key.layer), "δ = 2π d √(N² − sin²β)/λ, the phase of a film", {1e-3, 100.0, true}};
 }
 

@@ -330,7 +330,7 @@ TEST(ShippedScenes, AllParse) {
         << entry.path();
     ++count;
   }
-  EXPECT_EQ(count, 21U);
+  EXPECT_EQ(count, 22U);
 }
 
 TEST(ShippedScenes_OfThePaper, HaveItsSamples) {

@@ -92,6 +92,7 @@ TEST_F(FitTest, EachNumberOfAScene_VariesAsASettingOfItWould) {
                                            {"surface.coating.1.n", {1.6, film}},
                                            {"surface.coating.1.k", {0.1, film}},
                                            {"surface.coating.1.thickness_um", {1.5, film}},
+                                           {"surface.coating.1.thickness_spread_um", {0.2, film}},
                                            {"emission.temperature_K", {310}},
                                            {"source.irradiance", {5, bistatic}},
                                            {"source.relative_irradiance", {5, bistatic}},

@@ -196,6 +196,7 @@ TEST(Conflicts, EveryChoiceInEveryScene_IsTakenWithTheLeastThatItNeeds) {
     SceneEdits edits = paint();
     edits.set(combination);
     for (const Control& choice : controls()) {
+      if (choice.key->key == "spectrum.response_per") continue;  // the window shows it only beside a response_file
       for (const std::string& word : choice.key->words) {
         const Setting chosen = {choice.key->key, TomlText{word}};
         SceneEdits changed = edits;

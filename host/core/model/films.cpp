@@ -149,9 +149,9 @@ class Stack {
 
 /// r as a function of the thickness of one film, through its z = exp(2 i delta): r = first + amplitude z / (1 - fall
 /// z).
-class OfFilm {
+class FilmSeries {
  public:
-  OfFilm(const Stack& stack, std::size_t film) : wave_(stack.wave(film)) {
+  FilmSeries(const Stack& stack, std::size_t film) : wave_(stack.wave(film)) {
     if (wave_.q == 0.0) wave_.q = kSmallestQ;
     // Top and bottom of r are linear in 1 - z: `whole` + (1 - z) `slope`.
     const BothFields at_1 = stack.fields(film, {0.0, 0.0});
@@ -242,22 +242,36 @@ void add(FilmReflection& sum, const FilmReflection& more, double weight) {
   sum.cross += weight * more.cross;
 }
 
+/// True if thickness 0 cuts off a part of the distribution that matters: more than 3e-7 of the facets.
+bool is_cut(const Film& film) {
+  constexpr double kReachOfCut = 5.0;
+  return film.thickness < kReachOfCut * film.spread;
+}
+
+/// True if the end of the distribution at thickness 0 keeps a part of a fringe with the frequency. The part is about
+/// the density there, divided by the frequency.
+bool ends_sharply(const Film& film, double frequency) {
+  constexpr double kLeastPart = 1e-5;
+  const double off = film.thickness / film.spread;
+  return std::exp(-0.5 * off * off) / std::sqrt(kTwoPi) > kLeastPart * frequency * film.spread;
+}
+
 /// The mean of f(thickness) over the normal distribution of a film's thickness, by the trapezoidal rule. It converges
 /// faster than any power of the step if f has no frequency above `most_frequency` (radians per wavelength), as long as
-/// no part of the distribution is left out at thickness 0. There the weights are Gregory's for an error of order h^4.
+/// thickness 0 does not cut it. There the weights are Gregory's for an error of order h^4.
 template <class Function>
 FilmReflection mean_over_thickness(const Film& film, double most_frequency, const Function& f) {
-  constexpr double kStepAtZero = 0.01;  // in spreads; with `most_frequency`, the error is then below 1e-6
+  constexpr double kStepAtZero = 0.05;  // in spreads; with `most_frequency`, the error is then below 1e-6
   constexpr std::array<double, 3> kAtZero = {3.0 / 8.0, 7.0 / 6.0, 23.0 / 24.0};
-  const double least = film.thickness - kReachInSpreads * film.spread;
+  const double least = std::max(film.thickness - kReachInSpreads * film.spread, 0.0);
+  const double most = film.thickness + kReachInSpreads * film.spread;
   double step = kTwoPi / (most_frequency + kReachInSpreads / film.spread);
-  if (least < 0.0) step = std::min(0.25 * step, kStepAtZero * film.spread);
+  if (is_cut(film)) step = std::min(0.25 * step, kStepAtZero * film.spread);
   FilmReflection mean;
   double weights = 0.0;
-  const double first = std::max(0.0, std::ceil(least / step));
-  for (double i = first; i * step <= film.thickness + kReachInSpreads * film.spread; ++i) {
+  for (double i = std::ceil(least / step); i * step <= most; ++i) {
     const double off = (i * step - film.thickness) / film.spread;
-    const bool is_at_end = least < 0.0 && i < static_cast<double>(kAtZero.size());
+    const bool is_at_end = is_cut(film) && i < static_cast<double>(kAtZero.size());
     const double weight = (is_at_end ? kAtZero[static_cast<std::size_t>(i)] : 1.0) * std::exp(-0.5 * off * off);
     add(mean, f(i * step), weight);
     weights += weight;
@@ -269,19 +283,19 @@ FilmReflection mean_over_thickness(const Film& film, double most_frequency, cons
 
 /// The mean over the thickness of one film. The other films keep the thickness of `stack`.
 FilmReflection film_mean(const Stack& stack, const Film& film, std::size_t number) {
-  const OfFilm reflection(stack, number);
+  const FilmSeries reflection(stack, number);
   const double frequency = kFourPi * stack.wave(number).q.real();
-  const double least = film.thickness - kReachInSpreads * film.spread;
-  const double harmonics = reflection.harmonics(std::max(least, 0.0));
-  // The mean keeps no harmonic beyond these. A distribution that ends at thickness 0 keeps some of each.
+  const double least = std::max(film.thickness - kReachInSpreads * film.spread, 0.0);
+  const double harmonics = reflection.harmonics(least);
+  // The mean keeps no harmonic beyond these, unless the end of the distribution at thickness 0 keeps some of each.
   const double lasting = std::floor(kReachInSpreads / (frequency * film.spread));
-  if (least > 0.0 && lasting < harmonics && reflection.largest_ratio(least) < 1.0) {
+  if (!ends_sharply(film, frequency) && lasting < harmonics && reflection.largest_ratio(least) < 1.0) {
     const int most = static_cast<int>(lasting);
     if (most == 0) return mean_over_thickness(film, 0.0, [&](double d) { return reflection.mean_over_phase(d); });
     return mean_over_thickness(film, lasting * frequency, [&](double d) { return reflection.at(d, most); });
   }
   // At thickness 0 the step must resolve a decay, too.
-  const double fastest = least > 0.0 ? frequency : kFourPi * std::abs(stack.wave(number).q);
+  const double fastest = !is_cut(film) ? frequency : kFourPi * std::abs(stack.wave(number).q);
   return mean_over_thickness(film, harmonics * fastest, [&](double d) { return reflection.at(d); });
 }
 
@@ -297,11 +311,17 @@ FilmReflection film_reflection(const FacetOptics& optics, double cosine) {
   const auto [outer, inner] = std::pair(varied[0], varied[1]);
   const Film& film = optics.films[outer];
   const double least = std::max(0.0, film.thickness - kReachInSpreads * film.spread);
-  const double most = kFourPi * stack.wave(outer).q.real() * OfFilm(stack, outer).harmonics(least);
+  const double most = kFourPi * stack.wave(outer).q.real() * FilmSeries(stack, outer).harmonics(least);
   return mean_over_thickness(film, most, [&](double d) {
     stack.thickness[outer] = d;
     return film_mean(stack, optics.films[inner], inner);
   });
+}
+
+bool is_too_wide(const Film& film) {
+  constexpr double kMostWavelengths = 80.0;  // optical thickness; a mean then takes some 16,000 points
+  return film.spread > 0.0 && is_cut(film) &&
+         film.index.n * (film.thickness + kReachInSpreads * film.spread) > kMostWavelengths;
 }
 
 bool is_blurred(const Film& film) {

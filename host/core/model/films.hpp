@@ -21,11 +21,15 @@ struct FilmReflection {
 /// From there outward, each film replaces r by (r_j + r z) / (1 + r_j r z) with z = e^(2 i delta). r_j is the
 /// coefficient of the film's outer interface, delta = 2 pi d sqrt(N^2 - sin^2 beta) / lambda for its thickness d and
 /// index N. Source: Born and Wolf, Principles of Optics, section 1.6. Conventions: r_p = -r_s at normal incidence.
-/// Domain: cosine in (0, 1]; at most kMostVariedFilms films with a spread.
-/// Accuracy: 1e-14 without a spread, 1e-9 with one (tests FilmSpread_*).
+/// Domain: cosine in (0, 1]; at most kMostVariedFilms films with a spread; not is_too_wide().
+/// Accuracy: 1e-14 without a spread, 1e-9 with one, 4e-6 if the mean thickness is below 5 spreads (tests FilmSpread).
 FilmReflection film_reflection(const FacetOptics& optics, double cosine);
 
 inline constexpr std::size_t kMostVariedFilms = 2;
+
+/// True if the mean over the thickness would need too many points: a spread above a fifth of the thickness, with
+/// fringes that the end of the distribution at thickness 0 does not average out.
+bool is_too_wide(const Film& film);
 
 /// True if the thickness of the film varies so much that no interference is left, at any angle. `thickness` and
 /// `spread` in wavelengths.

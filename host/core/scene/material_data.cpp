@@ -10,6 +10,7 @@
 
 #include <dolp/number_range.hpp>
 #include "base/text.hpp"
+#include "model/films.hpp"
 #include "scene/csv.hpp"
 #include "scene/embedded_data.hpp"
 #include "scene/spectral_data.hpp"
@@ -149,9 +150,17 @@ FacetOptics Surface::optics_at(double wavelength_um) const {
     return optics;
   }
   optics.index = material.at(wavelength_um);
-  for (const Layer& layer : coating)
-    optics.films.push_back({layer.material.at(wavelength_um), layer.thickness_um / wavelength_um,
-                            layer.thickness_spread_um / wavelength_um});
+  for (const Layer& layer : coating) {
+    const Film& film =
+        optics.films.emplace_back(Film{layer.material.at(wavelength_um), layer.thickness_um / wavelength_um,
+                                       layer.thickness_spread_um / wavelength_um});
+    if (!is_too_wide(film)) continue;
+    throw InputError(
+        fmt::format("surface.coating.{}.thickness_spread_um = {:g}: must be at most {:g}, a fifth of thickness_um, for "
+                    "a film of so "
+                    "many wavelengths",
+                    optics.films.size(), layer.thickness_spread_um, 0.2 * layer.thickness_um));
+  }
   return optics;
 }
 

@@ -32,7 +32,7 @@ tolerance = 1e-3
 """
 LIMITS = {"theta_deg": (0, 85), "sigma": (0.05, 0.6), "n": (1.2, 3), "k": (0, 1)}
 AXES = {name: np.linspace(*limits, count) for (name, limits), count in zip(LIMITS.items(), (60, 30, 30, 15))}
-DIRECTIONS = 100  # samples of the third way share so many pairs of theta and sigma
+SIDE = 10  # the third way has so many values of theta and of sigma
 
 
 def table_and_scipy(scene, samples):
@@ -43,16 +43,14 @@ def table_and_scipy(scene, samples):
 
 
 def response_and_product(scene, samples):
-    """The samples as a matrix: a row per pair of theta and sigma, a column per material."""
+    """All combinations of SIDE values of theta, SIDE values of sigma, and the materials."""
     planck = {T: dolp.evaluate(scene.with_({"emission.temperature_K": T, "surroundings": None}), theta_deg=0, n=1.0, k=0.0)
               .stokes_i.item() for T in (300, 250)}
     surface = dolp.Scene(text=SCENE.format(masking=scene["surface.masking"]))
-    dolp_of_all = []
-    for theta, sigma in zip(samples["theta_deg"][:DIRECTIONS], samples["sigma"][:DIRECTIONS]):
-        rho = dolp.moments(dolp.response(surface, theta_deg=[theta], sigma=[sigma]), n=samples["n"], k=samples["k"])
-        i = planck[300] - rho.rho_i * (planck[300] - planck[250])
-        dolp_of_all.append(np.abs(rho.rho_q * (planck[300] - planck[250]) / i).values.ravel())
-    return np.array(dolp_of_all)
+    response = dolp.response(surface, theta_deg=np.sort(samples["theta_deg"][:SIDE]), sigma=np.sort(samples["sigma"][:SIDE]))
+    rho = dolp.moments(response, n=samples["n"], k=samples["k"])
+    i = planck[300] - rho.rho_i * (planck[300] - planck[250])
+    return np.abs(rho.rho_q * (planck[300] - planck[250]) / i).values.reshape(SIDE, SIDE, -1)
 
 
 def timed(function, *arguments):
@@ -81,11 +79,13 @@ def main():
         row("`evaluate`", count, seconds, evaluated[:1000])
         found, seconds = timed(table_and_scipy, scene, samples)
         row("`table` and SciPy", count, seconds, found[:1000])
-        materials = {name: samples[name][:count // DIRECTIONS] for name in ("n", "k")}
+        materials = {name: samples[name][:count // SIDE**2] for name in ("n", "k")}
         found, seconds = timed(response_and_product, scene, {**samples, **materials})
-        checked = dolp.evaluate(scene.with_({"accuracy.tolerance": 1e-5}), theta_deg=samples["theta_deg"][:DIRECTIONS],
-                                sigma=samples["sigma"][:DIRECTIONS], n=materials["n"][0], k=materials["k"][0]).dolp.values
-        row(f"`response` and `moments`, {DIRECTIONS} pairs of θ and σ", found.size, seconds, found[:, 0], checked)
+        checked = dolp.evaluate(scene.with_({"accuracy.tolerance": 1e-5}), theta_deg=samples["theta_deg"][:SIDE, None],
+                                sigma=np.sort(samples["sigma"][:SIDE]), n=materials["n"][0], k=materials["k"][0])
+        order = np.argsort(samples["theta_deg"][:SIDE])
+        row(f"`response` and `moments`, {SIDE} × {SIDE} values of θ and σ", found.size, seconds, found[..., 0],
+            checked.dolp.values[order])
     print(f"\nMemory: {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20:.1f} GB", file=sys.stderr)
 
 

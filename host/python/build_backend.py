@@ -25,7 +25,8 @@ def build(build_dir):
     """Builds the package. Returns its version, and the contents of its files by their names in the wheel."""
     cache = build_dir / "CMakeCache.txt"
     if not cache.exists():
-        run("-S", ROOT, "-B", build_dir, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release")
+        run("-S", ROOT, "-B", build_dir, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DBUILD_TESTING=OFF",
+            "-DDOLP_BENCH=OFF")
     run("--build", build_dir, "--target", "dolp_python")
     with tempfile.TemporaryDirectory() as prefix:
         run("--install", build_dir, "--prefix", prefix, "--component", "python")

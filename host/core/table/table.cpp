@@ -89,6 +89,13 @@ std::string coordinate_names(const TableHead& head) {
   return fmt::format("{}", fmt::join(names, " "));
 }
 
+std::vector<std::string> derivative_keys(const TableHead& head) {
+  std::vector<std::string> keys;
+  if (const auto* const stored = find_attribute<std::string>(head, kDerivativeKeys))
+    for (const std::string_view key : split(*stored, ',')) keys.emplace_back(key);
+  return keys;
+}
+
 std::vector<DerivativeColumn> derivative_columns(const std::vector<std::string>& keys) {
   std::vector<DerivativeColumn> columns;
   for (const std::string& key : keys) {

@@ -48,6 +48,7 @@ struct TableLayout {
 /// Attribute with the keys of the derivatives in a table, separated by commas.
 inline constexpr const char* kDerivativeKeys = "derivatives";
 
+std::vector<std::string> derivative_keys(const TableHead& head);  ///< the keys in this attribute
 inline constexpr std::size_t kDerivativesPerKey = 3;
 /// The kDerivativesPerKey columns for each key of `keys`, without values and units.
 std::vector<DerivativeColumn> derivative_columns(const std::vector<std::string>& keys);

@@ -281,10 +281,7 @@ struct TableReader::Impl {
       if (described.has_beta) more.push_back(head.beta_deg.size());
       if (!head.beta_deg.empty() && find(described.name, sizeof(double), more)) layout.responses.push_back(variable);
     }
-    std::vector<std::string> keys;
-    if (const auto* const stored = find_attribute<std::string>(head, kDerivativeKeys))
-      for (const std::string_view key : split(*stored, ',')) keys.emplace_back(key);
-    for (DerivativeColumn& column : derivative_columns(keys)) {
+    for (DerivativeColumn& column : derivative_columns(derivative_keys(head))) {
       if (!find(column.name.c_str(), sizeof(double))) continue;
       column.units = find_text(reader, open.back().second, "units").value_or("");
       layout.derivatives.push_back(std::move(column));

@@ -43,6 +43,16 @@ void check_attributes(const std::vector<Attribute>& attributes, const std::strin
   }
 }
 
+/// A file names its derivatives in an attribute, by which its reader finds them.
+void check_derivatives(const TableValues& table, const std::string& name) {
+  const std::vector<DerivativeColumn> named = derivative_columns(derivative_keys(table));
+  for (const DerivativeColumn& column : table.derivatives) {
+    if (std::ranges::find(named, column.name, &DerivativeColumn::name) == named.end())
+      throw InputError(
+          fmt::format("{}: {}: the attribute {} does not name its key", name, one_line(column.name), kDerivativeKeys));
+  }
+}
+
 void check_values(const TableValues& table, const std::string& name) {
   check_axes(table, name);
   const auto check_size = [&](const char* variable, std::size_t size, std::size_t expected) {
@@ -52,6 +62,9 @@ void check_values(const TableValues& table, const std::string& name) {
   for (const Quantity quantity : table.quantities())
     check_size(describe(quantity).name, table[quantity].size(), table.size());
   if (!table.status.empty()) check_size("status", table.status.size(), table.size());
+  check_derivatives(table, name);
+  for (const DerivativeColumn& column : table.derivatives)
+    check_size(column.name.c_str(), column.values.size(), table.size());
   check_attributes(table.attributes, name);
   for (const TableCurve& described : kTableCurves) {
     const Curve& curve = table.*described.curve;

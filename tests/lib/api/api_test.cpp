@@ -355,7 +355,7 @@ TEST_F(Library, EvaluatorInItsOwnCallback_IsAnInputError_AndServesAgain) {
 }
 
 TEST_F(Library, TableOfItsOwnContents_IsTheSameTable) {
-  const dolp::Table table = evaluator_.table(scene_);
+  const dolp::Table table = evaluator_.table(scene_, {.derivatives = {"surface.sigma"}});
   dolp::TableValues values = table.values();
   values.attributes = table.file_attributes();
   const dolp::Table again = dolp::Table::of(values);
@@ -368,7 +368,7 @@ TEST_F(Library, TableOfItsOwnContents_IsTheSameTable) {
 }
 
 TEST_F(Library, TableOfContentsThatDoNotFit_IsAnInputError) {
-  const dolp::TableValues values = evaluator_.table(scene_).values();
+  const dolp::TableValues values = evaluator_.table(scene_, {.derivatives = {"surface.sigma"}}).values();
   const auto refuses = [&](const auto& change) {
     dolp::TableValues other = values;
     change(other);
@@ -380,6 +380,8 @@ TEST_F(Library, TableOfContentsThatDoNotFit_IsAnInputError) {
   refuses([](dolp::TableValues& table) { table.axes[dolp::Axis::kQ][0] = std::nan(""); });
   refuses([](dolp::TableValues& table) { table[Quantity::kAlbedo].pop_back(); });
   refuses([](dolp::TableValues& table) { table.status.pop_back(); });
+  refuses([](dolp::TableValues& table) { table.derivatives[1].values.pop_back(); });
+  refuses([](dolp::TableValues& table) { table.derivatives[0].name = "d_dolp__surface_n"; });
   refuses([](dolp::TableValues& table) { table.index_n.values.push_back(1.0); });
   refuses([](dolp::TableValues& table) { table.index_n.used.push_back(1.0); });
   for (const char* const row : {"index_n,8", "index_n,8,x", "index_m,8,1.5", "index_n,8,1.5,2"})

@@ -4,14 +4,16 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <dolp/errors.hpp>
+#include <dolp/number_range.hpp>
 #include <limits>
 #include <utility>
 
+#include "base/stopwatch.hpp"
 #include "base/text.hpp"
 #include "model/slopes.hpp"
-#include "run/scene_run.hpp"
 #include "scene/scene_keys.hpp"
 #include "table/table.hpp"
 
@@ -69,39 +71,61 @@ double wind_from_sigma(double sigma) {
   return (sigma - still) * (sigma + still) / ((unit - still) * (unit + still));
 }
 
-/// A function of one entry's own value, or of the value of the scene, as results at four values.
+NumberRange key_range(const SceneValues& scene, const std::string& key) {
+  if (key == "surface.q" && scene.surface.needs_mean_slope()) return kSmithCauchyQRange;
+  return find_scene_key(key)->description.range;
+}
+
+/// The results at x - h, x + h, x - h / 2 and x + h / 2, for a number x of the scene or of each entry.
+using StepResults = std::array<std::vector<PointResult>, 4>;
+constexpr std::array<double, 4> kFactors = {-1.0, 1.0, -0.5, 0.5};
+
 class Steps {
  public:
   Steps(const SceneValues& scene, const SceneEntries& entries, const std::string& key)
-      : scene_(scene),
-        entries_(entries),
-        key_(key),
-        axis_(key_axis(entries, key)),
-        range_(find_scene_key(key)->description.range) {}
+      : scene_(scene), entries_(entries), key_(key), axis_(key_axis(entries, key)), range_(key_range(scene, key)) {}
 
-  /// The step of an entry.
-  double step(const SceneEntry& entry) const {
-    if (!axis_) return step_at(find_scene_key(key_)->value(scene_)->number, range_);
-    return step_at(to_key(entries_.value(entry, *axis_)), range_);
-  }
+  /// The step h of an entry.
+  double step(const SceneEntry& entry) const { return step_at(value(entry), range_); }
 
-  /// The results at x + `factor` times the step. Empty if the scene cannot have this value.
-  std::vector<PointResult> results(double factor, ModelEvaluator& evaluator, const Progress& progress) const {
-    const auto moved = [&](double x) { return x + factor * step_at(x, range_); };
-    std::optional<SceneValues> changed;
-    try {
-      changed = axis_ ? scene_ : with_settings(scene_, {{key_, moved(find_scene_key(key_)->value(scene_)->number)}});
-    } catch (const InputError&) {
-      return {};
+  /// Keeps the values of an axis between the least and the largest value of the entries.
+  void stay_on_axis() {
+    double least = range_.max, largest = range_.min;
+    for (const SceneEntry& entry : entries_.all()) {
+      least = std::min(least, value(entry));
+      largest = std::max(largest, value(entry));
     }
-    changed->accuracy.tolerance = std::min(scene_.accuracy.tolerance, kStepTolerance);
-    if (evaluator.has_double()) changed->accuracy.precision = Precision::kDouble;
-    if (!axis_) return evaluate_scene(*changed, entries_, evaluator, progress);
-    const auto change = [&](double own) { return from_key(moved(to_key(own))); };
-    return evaluate_scene(*changed, entries_.changed(*axis_, change), evaluator, progress);
+    range_ = {least, largest};
   }
+
+  /// Nullopt if the scene cannot have a value, for example a wavelength at which n and k are unknown.
+  std::optional<StepResults> results(ModelEvaluator& evaluator, const Progress& progress) const {
+    StepResults all;
+    try {
+      for (std::size_t i = 0; i < all.size(); ++i) all[i] = results_at(kFactors[i], evaluator, progress);
+    } catch (const InputError&) {
+      return std::nullopt;
+    }
+    return all;
+  }
+
+  bool is_on_axis() const { return axis_.has_value(); }
 
  private:
+  double value(const SceneEntry& entry) const {
+    return axis_ ? to_key(entries_.value(entry, *axis_)) : find_scene_key(key_)->value(scene_)->number;
+  }
+
+  std::vector<PointResult> results_at(double factor, ModelEvaluator& evaluator, const Progress& progress) const {
+    const auto moved = [&](double x) { return x + factor * step_at(x, range_); };
+    SceneValues changed = axis_ ? scene_ : with_settings(scene_, {{key_, moved(value({}))}});
+    changed.accuracy.tolerance = std::min(scene_.accuracy.tolerance, kStepTolerance);
+    if (evaluator.has_double()) changed.accuracy.precision = Precision::kDouble;
+    if (!axis_) return evaluate_scene(changed, entries_, evaluator, progress);
+    const auto change = [&](double own) { return from_key(moved(to_key(own))); };
+    return evaluate_scene(changed, entries_.changed(*axis_, change), evaluator, progress);
+  }
+
   double to_key(double own) const { return key_ == kWindKey ? wind_from_sigma(own) : own; }
   double from_key(double value) const { return key_ == kWindKey ? sigma_of_wind(value) : value; }
 
@@ -140,32 +164,47 @@ std::vector<DerivativeColumn> scene_derivatives(const SceneValues& scene, const 
 
 void add_derivatives(const SceneValues& scene, const SceneEntries& entries, const std::string& key,
                      ModelEvaluator& evaluator, const Progress& progress, std::span<PointResult> results) {
-  const Steps steps(scene, entries, key);
-  std::array<std::vector<PointResult>, 4> at;
-  bool is_inside = true;
-  for (std::size_t i = 0; i < at.size() && is_inside; ++i) {
-    constexpr std::array<double, 4> kFactors = {-1.0, 1.0, -0.5, 0.5};
-    at[i] = steps.results(kFactors[i], evaluator, progress);
-    is_inside = !at[i].empty();
+  Steps steps(scene, entries, key);
+  std::optional<StepResults> at = steps.results(evaluator, progress);
+  if (!at && steps.is_on_axis()) {
+    steps.stay_on_axis();
+    at = steps.results(evaluator, progress);
   }
   for (std::size_t i = 0; i < results.size(); ++i) {
     std::vector<double>& derivatives = results[i].derivatives;
-    const double step = is_inside ? steps.step(entries[i]) : 0.0;
+    const double step = at ? steps.step(entries[i]) : 0.0;
     if (!(step > 0.0)) {
       derivatives.insert(derivatives.end(), kDerivativesPerKey, std::numeric_limits<double>::quiet_NaN());
       continue;
     }
-    double error = 0.0;
+    double change = 0.0;
     for (const Quantity quantity : {Quantity::kDolp, Quantity::kQOverI}) {
-      const auto value = [&](std::size_t j) { return at[j][i][quantity]; };
+      const auto value = [&](std::size_t j) { return (*at)[j][i][quantity]; };
       const double wide = (value(1) - value(0)) / (2.0 * step);
       const double narrow = (value(3) - value(2)) / step;
       derivatives.push_back((4.0 * narrow - wide) / 3.0);
-      error = std::max(error, std::abs(narrow - wide) / 3.0);
+      const double own = std::abs(narrow - wide) / 3.0;
+      change = std::isnan(own) ? own : std::max(change, own);
     }
-    const auto bound = [&](std::size_t j) { return at[j][i][Quantity::kErrorEstimate]; };
-    derivatives.push_back(error + ((bound(0) + bound(1)) / 6.0 + (bound(2) + bound(3)) * (4.0 / 3.0)) / step);
+    const auto bound = [&](std::size_t j) { return (*at)[j][i][Quantity::kErrorEstimate]; };
+    derivatives.push_back(change + ((bound(0) + bound(1)) / 6.0 + (bound(2) + bound(3)) * (4.0 / 3.0)) / step);
   }
+}
+
+void WithDerivatives::write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary& so_far) {
+  done_ += part.size();
+  if (!keys_.empty()) {
+    const auto busy_s = [&] {
+      const EvaluationReport report = evaluator_->report();
+      return report.setup_s + report.kernel_s + report.sums_s + report.curves_s + report.beams_s;
+    };
+    const Progress is_wanted = [&](std::size_t, std::size_t) { return progress_(done_, done_); };
+    const double before_s = busy_s();
+    const auto start = std::chrono::steady_clock::now();
+    for (const std::string& key : keys_) add_derivatives(scene_, part, key, *evaluator_, is_wanted, results);
+    time_s_ += std::max(0.0, seconds_since(start) - (busy_s() - before_s));
+  }
+  sink_.write(part, std::move(results), so_far);
 }
 
 }  // namespace dolp

@@ -9,6 +9,7 @@
 
 #include "model/evaluator.hpp"
 #include "model/scene_entry.hpp"
+#include "run/scene_run.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp {
@@ -26,5 +27,29 @@ std::vector<DerivativeColumn> scene_derivatives(const SceneValues& scene, const 
 /// Domain: scene_derivatives() accepts `key`. Errors: errors of the evaluator; Cancelled.
 void add_derivatives(const SceneValues& scene, const SceneEntries& entries, const std::string& key,
                      ModelEvaluator& evaluator, const Progress& progress, std::span<PointResult> results);
+
+/// Adds derivatives to the results before they go to another sink.
+class WithDerivatives final : public Sink {
+ public:
+  /// The evaluator may be null if there are no keys. While derivatives are computed, `progress` gets the number of
+  /// entries that are finished.
+  WithDerivatives(const SceneValues& scene, const std::vector<std::string>& keys, ModelEvaluator* evaluator, Sink& sink,
+                  const Progress& progress)
+      : scene_(scene), keys_(keys), evaluator_(evaluator), sink_(sink), progress_(progress) {}
+
+  std::size_t parts_done() const override { return sink_.parts_done(); }
+  RunSummary summary_of_done() const override { return sink_.summary_of_done(); }
+  void write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary& so_far) override;
+  double time_s() const { return time_s_; }  ///< without the time that the report of the evaluator contains
+
+ private:
+  const SceneValues& scene_;
+  const std::vector<std::string>& keys_;
+  ModelEvaluator* evaluator_;
+  Sink& sink_;
+  const Progress& progress_;
+  std::size_t done_ = 0;
+  double time_s_ = 0.0;
+};
 
 }  // namespace dolp

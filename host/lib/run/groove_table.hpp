@@ -62,7 +62,7 @@ class GrooveTable {
                                            const SpectralRules& rules) const;
   void fill(Block& block, const SceneValues& scene, const std::vector<FacetOptics>& optics) const;
 
-  Axis zenith_axis_;  ///< moment_axis() of the scene; its nodes are those of kTheta
+  Axis zenith_axis_;  ///< moment_axis() of the scene; its nodes are in axes_[kTheta]
   AxisArray<AxisNodes> axes_;
   std::vector<Block> blocks_;  ///< for each material, for each band
   std::size_t bands_ = 1;

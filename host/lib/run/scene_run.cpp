@@ -383,44 +383,6 @@ std::vector<PointResult> part_results(const RunContext& context, const SceneEntr
   return results;
 }
 
-/// Adds derivatives to the results before they go to another sink.
-class WithDerivatives final : public Sink {
- public:
-  WithDerivatives(const SceneValues& scene, const std::vector<std::string>& keys, ModelEvaluator* evaluator, Sink& sink,
-                  const Progress& progress)
-      : scene_(scene), keys_(keys), evaluator_(evaluator), sink_(sink), progress_(progress) {}
-
-  std::size_t parts_done() const override { return sink_.parts_done(); }
-  RunSummary summary_of_done() const override { return sink_.summary_of_done(); }
-  void write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary& so_far) override {
-    if (!keys_.empty()) add_all(part, results);
-    sink_.write(part, std::move(results), so_far);
-  }
-  double time_s() const { return time_s_; }
-
- private:
-  /// The entries are counted already, so the progress can only cancel here.
-  void add_all(const SceneEntries& part, std::span<PointResult> results) {
-    const Progress is_wanted = [&](std::size_t, std::size_t) { return !progress_ || progress_(1, 1); };
-    const double before_s = busy_s();
-    const auto start = std::chrono::steady_clock::now();
-    for (const std::string& key : keys_) add_derivatives(scene_, part, key, *evaluator_, is_wanted, results);
-    time_s_ += std::max(0.0, seconds_since(start) - (busy_s() - before_s));
-  }
-  /// Time that the report of the evaluator already contains.
-  double busy_s() const {
-    const EvaluationReport report = evaluator_->report();
-    return report.setup_s + report.kernel_s + report.sums_s + report.curves_s + report.beams_s;
-  }
-
-  const SceneValues& scene_;
-  const std::vector<std::string>& keys_;
-  ModelEvaluator* evaluator_;
-  Sink& sink_;
-  const Progress& progress_;
-  double time_s_ = 0.0;
-};
-
 }  // namespace
 
 void CollectedResults::write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary&) {
@@ -470,7 +432,10 @@ Run::Run(const SceneValues& scene, SceneEntries entries, const RunOptions& optio
 std::vector<SceneEntries> Run::parts() const { return run_parts(entries_, plan().rules->most_samples(entries_)); }
 
 RunOutcome Run::compute(Sink& sink) {
-  WithDerivatives all(scene_, derivative_keys_, evaluator_, sink, progress_);
+  const Progress counted = [&](std::size_t done, std::size_t) {
+    return !progress_ || progress_(done, entries_.size());
+  };
+  WithDerivatives all(scene_, derivative_keys_, evaluator_, sink, counted);
   outcome_.summary = run_scene(scene_, entries_, outcome_.plan, evaluator_, all, progress_);
   outcome_.derivatives_s = all.time_s();
   if (evaluator_) {

@@ -161,6 +161,29 @@ TEST(Derivatives, AtAnEndOfTheDomain_AreNan) {
   EXPECT_TRUE(std::isnan(results[2].derivatives[9])) << "theta = 90";
 }
 
+// The mean slope of smith masking is infinite at q = 1.5, so a step must not reach this value.
+TEST(Derivatives, NearTheLeastQOfSmith_StayAboveIt) {
+  const PointResult near = results_with(parse(kScene, {"surface.q=1.51"}), {"surface.q"}).back();
+  const double right =
+      (results_of(parse(kScene, {"surface.q=1.511", "accuracy.tolerance=1e-9"})).back()[Quantity::kQOverI] -
+       results_of(parse(kScene, {"surface.q=1.509", "accuracy.tolerance=1e-9"})).back()[Quantity::kQOverI]) /
+      0.002;
+  EXPECT_NEAR(near.derivatives[1], right, 0.02 * std::abs(right));  // the difference errs by the share (0.001 / 0.01)^2
+  EXPECT_LT(near.derivatives[2], 0.01 * std::abs(right));
+}
+
+TEST(Derivatives, ByWavelengthsAtTheEndsOfATable_AreNanOnlyThere) {
+  const TemporaryFile file("index.csv", "wavelength_um,n,k\n9,1.5,0.1\n12,1.7,0.2\n");
+  const SceneValues scene =
+      parse(kScene, {"surface.n={}", "surface.k={}", "surface.material_file=" + file.path(),
+                     "spectrum.wavelength_um={}", "grid.wavelength_um=[9, 10, 12]", "grid.theta_deg=[60]"});
+  const std::vector<PointResult> results = results_with(scene, {"spectrum.wavelength_um"});
+  ASSERT_EQ(results.size(), 3U);
+  EXPECT_TRUE(std::isnan(results[0].derivatives[0]) && std::isnan(results[0].derivatives[2]));
+  EXPECT_LT(results[1].derivatives[2], 1e-3 * std::abs(results[1].derivatives[0]));
+  EXPECT_TRUE(std::isnan(results[2].derivatives[0]));
+}
+
 TEST(Derivatives, ByWhatIsNoNumberOfTheScene_AreRefused) {
   const SceneValues scene = parse(kScene);
   for (const char* key :

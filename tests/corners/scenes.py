@@ -21,7 +21,7 @@ KEYS = dolp.keys()
 _USUAL = {
     "n": (0.2, 4.0), "k": (1e-4, 20.0), "sigma": (1e-3, 1.0), "q": (1.1, 12.0), "wind_m_s": (0.5, 15.0),
     "temperature_K": (200.0, 400.0), "air_temperature_K": (260.0, 310.0), "vapour_cm": (0.1, 1.0),
-    "thickness_um": (0.01, 20.0), "wavelength_um": (3.0, 14.0), "irradiance": (1e-2, 10.0),
+    "thickness_um": (0.01, 20.0), "thickness_spread_um": (1e-3, 0.5), "wavelength_um": (3.0, 14.0), "irradiance": (1e-2, 10.0),
     "relative_irradiance": (1e-3, 2.0), "scale": (0.1, 2.0), "radiance": (1e-3, 20.0), "theta_deg": (1.0, 89.0),
 }
 # Values at which formulas change their form or lose digits, besides the ends of the range.
@@ -159,6 +159,8 @@ class _Drawing:
 
     def _layer(self) -> str:
         layer = self._optics("surface.coating.1.") | {"thickness_um": self._number("surface.coating.1.thickness_um")}
+        if self._rng.random() < 0.3:
+            layer["thickness_spread_um"] = self._number("surface.coating.1.thickness_spread_um")
         return f"{{ {', '.join(f'{key} = {value}' for key, value in layer.items())} }}"
 
     def _source(self) -> dict[str, str]:

@@ -50,7 +50,7 @@ class InPlaneMasking {
   double length_ = 1.0;  ///< length of a panel
   std::vector<double> starts_;     ///< slope at the start of each panel
   std::vector<Integrals> panels_;  ///< integrals over each panel
-  Lambda lambda_i_, lambda_r_;     ///< of the last beam
+  Lambda lambda_i_, lambda_r_;     ///< Lambda at both zeniths of the last beam
 };
 
 }  // namespace dolp

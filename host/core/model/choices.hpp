@@ -21,7 +21,7 @@ enum class EmissionModel { kMoments, kFresnel, kDirect };
 enum class DiffusePolarisation { kNone, kTransmission };
 enum class Mode { kHemispherical, kBistatic };
 enum class Precision { kAuto, kFloat, kDouble };
-/// Whether the response of a camera is its signal per radiant power or per photon.
+/// The response of a camera is its signal per radiant power or its signal per photon.
 enum class ResponsePer { kPower, kPhoton };
 
 /// The names of the enumerators in scene files and reports, in the order of declaration.

@@ -38,7 +38,7 @@ struct SceneEntry {
   SlopeShape shape;
   std::optional<OpticalConstants> index;  ///< nullopt: the material of the scene
   std::uint32_t variant = 0;              ///< position in SceneEntries::variants
-  /// Zenith of the view, and azimuth between source and view; nullopt: those of the scene's geometry.
+  /// Zenith of the view, and azimuth between source and view; nullopt means the scene's values.
   std::optional<double> view_zenith_deg = {}, relative_azimuth_deg = {};
 };
 

@@ -63,6 +63,9 @@
 #define DOLP_WIDTH 1             // number of entries that one invocation computes, see Row of physics/row.glsl
 #endif
 #define DOLP_ROW_WIDTH 4         // DOLP_WIDTH in the kernels that compute several entries
+#ifndef DOLP_ORDERS
+#define DOLP_ORDERS 0            // 1 in kernels whose entries are azimuthal orders of one slope, see SlopeNode::order
+#endif
 #ifndef DOLP_MOST_COLUMNS
 #define DOLP_MOST_COLUMNS 0      // largest number of columns in the kernel being compiled; 0 if it has no columns
 #endif
@@ -120,6 +123,7 @@ struct SlopeNode {
   real index;          // position of the index among the IndexNodes
   real most_azimuths;  // at most this many azimuth nodes on an arc, a range of azimuths with a smooth integrand
   real is_coarse;      // 1 if the slope belongs to the coarser rule, else 0
+  real order;          // the first azimuthal order k that the invocation computes (physics/README.md, section 12)
 };
 
 struct ShapeNode {
@@ -145,10 +149,11 @@ struct IndexNode {
   real curve_cells;   // number of cells of the table of reflectances, negative if they are measured; 0 without a table
 };
 
-#define DOLP_AZIMUTH_NUMBERS 8  // how many members an AzimuthNode has
+#define DOLP_AZIMUTH_NUMBERS 10  // how many members an AzimuthNode has
 #define DOLP_MOMENTS_NUMBERS 13  // how many members a MomentsNode has
 
-// Integrals over the azimuths from 0 to pi for the facets of slope t, without the weight P(t) t dt of this slope.
+// Integrals over the azimuths from 0 to pi for the facets of slope t, without the weight P(t) t dt of this slope. The
+// integrands of the azimuthal order k have the factor cos(2 k phi).
 struct AzimuthNode {
   real r_i;
   real r_q;
@@ -157,6 +162,8 @@ struct AzimuthNode {
   real behind;  // MomentsNode::behind
   real direct_i;
   real direct_q;
+  real r_u;       // U of azimuthal order k > 0, with the factor sin(2 k phi); 0 for order 0
+  real direct_u;
   real evaluations;
 };
 

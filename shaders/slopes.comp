@@ -8,11 +8,14 @@
 #include "physics/buffers.glsl"
 
 #if DOLP_MOST_COLUMNS > 0
-// The columns (physics/columns.glsl) follow all AzimuthNodes: two numbers for each column of each slope.
+// The columns (physics/columns.glsl) follow all AzimuthNodes: two numbers for each column of each node, or three if
+// there are azimuthal orders.
 layout(std430, binding = DOLP_BINDING_AZIMUTHS) writeonly buffer ColumnsOut { real columns_out[]; };
 
 void store_column(uint position, real value) {
-  columns_out[push.count * DOLP_AZIMUTH_NUMBERS + gl_GlobalInvocationID.x * 2u * kColumnCount + position] = value;
+  uint each = (kHasOrders ? 3u * DOLP_WIDTH : 2u) * kColumnCount;
+  uint nodes = push.count * (kHasOrders ? DOLP_WIDTH : 1u);
+  columns_out[nodes * DOLP_AZIMUTH_NUMBERS + gl_GlobalInvocationID.x * each + position] = value;
 }
 #endif
 #include "physics/all.glsl"
@@ -30,7 +33,9 @@ void main() {
   theta.s = thetas[int(slope_node.theta)].s;
   SlopeResult result = integrate_azimuths(rule, theta, indices[int(slope_node.index)], slope_node);
   if (i < push.count) {
-    azimuths[i] = result.node;
-    store_azimuth_columns(result.columns);
+    for (int g = 0; g < DOLP_ORDER_WIDTH; ++g) {
+      azimuths[i * DOLP_ORDER_WIDTH + g] = result.node[g];
+      store_azimuth_columns(g, result.columns[g]);
+    }
   }
 }

@@ -14,6 +14,8 @@ DOLP_ENTRY_POINT(moments_responses);
 DOLP_ENTRY_POINT(moments_responses_rows);
 DOLP_ENTRY_POINT(slopes);
 DOLP_ENTRY_POINT(slopes_sky);
+DOLP_ENTRY_POINT(slopes_orders);
+DOLP_ENTRY_POINT(slopes_sky_orders);
 DOLP_ENTRY_POINT(slopes_responses);
 DOLP_ENTRY_POINT(masking_table);
 // Entry points of bench/, which exist only in float.

@@ -5,15 +5,24 @@ struct Slope {
   bool has_split_line;
   int most_azimuths;
   bool is_coarse;
+  int order;          // first azimuthal order, SlopeNode::order
   SkyPlace sky;
   real weight[DOLP_WIDTH];  // factor of this slope in AzimuthSums::columns, for each entry of the row (row.glsl)
 };
 
-// Sums over azimuths. `member` holds (r_i, r_q, albedo, deficit) for each entry of a row.
+// Number of azimuthal orders that an invocation computes. Orders are the entries of a row.
+#if DOLP_ORDERS == 1
+#define DOLP_ORDER_WIDTH DOLP_WIDTH
+#else
+#define DOLP_ORDER_WIDTH 1
+#endif
+
+// Sums over azimuths. `member` holds (r_i, r_q, albedo, deficit) for each entry of a row, or each azimuthal order.
 struct AzimuthSums {
   real4 member[DOLP_WIDTH];
   Columns columns[DOLP_WIDTH];  // running sums, which include all earlier slopes and arcs
-  real2 direct;       // (I, Q) of the direct emission, not yet multiplied by smith masking
+  real2 direct[DOLP_ORDER_WIDTH];  // (I, Q) of the direct emission, not yet multiplied by smith masking
+  real2 u[DOLP_ORDER_WIDTH];       // U of the reflected light and of the direct emission
   real behind;        // s t sin(phi) at the horizon, subtracted from the deficit; error bounds cover the lost digits
   real evaluations;
 };
@@ -22,7 +31,7 @@ AzimuthSums no_azimuths(Columns columns[DOLP_WIDTH]) {
   AzimuthSums sums;
   sums.evaluations = real(0.0);
   sums.behind = real(0.0);
-  sums.direct = real2(real(0.0), real(0.0));
+  for (int g = 0; g < DOLP_ORDER_WIDTH; ++g) sums.direct[g] = sums.u[g] = real2(real(0.0), real(0.0));
   for (int g = 0; g < DOLP_WIDTH; ++g) {
     sums.member[g] = real4(real(0.0));
     sums.columns[g] = columns[g];
@@ -47,41 +56,93 @@ real2 column_factors(Slope slope, Facet f) {
   return real2(sky, sky * f.rotation);
 }
 
+real2 turned_by(real2 turn, real2 more) {
+  return real2(turn.x * more.x - turn.y * more.y, turn.x * more.y + turn.y * more.x);
+}
+
+// (cos, sin) of 2 k phi, where at = (cos, sin) of phi.
+real2 order_factors(int k, real2 at) {
+  real2 power = turned_by(at, at);
+  real2 turn = real2(real(1.0), real(0.0));
+  for (int bit = 1; bit < 32; bit *= 2) {  // DOLP_ROW_WIDTH more than the highest order is below 32
+    if ((k & bit) != 0) turn = turned_by(turn, power);
+    power = turned_by(power, power);
+  }
+  return turn;
+}
+
+// order_factors() of each entry of the row: 1 and 0 without azimuthal orders.
+struct OrderFactors {
+  real2 of[DOLP_WIDTH];
+};
+
+OrderFactors row_factors(int first, Azimuth at) {
+  OrderFactors factors;
+  for (int g = 0; g < DOLP_WIDTH; ++g) factors.of[g] = real2(real(1.0), real(0.0));
+  if (kHasOrders) {
+    real2 phi = real2(at.x, at.sin_phi);
+    factors.of[0] = order_factors(first, phi);
+    for (int g = 1; g < DOLP_WIDTH; ++g) factors.of[g] = turned_by(factors.of[g - 1], turned_by(phi, phi));
+  }
+  return factors;
+}
+
 AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope, Arc arc, int zone,
                      bool leaves, int order, Columns columns[DOLP_WIDTH]) {
   AzimuthSums sums = no_azimuths(columns);
   int first_node = rule_offset(arc.section, order);
   for (int i = 0; i < order; ++i) {
     Azimuth at = azimuth(arc, place_on_arc(arc, rule_node(first_node + i)));
+    OrderFactors factors = row_factors(slope.order, at);
     if (kIsMultiple) {
       GrooveLight light = reflected_in_groove(rule, theta, index, slope.t, at.x, at.sin_phi);
-      sums.member[0] += at.weight * light.moments;
-      real weight = slope.weight[0] * at.weight;
       ColumnValues before = sky_at(slope.sky, light.cos_before);
-      sums.columns[0] = add_columns(sums.columns[0], before, weight * light.before.x, weight * light.before.y);
       ColumnValues last = sky_at(slope.sky, light.cos_last);
-      sums.columns[0] = add_columns(sums.columns[0], last, weight * light.last.x, weight * light.last.y);
+      for (int g = 0; g < DOLP_ORDER_WIDTH; ++g) {
+        real turned = at.weight * factors.of[g].x;
+        sums.member[g] += turned * light.moments;
+        real weight = slope.weight[g] * turned;
+        sums.columns[g] = add_columns(sums.columns[g], before, weight * light.before.x, weight * light.before.y);
+        sums.columns[g] = add_columns(sums.columns[g], last, weight * light.last.x, weight * light.last.y);
+        if (kHasOrders) {
+          real tilted = at.weight * factors.of[g].y;
+          sums.u[g].x += tilted * (light.before_u + light.last_u);
+          sums.columns[g] = add_u_columns(sums.columns[g], before, slope.weight[g] * tilted * light.before_u);
+          sums.columns[g] = add_u_columns(sums.columns[g], last, slope.weight[g] * tilted * light.last_u);
+        }
+      }
     } else {
       Facet f = facet(theta, index, slope.t, at.x, at.sin_phi);
       MaskingTerms masking_out = masking_of_ray(row, f.cos_r, sine_of_ray(theta, row, f, slope.t, at), slope.t, zone);
-      real leaving = leaves ? at.weight : real(0.0);
       ColumnValues values = column_values(rule, slope.sky, f.cos_beta, f.cos_r);
       real2 per_projection = column_factors(slope, f);
       for (int g = 0; g < DOLP_WIDTH; ++g) {
         Projection part = project(theta, f, zone, slope.masking_in.value[g], masking_out.value[g]);
+        real turned = at.weight * factors.of[g].x;
+        real leaving = leaves ? turned : real(0.0);
         sums.member[g] += leaving * reflected(f, part);
         real projection = leaving * part.visible;
-        if (kColumns == DOLP_COLUMNS_DIRECT) projection = at.weight * seen_directly(theta, f);
+        if (kColumns == DOLP_COLUMNS_DIRECT) projection = turned * seen_directly(theta, f);
         projection *= slope.weight[g];
         sums.columns[g] =
             add_columns(sums.columns[g], values, projection * per_projection.x, projection * per_projection.y);
+        if (kHasOrders) {
+          real tilted = at.weight * factors.of[g].y * f.m02;
+          real reflected_u = leaves ? tilted * part.visible : real(0.0);
+          sums.u[g] += real2(reflected_u, -tilted * seen_directly(theta, f));
+          sums.columns[g] = add_u_columns(sums.columns[g], values, slope.weight[g] * reflected_u);
+        }
       }
-      if (kHasDirect) sums.direct += at.weight * emitted(theta, f);
+      for (int g = 0; g < DOLP_ORDER_WIDTH; ++g) {
+        if (kHasDirect) sums.direct[g] += at.weight * factors.of[g].x * emitted(theta, f);
+      }
     }
   }
   sums.evaluations = real(order);
   return sums;
 }
+
+CONST real kNodesOfOrder = real(0.65);  // azimuth nodes per radian and azimuthal order that resolve cos(2 k phi)
 
 // The azimuth at which the zenith theta_r of the reflected ray reaches a corner (kink) of the sky.
 real2 corner_line(ThetaNode theta, Slope slope, int corner) {
@@ -129,19 +190,35 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
         real nodes = arc_nodes(rule, theta, row.shape[0], index, slope.has_split_line, slope.t, slope.digits, arc, zone);
         int order = order_between(nodes, slope.most_azimuths);
         if (slope.is_coarse) order = coarse_order(order);
+        // Both rules get the nodes that resolve the highest order, so that they differ by their errors only.
+        real highest = real(slope.order + DOLP_WIDTH - 1);
+        if (kHasOrders) order = min(order + int(kNodesOfOrder * highest * arc.span) + 1, slope.most_azimuths);
         AzimuthSums more = arc_sums(rule, theta, row, index, slope, arc, zone, zone < lines.leaving, order,
                                     sums.columns);
         for (int g = 0; g < DOLP_WIDTH; ++g) {
           sums.member[g] += more.member[g];
           sums.columns[g] = more.columns[g];
         }
-        sums.direct += more.direct;
+        for (int g = 0; g < DOLP_ORDER_WIDTH; ++g) {
+          sums.direct[g] += more.direct[g];
+          sums.u[g] += more.u[g];
+        }
         sums.evaluations += more.evaluations;
       }
       start = stop;
     }
   }
   return sums;
+}
+
+// Integral of e cos(2 k phi) over the facets of order k > 0 that reflect below the horizon, at the half angle `horizon`.
+real below_horizon(ThetaNode theta, real t, int order, real2 horizon) {
+  real2 at = real2(cosine(horizon), real(2.0) * horizon.x * horizon.y);
+  real2 turn = order_factors(order, at);
+  real k2 = real(2 * order);
+  real after = (turn.y * at.x + turn.x * at.y) / (k2 + real(1.0));   // sin((2 k + 1) phi) / (2 k + 1)
+  real before = (turn.y * at.x - turn.x * at.y) / (k2 - real(1.0));
+  return -theta.c * turn.y / k2 - real(0.5) * theta.s * t * (after + before);
 }
 
 // Sums over all facets of slope t. With single scattering, the deficit (light that does not leave the surface) includes
@@ -153,14 +230,18 @@ AzimuthSums slope_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index,
   if (!kIsMultiple) {
     sums.behind = real(2.0) * theta.s * slope.t * lines.horizon.x * lines.horizon.y;
     real below = theta.c * real(4.0) * atan_unit(lines.horizon.x / (real(1.0) + lines.horizon.y));
-    for (int g = 0; g < DOLP_WIDTH; ++g) sums.member[g].w += below - sums.behind;
+    for (int g = 0; g < DOLP_WIDTH; ++g) {
+      int k = kHasOrders ? slope.order + g : 0;
+      sums.member[g].w += (k > 0) ? below_horizon(theta, slope.t, k, lines.horizon) : below - sums.behind;
+    }
   }
   return sums;
 }
 
+// The sums for each azimuthal order that the invocation computes; without orders, for one entry.
 struct SlopeResult {
-  AzimuthNode node;
-  Columns columns;
+  AzimuthNode node[DOLP_ORDER_WIDTH];
+  Columns columns[DOLP_ORDER_WIDTH];
 };
 
 // The sums at one slope, for slopes.comp. The masking does not depend on the slope distribution: no_row() is enough.
@@ -172,6 +253,7 @@ SlopeResult integrate_azimuths(RuleNode rule, ThetaNode theta, IndexNode index, 
   slope.has_split_line = false;
   slope.most_azimuths = int(slope_node.most_azimuths);
   slope.is_coarse = slope_node.is_coarse > real(0.5);
+  slope.order = int(slope_node.order);
   slope.sky = sky_place();
   Columns columns[DOLP_WIDTH];
   for (int g = 0; g < DOLP_WIDTH; ++g) {
@@ -179,9 +261,12 @@ SlopeResult integrate_azimuths(RuleNode rule, ThetaNode theta, IndexNode index, 
     columns[g] = no_columns();
   }
   AzimuthSums sums = slope_sums(rule, theta, no_row(), index, slope, columns);
-  real4 all = sums.member[0];
   SlopeResult result;
-  result.node = AzimuthNode(all.x, all.y, all.z, all.w, sums.behind, sums.direct.x, sums.direct.y, sums.evaluations);
-  result.columns = sums.columns[0];
+  for (int g = 0; g < DOLP_ORDER_WIDTH; ++g) {
+    real4 all = sums.member[g];
+    result.node[g] = AzimuthNode(all.x, all.y, all.z, all.w, sums.behind, sums.direct[g].x, sums.direct[g].y, sums.u[g].x,
+                                 sums.u[g].y, (g == 0) ? sums.evaluations : real(0.0));
+    result.columns[g] = sums.columns[g];
+  }
   return result;
 }

@@ -10,6 +10,7 @@ layout(constant_id = DOLP_SPEC_MULTIPLE) const bool kIsMultiple = false;
 #endif
 layout(constant_id = DOLP_SPEC_DIRECT) const bool kHasDirect = false;
 layout(constant_id = DOLP_SPEC_CURVES) const bool kHasCurves = false;
+const bool kHasOrders = DOLP_ORDERS == 1;
 #if DOLP_MOST_COLUMNS > 0
 layout(constant_id = DOLP_SPEC_COLUMN_COUNT) const uint kColumnCount = 0u;
 layout(constant_id = DOLP_SPEC_COLUMNS) const uint kColumns = DOLP_COLUMNS_SKY;

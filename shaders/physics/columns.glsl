@@ -19,10 +19,11 @@ struct ColumnValues {
   real f[DOLP_MOST_COLUMNS];
 };
 
-// Two sums for each column function f: `i` corresponds to r_i, `q` to r_q.
+// Sums for each column function f: `i` corresponds to r_i, `q` to r_q and, with azimuthal orders, `u` to r_u.
 struct Columns {
   real i[DOLP_MOST_COLUMNS];
   real q[DOLP_MOST_COLUMNS];
+  real u[DOLP_MOST_COLUMNS];
 };
 
 Columns no_columns() {
@@ -30,6 +31,7 @@ Columns no_columns() {
   for (int k = 0; k < DOLP_MOST_COLUMNS; ++k) {
     sums.i[k] = real(0.0);
     sums.q[k] = real(0.0);
+    sums.u[k] = real(0.0);
   }
   return sums;
 }
@@ -79,6 +81,13 @@ Columns add_columns(Columns sums, ColumnValues values, real i, real q) {
   return sums;
 }
 
+Columns add_u_columns(Columns sums, ColumnValues values, real u) {
+  for (int k = 0; k < DOLP_MOST_COLUMNS; ++k) {
+    if (k < int(kColumnCount)) sums.u[k] += u * values.f[k];
+  }
+  return sums;
+}
+
 Columns scaled_columns(Columns sums, real factor) {
   for (int k = 0; k < DOLP_MOST_COLUMNS; ++k) {
     if (k < int(kColumnCount)) {
@@ -89,11 +98,14 @@ Columns scaled_columns(Columns sums, real factor) {
   return sums;
 }
 
-void store_azimuth_columns(Columns sums) {
+void store_azimuth_columns(int member, Columns sums) {
+  uint each = kHasOrders ? 3u : 2u;
+  uint first = uint(member) * each * kColumnCount;
   for (int k = 0; k < DOLP_MOST_COLUMNS; ++k) {
     if (k < int(kColumnCount)) {
-      store_column(uint(2 * k), sums.i[k]);
-      store_column(uint(2 * k + 1), sums.q[k]);
+      store_column(first + each * uint(k), sums.i[k]);
+      store_column(first + each * uint(k) + 1u, sums.q[k]);
+      if (kHasOrders) store_column(first + each * uint(k) + 2u, sums.u[k]);
     }
   }
 }
@@ -128,7 +140,8 @@ ColumnValues sky_at(SkyPlace, real) { return ColumnValues(real(0.0)); }
 ColumnValues column_values(RuleNode, SkyPlace, real, real) { return ColumnValues(real(0.0)); }
 real cos_of_corner(SkyPlace, int) { return real(0.0); }
 Columns add_columns(Columns sums, ColumnValues, real, real) { return sums; }
+Columns add_u_columns(Columns sums, ColumnValues, real) { return sums; }
 Columns scaled_columns(Columns sums, real) { return sums; }
 void store_columns(int, bool, Columns) {}
-void store_azimuth_columns(Columns) {}
+void store_azimuth_columns(int, Columns) {}
 #endif

@@ -6,7 +6,9 @@
 //   cos(beta) = r e,   cos(theta_r) = 2 r^2 e - c,
 //   sin^2(beta)             = r^2 [(c t x - s)^2 + t^2 (1 - x^2)],
 //   sin^2(beta) cos(2 eta)  = r^2 [(c t x - s)^2 - t^2 (1 - x^2)],
-//   D = (R_s - R_p) / sin^2(beta),   M00 = R_s - D sin^2(beta) / 2,   M01 = D sin^2(beta) cos(2 eta) / 2.
+//   sin^2(beta) sin(2 eta)  = 2 r^2 (c t x - s) t sin(phi),
+//   D = (R_s - R_p) / sin^2(beta),   M00 = R_s - D sin^2(beta) / 2,   M01 = D sin^2(beta) cos(2 eta) / 2,
+//   M02 = D sin^2(beta) sin(2 eta) / 2.
 // Sums over facets are vectors (r_i, r_q, albedo, deficit). The albedo is r_i with M00 = 1. The deficit is the part of
 // the beam that does not leave the surface: the light is masked, absorbed, or reflected below the horizon.
 
@@ -17,6 +19,7 @@ struct Facet {
   real cos_r;     // cosine of the reflected ray's zenith
   real m00;
   real m01;
+  real m02;       // like m01, for the Stokes parameter U
   real absorbed;  // 1 - m00
 };
 
@@ -41,6 +44,7 @@ Facet facet(ThetaNode theta, IndexNode index, real t, real x, real sin_phi) {
   result.cos_r = clamp(real(2.0) * r2 * e - theta.c, real(0.0), real(1.0));
   result.m00 = f.r_s - split;
   result.m01 = half_split * (along * along - across * across);
+  result.m02 = half_split * real(2.0) * along * across;
   result.absorbed = f.absorbed_s + split;
   return result;
 }

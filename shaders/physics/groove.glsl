@@ -137,8 +137,10 @@ real2 further_on(real2 at, real2 step) {
 struct GrooveLight {
   real4 moments;    // (r_i, r_q, albedo, deficit), as in facet.glsl
   real2 before;     // r_i and r_q of the part that leaves earlier
+  real before_u;    // r_u of this part, computed for azimuthal orders only
   real cos_before;  // cos(theta_r) of the part that leaves earlier
   real2 last;       // r_i and r_q of the rest, which leaves after the last bounce
+  real last_u;
   real cos_last;
 };
 
@@ -158,16 +160,19 @@ GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index,
   real2 between = real2(u, c);  // the length a times (sin, cos) of psi + 2 k gamma
   real share = f.is_black ? real(0.0) : real(1.0);  // share of the beam that continues
   real absorbed = real(1.0) - share;
-  // Two Stokes vectors in the axes of the groove. `natural` begins as unpolarised light.
+  // Stokes vectors in the axes of the groove. `natural` begins as unpolarised light.
   real4 natural = real4(share, real(0.0), real(0.0), real(0.0));
   real2 seen = doubled_angle(-x, c * sin_phi);
   real4 polarised = real4(real(0.0), share * seen.x, share * seen.y, real(0.0));  // begins as Q = 1 in theta's frame
+  real4 tilted = real4(real(0.0), -share * seen.y, share * seen.x, real(0.0));    // begins as U = 1 in theta's frame
   GrooveLight light;
   light.before = real2(real(0.0), real(0.0));
+  light.before_u = real(0.0);
   light.cos_before = real(0.0);
   light.cos_last = real(0.0);
   while (share > real(0.0)) {
     light.before = real2((real(1.0) - share) * natural.x, (real(1.0) - share) * polarised.x);
+    if (kHasOrders) light.before_u = (real(1.0) - share) * tilted.x;
     light.cos_before = -between.y;
     if (f.is_steep) f = next_bounces(f);
     real2 at = further_on(between, f.turn);
@@ -179,6 +184,7 @@ GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index,
     absorbed += share * (by.absorbed * natural.x - by.m01 * (twice.x * natural.y + twice.y * natural.z));
     natural += share * (bounced(by, twice, natural) - natural);
     polarised += share * (bounced(by, twice, polarised) - polarised);
+    if (kHasOrders) tilted += share * (bounced(by, twice, tilted) - tilted);
     between = further_on(at, f.turn);
     light.cos_last = -between.y;
     rise += real(2.0) * f.turn.y * between.y;
@@ -192,6 +198,8 @@ GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index,
   real beam = min(c + theta.s * t * x, real(2.0) * c);
   light.moments = real4(beam * natural.x, beam * polarised.x, beam, beam * absorbed);
   light.last = real2(beam * (natural.x - light.before.x), beam * (polarised.x - light.before.y));
+  light.last_u = beam * (tilted.x - light.before_u);
   light.before = real2(beam * light.before.x, beam * light.before.y);
+  light.before_u *= beam;
   return light;
 }

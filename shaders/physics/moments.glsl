@@ -107,6 +107,7 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
     slope.has_split_line = task.has_split_line;
     slope.most_azimuths = task.most_azimuths;
     slope.is_coarse = is_coarse;
+    slope.order = 0;
     slope.sky = sky;
     for (int g = 0; g < DOLP_WIDTH; ++g) {
       slope.weight[g] = weight[g];
@@ -117,7 +118,7 @@ PieceSums piece_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, T
       sums.member[g] += weight[g] * azimuths.member[g];
       sums.columns[g] = azimuths.columns[g];
       sums.behind[g] += weight[g] * azimuths.behind;
-      if (kHasDirect) sums.direct[g] += weight[g] * smith_g1(masking_in.value[g]) * azimuths.direct;
+      if (kHasDirect) sums.direct[g] += weight[g] * smith_g1(masking_in.value[g]) * azimuths.direct[0];
       mass[g] += kPi * weight[g];
     }
     sums.evaluations += azimuths.evaluations;

@@ -73,6 +73,13 @@ BeamGeometry beam_geometry(const BeamZeniths& zeniths, double delta_phi_deg) {
   return geometry;
 }
 
+double facet_azimuth(const BeamAngles& angles) {
+  const double sin_i = cos_sin_deg(angles.theta_i_deg).sin;
+  const double sin_r = cos_sin_deg(angles.theta_r_deg).sin;
+  const CosSin azimuth = cos_sin_deg(angles.delta_phi_deg);  // of the viewer from the incident beam
+  return std::atan2(-sin_i * azimuth.sin, sin_r + sin_i * azimuth.cos);
+}
+
 CosSin lower_direction(const BeamGeometry& beam) {
   // Compares tangents, because a cosine near 1 loses digits.
   const bool is_incident = beam.cos_i * beam.sin_r < beam.cos_r * beam.sin_i;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "model/angles.hpp"
+#include "model/scattering.hpp"
 
 namespace dolp {
 
@@ -31,6 +32,9 @@ struct BeamZeniths {
 /// The mirror direction has delta_phi = 180 degrees. If theta_i is 0, the plane of incidence has azimuth 0. If theta_r
 /// is 0, the plane of reflection has azimuth delta_phi. Domain: zeniths from 0 to 90 degrees, but not both 90.
 BeamGeometry beam_geometry(const BeamZeniths& zeniths, double delta_phi_deg);
+
+/// Azimuth of the normal of the facet from the horizontal direction of the reflected beam (the viewer), in radians.
+double facet_azimuth(const BeamAngles& angles);
 
 /// Cosine and sine of the zenith of the direction nearer to the horizon.
 CosSin lower_direction(const BeamGeometry& beam);

@@ -132,6 +132,7 @@ double beyond_last(const ScatteringRequest& request, const SlopeShape& shape, in
 FurtherBeams further_beams(const Across& at, const ScatteringRequest& request, const ScatteringEntry& entry, double h,
                            double first) {
   const SlopeShape& shape = request.shapes[entry.shape];
+  const double azimuth = facet_azimuth(request.angles[entry.angles]);
   const Facet facet(request.optics[entry.index].index);
   const double least_gamma = 0.49 * std::abs(std::abs(at.psi_i) - std::abs(at.psi_r));
   FurtherBeams beams;
@@ -145,7 +146,7 @@ FurtherBeams further_beams(const Across& at, const ScatteringRequest& request, c
     const double width = is_groove ? beam_width(at, gamma, k) : 0.0;
     beyond[parity] = 0.0;
     if (width == 0.0) continue;
-    const double density = 4.0 * std::exp(log_density(request.distribution, shape, 1.0 / std::tan(gamma)));
+    const double density = 4.0 * std::exp(log_density(request.distribution, shape, 1.0 / std::tan(gamma), azimuth));
     const Eigen::Matrix4d more = density * std::cos(gamma) * width / (2.0 * k * h) * chain(at, facet, gamma, k);
     beams.sum += more;
     beams.bounces += k;

@@ -158,7 +158,9 @@ std::vector<BeamGeometry> beam_geometries(const std::vector<BeamAngles>& angles)
 
 ScatteringMatrix beam_matrix(const ScatteringRequest& request, const ScatteringEntry& entry,
                              const BeamGeometry& geometry, double attenuation) {
-  const double density = std::exp(log_density(request.distribution, request.shapes[entry.shape], geometry.slope));
+  const SlopeShape& shape = request.shapes[entry.shape];
+  const double azimuth = is_elliptic(shape) ? facet_azimuth(request.angles[entry.angles]) : 0.0;
+  const double density = std::exp(log_density(request.distribution, shape, geometry.slope, azimuth));
   ScatteringMatrix matrix;
   matrix.m = turned(facet_reflection(request.angles[entry.angles], geometry, request.optics[entry.index]), geometry);
   for (double& element : matrix.m) element *= density * attenuation;

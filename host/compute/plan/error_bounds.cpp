@@ -169,8 +169,11 @@ Shares error_shares(const kernel::MomentsNode& node, const KernelData& data, con
   Shares shares;
   shares.cut = cut_bound(data, theta, shape);
   shares.masking = masking_error(data, entry, unit_roundoff);
-  shares.rounding = unit_roundoff * roundings(data, theta, shape, index);
-  shares.least = kLeastShareOfTolerance * data.tolerance;
+  // The sum of the sizes of all azimuthal orders, as a share of order 0: the quotient of the widths along and across.
+  const double eccentric = eccentricity(data.slopes[entry.shape]);
+  const double orders = (1.0 + eccentric) / (1.0 - eccentric);
+  shares.rounding = orders * unit_roundoff * roundings(data, theta, shape, index);
+  shares.least = orders * kLeastShareOfTolerance * data.tolerance;
   shares.pair = pair_factor(data, index);
   if (data.scattering == Scattering::kMultiple) {
     shares.grooves =

@@ -244,7 +244,11 @@ void add_grid_directions(KernelData& data, const MomentsRequest& request) {
 
 void add_shape(KernelData& data, const MomentsRequest& request, const SlopeShape& shape) {
   const double digits = data.rule.digits;
-  data.shapes.push_back(shape_node(request, shape, digits));
+  data.slopes.push_back(shape);
+  data.shapes.push_back(shape_node(request, {.sigma = widest_sigma(shape), .q = shape.q}, digits));
+  if (is_elliptic(shape)) {
+    data.shapes.back().scale = shape_node(request, {.sigma = narrowest_sigma(shape), .q = shape.q}, digits).scale;
+  }
   const bool is_split = needs_line(request.distribution, request.masking, shape, digits, request.tolerance);
   data.needs_line.push_back(is_split ? 1 : 0);
 }
@@ -266,9 +270,7 @@ void take_responses(KernelData& data, const Response& response) {
 }
 
 void add_grid(KernelData& data, const MomentsRequest& request) {
-  for (const double sigma : request.sigma) {
-    for (const double q : request.q) add_shape(data, request, {sigma, q});
-  }
+  for (std::size_t i = 0; i < request.shapes(); ++i) add_shape(data, request, request.shape(i));
   add_grid_directions(data, request);
 }
 
@@ -276,8 +278,8 @@ void add_points(KernelData& data, const MomentsRequest& request) {
   constexpr std::size_t kPointsAtOnce = 512;
   const std::size_t count = request.size();
   for (std::size_t i = 0; i < count; ++i) {
-    const bool is_new = i == 0 || request.sigma[i] != request.sigma[i - 1] || request.q[i] != request.q[i - 1];
-    if (is_new) add_shape(data, request, {request.sigma[i], request.q[i]});
+    const SlopeShape shape = request[i].shape;
+    if (i == 0 || !(shape == data.slopes.back())) add_shape(data, request, shape);
     data.shape_positions.push_back(static_cast<std::uint32_t>(data.shapes.size() - 1));
   }
   data.thetas.resize(count);
@@ -335,7 +337,8 @@ KernelData kernel_data(const MomentsRequest& request, const RuleModel& model, Ta
   data.has_direct = request.wants_direct;
   data.tolerance = request.tolerance;
   data.rule = rule_node(model, request.tolerance);
-  data.rule_order = largest_order(digits);
+  data.orders = slope_orders(request);
+  data.rule_order = std::min(largest_order(digits) + nodes_of_orders(data.orders), DOLP_MAX_ORDER);
   data.is_grid = request.layout == MomentsRequest::Layout::kGrid;
   data.directions = request.theta_deg.size();
   data.rule_nodes = rule_nodes(data.rule_order);

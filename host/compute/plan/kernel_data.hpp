@@ -14,6 +14,7 @@
 
 #include "model/moments.hpp"
 #include "plan/sky_table.hpp"
+#include "plan/slope_orders.hpp"
 
 namespace dolp {
 
@@ -79,7 +80,9 @@ struct KernelData {
   std::vector<kernel::ThetaNode> thetas;
   std::vector<Pieces> pieces;  ///< one for each of `thetas`
   std::vector<kernel::ShapeNode> shapes;
-  std::vector<char> needs_line;  ///< for each shape: 1 if pieces must be split at the kink of its masking
+  SlopeOrders orders;              ///< of the elliptic slope distributions; none if all are isotropic
+  std::vector<SlopeShape> slopes;  ///< for each of `shapes`, whose m and scale are the widest and the narrowest
+  std::vector<char> needs_line;    ///< for each shape: 1 if pieces must be split at the kink of its masking
   std::vector<kernel::IndexNode> indices;
   /// For each index of a grid, the position of its DirectionVariant. Shapes with needs_line have the next position.
   std::vector<std::uint32_t> index_variant;
@@ -115,7 +118,9 @@ KernelData kernel_data(const MomentsRequest& request, const RuleModel& model, Ta
 
 /// How many numbers the kernels store for columns (physics/columns.glsl): per MomentsNode and per AzimuthNode.
 inline std::size_t column_sums(const KernelData& data) { return DOLP_COLUMN_PARTS * data.column_count(); }
-inline std::size_t column_azimuths(const KernelData& data) { return 2 * data.column_count(); }
+inline std::size_t column_azimuths(const KernelData& data) {
+  return (data.orders.highest > 0 ? 3 : 2) * data.column_count();
+}
 /// Adds the columns of a piece of the slope axis to `sums`. A column of `piece` is i and q of the coarser rule, then i
 /// and q of the finer rule. A column of `sums` is i and q of the finer rule, then their differences from the coarser
 /// rule. If the columns belong to a sky, the larger difference and 0 replace these two differences.

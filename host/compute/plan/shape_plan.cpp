@@ -159,6 +159,7 @@ std::vector<std::vector<std::size_t>> split_grazing_directions(const MomentsRequ
 
 std::optional<ShapePlan> shape_plan(const MomentsRequest& request) {
   if (!request.may_interpolate || request.size() == 0 || !wants_whole_directions(request)) return std::nullopt;
+  if (request.has_elliptic_shapes()) return std::nullopt;  // slope samples serve all shapes
   const double digits = kExtraShapeDigits - std::log10(request.tolerance);
   ShapePlan plan;
   plan.sigma = shape_axis(sigma_parameter(request.distribution), request.sigma, digits);

@@ -19,6 +19,8 @@ constexpr bool keeps_projected_area(Masking masking) {
 enum class Scattering : std::uint32_t { kSingle = 0, kMultiple = 1 };
 enum class EmissionModel { kMoments, kFresnel, kDirect };
 enum class DiffusePolarisation { kNone, kTransmission };
+/// A wind gives one slope width, or different widths along and across.
+enum class WindModel { kIsotropic, kDirectional };
 enum class Mode { kHemispherical, kBistatic };
 enum class Precision { kAuto, kFloat, kDouble };
 /// The response of a camera is its signal per radiant power or its signal per photon.
@@ -30,6 +32,7 @@ constexpr auto choice_names(Masking) { return std::array{"none", "v-cavity", "in
 constexpr auto choice_names(Scattering) { return std::array{"single", "multiple"}; }
 constexpr auto choice_names(EmissionModel) { return std::array{"moments", "fresnel", "direct"}; }
 constexpr auto choice_names(DiffusePolarisation) { return std::array{"none", "transmission"}; }
+constexpr auto choice_names(WindModel) { return std::array{"isotropic", "directional"}; }
 constexpr auto choice_names(Mode) { return std::array{"hemispherical", "bistatic"}; }
 constexpr auto choice_names(Precision) { return std::array{"auto", "float", "double"}; }
 constexpr auto choice_names(ResponsePer) { return std::array{"power", "photon"}; }

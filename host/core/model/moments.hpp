@@ -41,8 +41,9 @@ struct Response {
   friend bool operator==(const Response&, const Response&) = default;
 };
 
-/// The entries form a grid or a list. A grid has all combinations of `optics`, `theta_deg`, `sigma` and `q`; q varies
-/// fastest. In a list each of these four vectors has one value per entry. `entry`: position in the grid or list.
+/// The entries form a grid or a list. A grid has all combinations of `optics`, `theta_deg`, `sigma`, `q`, `sigma_cross`
+/// and `azimuth_deg`; the last varies fastest. In a list each of these vectors has one value per entry. `entry`:
+/// position in the grid or list.
 struct MomentsRequest {
   enum class Layout { kGrid, kList };
 
@@ -63,6 +64,9 @@ struct MomentsRequest {
   std::vector<FacetOptics> optics;
   std::vector<double> sigma;
   std::vector<double> q;
+  std::vector<double> sigma_cross = {0.0};  ///< SlopeShape::sigma_cross; needs masking none or v-cavity if above 0
+  std::vector<double> azimuth_deg = {0.0};
+  WindModel wind_model = WindModel::kIsotropic;  ///< see CrossSlopes; directional only in a grid
   std::vector<char> wanted;  ///< a flag per entry of a grid. If empty, all are wanted. Unwanted moments are undefined
 
   std::size_t size() const;
@@ -70,7 +74,9 @@ struct MomentsRequest {
   std::size_t wanted_count() const;
   /// `share` times the tolerance. In float it is at least kLeastFloatTolerance, but never more than `tolerance`.
   double finer_tolerance(double share) const;
-  std::size_t shapes() const { return sigma.size() * q.size(); }
+  std::size_t shapes() const { return sigma.size() * q.size() * sigma_cross.size() * azimuth_deg.size(); }
+  SlopeShape shape(std::size_t number) const;  ///< number `number` of a grid's shapes()
+  bool has_elliptic_shapes() const;
   MomentsPoint operator[](std::size_t entry) const;
   /// This request for only some directions of a grid, given by their positions in `theta_deg`.
   MomentsRequest select_directions(std::span<const std::size_t> directions) const;
@@ -85,13 +91,14 @@ struct MomentsRequest {
 struct ColumnMoments {
   double i = 0.0;
   double q = 0.0;
-  double error = 0.0;  ///< for a sky: bound of the absolute errors of i and q. For a response: see below
+  double error = 0.0;  ///< for a sky: bound of the absolute errors of i, q and u. For a response: see below
   // The next members are for responses. i_apart and q_apart are differences between two quadrature rules, times a
   // safety factor. Let response j have the weight w_j. The error of the weighted sum S = sum_j w_j i_j has the bound
   // |sum_j w_j i_apart_j| + relative_error |S| + sum_j |w_j| error_j. The same holds for q.
   double i_apart = 0.0;
   double q_apart = 0.0;
   double relative_error = 0.0;
+  double u = 0.0;  ///< for a sky and an elliptic slope distribution
 };
 
 /// The moments of one entry if all reflection is specular (k_s = 1). A moment is a reflectance rho times cos(theta), so
@@ -111,6 +118,9 @@ struct Moments {
   double deficit_error = 0.0;
   double direct_i_error = 0.0;
   double direct_q_error = 0.0;
+  // Nonzero only with an elliptic slope distribution. The bounds of q hold for u as well.
+  double r_u = 0.0;                         ///< rho_U cos(theta), in the frame of the viewer
+  double direct_u = 0.0;                    ///< eps_U cos(theta)
   double evaluations = 0.0;                 ///< evaluations of the integrand for this entry
   std::vector<ColumnMoments> columns = {};  ///< one column for each function of the request's sky, or for each response
 };

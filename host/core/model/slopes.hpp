@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include "model/choices.hpp"
 
 namespace dolp {
@@ -7,10 +10,32 @@ namespace dolp {
 struct SlopeShape {
   double sigma = 0.0;
   double q = 2.0;  ///< ignored by the gaussian
+  /// Slopes that differ along and across: the width is `sigma` along the x axis of the surface and `sigma_cross` along
+  /// its y axis. 0 means sigma.
+  double sigma_cross = 0.0;
+  double azimuth_deg = 0.0;  ///< from the viewer's horizontal direction to the x axis, counter-clockwise from above
   friend bool operator==(const SlopeShape&, const SlopeShape&) = default;
 };
 
 double slope_width(const SlopeShape& shape);  ///< m = sqrt(2) sigma, the unit of slopes
+
+bool is_elliptic(const SlopeShape& shape);     ///< true if the widths along and across differ
+double widest_sigma(const SlopeShape& shape);  ///< larger one of the widths along and across
+double narrowest_sigma(const SlopeShape& shape);
+double eccentricity(const SlopeShape& shape);  ///< |sigma - sigma_cross| / (sigma + sigma_cross)
+
+/// The facets of an elliptic distribution whose slopes point to one azimuth. They are distributed like the facets of an
+/// isotropic distribution of the width `sigma`.
+struct SlopeSector {
+  double sigma = 0.0;
+  double azimuth = 0.0;  ///< from the x axis of the surface, in radians
+};
+
+/// Sectors of a quarter turn with equal numbers of facets. A mean over all sectors, in all four quarters, replaces an
+/// integral over the azimuths of an elliptic distribution; its error falls exponentially with `count`.
+/// Equation: slopes (sqrt(2) sigma r cos w, sqrt(2) sigma_cross r sin w) have the density of an isotropic distribution
+/// in (r, w), so w is uniform.
+std::vector<SlopeSector> slope_sectors(const SlopeShape& shape, std::size_t count);
 
 /// Slope width sigma of the sea in a wind of U m/s.
 /// Equation: the mean square slope, summed over both horizontal directions, is 2 sigma^2 = 0.003 + 0.00512 U.
@@ -18,14 +43,32 @@ double slope_width(const SlopeShape& shape);  ///< m = sqrt(2) sigma, the unit o
 double sigma_of_wind(double wind_m_s);
 double wind_of_sigma(double sigma);
 
+/// Slope widths of the sea along and across the wind.
+/// Equation: sigma^2 = 0.00316 U along and 0.003 + 0.00192 U across. Source: as sigma_of_wind().
+double sigma_along_wind(double wind_m_s);
+double sigma_across_wind(double sigma_along);
+
+/// The width sigma by either model: sigma_of_wind() or sigma_along_wind().
+double sigma_in_wind(double wind_m_s, WindModel model);
+
+/// What a scene says about slopes that differ along and across.
+struct CrossSlopes {
+  double sigma_cross = 0.0;                      ///< SlopeShape::sigma_cross
+  double azimuth_deg = 0.0;                      ///< SlopeShape::azimuth_deg
+  WindModel wind_model = WindModel::kIsotropic;  ///< directional: sigma_cross is that of the wind that gives sigma
+  SlopeShape shape(double sigma, double q) const;
+};
+
 /// Share of the facets that are steeper than a slope.
 /// Equation: exp(-u^2) for the gaussian, (1 + u^2)^(1 - q) for the cauchy distribution, with u = slope / m.
-/// Domain: slope >= 0. With sigma = 0 no facet is steeper.
+/// Domain: slope >= 0. With sigma = 0 no facet is steeper. For an elliptic distribution it is the mean over its
+/// sectors.
 double steeper_share(Distribution distribution, const SlopeShape& shape, double slope);
 
-/// ln(D / 4) at a slope. D is the density of the facet normals in 1/sr, and the pBRDF contains D / 4.
+/// ln(D / 4) at a slope. D is the density of the facet normals in 1/sr, and the pBRDF contains D / 4. `azimuth`: of the
+/// normal from the viewer's horizontal direction, in radians; only an elliptic distribution depends on it.
 /// Domain: sigma > 0; the cauchy distribution needs q > 1.
-double log_density(Distribution distribution, const SlopeShape& shape, double slope);
+double log_density(Distribution distribution, const SlopeShape& shape, double slope, double azimuth);
 
 /// The slope u, in units of m, beyond which the power law (1 + u^2)^-exponent is less than `share`.
 /// Domain: share in (0, 1], exponent > 0. The result is finite even for a tiny exponent.

@@ -54,6 +54,7 @@ struct KernelSource {
   bool kHasCurves = false;
   bool kIsMultiple = false;
   bool kHasDirect = false;
+  bool kHasOrders = false;
   uint kColumnCount = 0;
   uint kColumns = DOLP_COLUMNS_SKY;
   int log2_sky_cells = 0;
@@ -71,6 +72,7 @@ struct KernelSource {
     source.kHasCurves = data.has_curves;
     source.kIsMultiple = data.scattering == Scattering::kMultiple;
     source.kHasDirect = data.has_direct;
+    source.kHasOrders = data.orders.highest > 0;
     source.kColumnCount = static_cast<uint>(data.column_count());
     source.kColumns = column_kind(data);
     source.log2_sky_cells = static_cast<int>(data.sky.log2_cells);
@@ -133,8 +135,8 @@ class SourceKernel final : public CpuKernel {
         convert_reals<real, KernelSource::IndexNode, double>(data_.indices[static_cast<std::size_t>(slope.index)]);
     const auto slope_node = convert_reals<real, KernelSource::SlopeNode, double>(slope);
     const auto result = source_.integrate_azimuths(rule_, theta, index, slope_node);
-    for (std::size_t k = 0; k < data_.column_count(); ++k) copy_column(k, result, columns.subspan(2 * k));
-    return convert_reals<double, kernel::AzimuthNode, real>(result.node);
+    for (std::size_t k = 0; k < data_.column_count(); ++k) copy_column(k, result.columns[0], columns);
+    return convert_reals<double, kernel::AzimuthNode, real>(result.node[0]);
   }
 
  private:
@@ -144,12 +146,14 @@ class SourceKernel final : public CpuKernel {
   }
 
 #if DOLP_MOST_COLUMNS > 0
-  static void copy_column(std::size_t k, const KernelSource::SlopeResult& result, std::span<double> sums) {
-    sums[0] = static_cast<double>(result.columns.i[k]);
-    sums[1] = static_cast<double>(result.columns.q[k]);
+  void copy_column(std::size_t k, const KernelSource::Columns& sums, std::span<double> columns) const {
+    const std::size_t each = column_azimuths(data_) / data_.column_count();
+    columns[each * k] = static_cast<double>(sums.i[k]);
+    columns[each * k + 1] = static_cast<double>(sums.q[k]);
+    if (each > 2) columns[each * k + 2] = static_cast<double>(sums.u[k]);
   }
 #else  // slope_samples.cpp needs no columns
-  static void copy_column(std::size_t, const KernelSource::SlopeResult&, std::span<double>) {}
+  void copy_column(std::size_t, const KernelSource::Columns&, std::span<double>) const {}
 #endif
 
   KernelSource::ShapeNode shape_node(std::size_t shape) const {

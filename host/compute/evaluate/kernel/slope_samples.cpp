@@ -5,10 +5,12 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numbers>
 
 #define DOLP_KERNEL_NAMESPACE sampling_kernel
 #define DOLP_DOUBLE
 #include "evaluate/kernel/kernel_source.hpp"
+#include "evaluate/kernel/order_sums.hpp"
 
 namespace dolp {
 
@@ -52,7 +54,7 @@ std::vector<kernel::ShapeNode> corner_shapes(const KernelData& data, std::span<c
     const kernel::ShapeNode& shape = data.shapes[i];
     corner.scale = std::min(corner.scale, shape.scale);
     corner.cut = std::max(corner.cut, shape.cut);
-    corner.m = std::min(corner.m, shape.m);
+    corner.m = std::min(corner.m, std::numbers::sqrt2 * narrowest_sigma(data.slopes[i]));
     corner.q_minus_1 = std::min(corner.q_minus_1, shape.q_minus_1);
     widest = std::max(widest, shape.m);
     lightest = std::max(lightest, shape.q_minus_1);
@@ -164,7 +166,7 @@ struct SlopeSampling::Impl {
   }
 
   SlopeWeights slope_weights(const SlopeSamples& samples, KernelSource::ShapeNode shape) {
-    shape.q_minus_1 = 1.0;  // any value: it only multiplies all weights by a constant, which sum_azimuths() removes
+    shape.q_minus_1 = 1.0;  // any value: it only multiplies all weights by a constant, which the scaling removes
     const auto count = static_cast<Eigen::Index>(samples.slopes.size());
     SlopeWeights weights{shape.m, Eigen::ArrayXd(count), Eigen::ArrayXd(count)};
     for (Eigen::Index i = 0; i < count; ++i) {
@@ -246,6 +248,62 @@ struct SlopeSampling::Impl {
     }
     return moments;
   }
+
+  // The weights of a width for all slopes and one q. Each rule of a piece is scaled so that its sum is the exact share
+  // of the facets on the piece (see sum_azimuths).
+  Eigen::ArrayXd scaled_weights(const SlopeSamples& samples, const KernelSource::ShapeNode& shape,
+                                const SlopeWeights& weights) {
+    const double factor = source.exponent_factor(shape);
+    Eigen::ArrayXd scaled = weights.common * (-factor * weights.exponent).exp();
+    double from = 0.0;
+    for (const SampledPiece& piece : samples.pieces) {
+      const double to = factor * source.common_exponent(piece.end / weights.m);
+      const double share = -std::exp(-from) * std::expm1(from - to);
+      from = to;
+      for (const auto& [first, count] :
+           {std::pair(piece.first, piece.fine), {piece.first + piece.fine, piece.coarse}}) {
+        const double mass = scaled.segment(first, count).sum();
+        scaled.segment(first, count) *= mass > 0.0 ? share / (KernelSource::kPi * mass) : 0.0;
+      }
+    }
+    return scaled;
+  }
+
+  // Weights of the slopes in the sums of each order: the mean over the sectors, for an elliptic distribution, with the
+  // Fourier coefficient of the sector's azimuth.
+  OrderWeights order_weights(const SlopeSamples& samples, std::uint32_t shape, std::vector<SlopeWeights>& of_sectors) {
+    auto node = std::bit_cast<KernelSource::ShapeNode>(data.shapes[shape]);
+    const std::vector<SlopeSector> sectors = slope_sectors(data.slopes[shape], data.orders.sectors);
+    OrderWeights weights(is_elliptic(data.slopes[shape]) ? samples.orders : 1, samples.slopes.size());
+    of_sectors.resize(sectors.size());
+    for (std::size_t i = 0; i < sectors.size(); ++i) {
+      node.m = slope_width({.sigma = sectors[i].sigma});
+      if (of_sectors[i].m != node.m) of_sectors[i] = slope_weights(samples, node);
+      const double share = 1.0 / static_cast<double>(sectors.size());
+      weights.add(scaled_weights(samples, node, of_sectors[i]), sectors[i].azimuth, share);
+      weights.steeper += share * source.slope_tail(node, samples.cut);
+    }
+    return weights;
+  }
+
+  void integrate_orders(const SlopeSamples& samples, std::span<const kernel::AzimuthNode> azimuths,
+                        std::span<const double> azimuth_columns, double unit_roundoff, std::span<Moments> moments) {
+    const auto& [direction, theta, index, shapes] = samples.entries;
+    std::vector<SlopeWeights> of_sectors;
+    OrderSums sums;
+    SlopeShape known;
+    for (const std::uint32_t shape : shapes) {
+      SlopeShape slopes = data.slopes[shape];
+      const double azimuth = slopes.azimuth_deg;
+      slopes.azimuth_deg = 0.0;  // all azimuths share the sums
+      if (!(slopes == known)) {
+        sums = order_sums(samples, order_weights(samples, shape, of_sectors), azimuths, azimuth_columns, data);
+        known = slopes;
+      }
+      moments[data.entry_position(direction, index, shape)] =
+          moments_at_azimuth(sums, data, {theta, shape, index}, azimuth, unit_roundoff);
+    }
+  }
 };
 
 SlopeSampling::SlopeSampling(const KernelData& data) : impl_(std::make_unique<Impl>(data)) {}
@@ -273,30 +331,39 @@ SlopeSamples SlopeSampling::plan(SampledEntries entries) const {
     impl_->add_rule(samples, theta, corners, piece, requests, coarse);
   }
   samples.entries = std::move(entries);
+  samples.orders = impl_->data.orders.highest + 1;
   return samples;
 }
 
-void SlopeSampling::append(const SlopeSamples& samples, std::vector<kernel::SlopeNode>& nodes) const {
+void SlopeSampling::append(const SlopeSamples& samples, std::size_t at_once,
+                           std::vector<kernel::SlopeNode>& nodes) const {
   const Pieces& pieces = impl_->data.pieces[samples.entries.theta];
-  for (const SampledPiece& piece : samples.pieces) {
-    for (std::uint32_t i = 0; i < piece.fine + piece.coarse; ++i) {
-      const SampledSlope& slope = samples.slopes[piece.first + i];
-      nodes.push_back({slope.t, slope.digits, static_cast<double>(samples.entries.theta),
-                       static_cast<double>(samples.entries.index),
-                       static_cast<double>(pieces.most_nodes[piece.direction_piece]), i < piece.fine ? 0.0 : 1.0});
+  for (std::size_t order = 0; order < samples.orders; order += at_once) {
+    for (const SampledPiece& piece : samples.pieces) {
+      for (std::uint32_t i = 0; i < piece.fine + piece.coarse; ++i) {
+        const SampledSlope& slope = samples.slopes[piece.first + i];
+        nodes.push_back({slope.t, slope.digits, static_cast<double>(samples.entries.theta),
+                         static_cast<double>(samples.entries.index),
+                         static_cast<double>(pieces.most_nodes[piece.direction_piece]), i < piece.fine ? 0.0 : 1.0,
+                         static_cast<double>(order)});
+      }
     }
   }
 }
 
 void SlopeSampling::integrate(const SlopeSamples& samples, const SampledAzimuths& sampled, std::size_t first,
                               double unit_roundoff, std::span<Moments> moments) const {
-  const auto azimuths = std::span(sampled.nodes).subspan(first, samples.slopes.size());
+  const auto azimuths = std::span(sampled.nodes).subspan(first, samples.nodes());
   const auto azimuth_columns =
       std::span(sampled.columns).subspan(first * sampled.per_slope, azimuths.size() * sampled.per_slope);
   const KernelData& data = impl_->data;
   const auto& [direction, theta, index, shapes] = samples.entries;
   double evaluations = 0.0;
   for (const kernel::AzimuthNode& azimuth : azimuths) evaluations += azimuth.evaluations;
+  if (samples.orders > 1) {
+    impl_->integrate_orders(samples, azimuths, azimuth_columns, unit_roundoff, moments);
+    return;
+  }
   SlopeWeights weights;
   Eigen::ArrayXd shape_weights(static_cast<Eigen::Index>(samples.slopes.size()));
   std::vector<double> columns(column_sums(data));
@@ -316,7 +383,7 @@ void SlopeSampling::compute(SampledEntries entries, CpuKernel& kernel, double un
                             std::span<Moments> moments) const {
   const SlopeSamples samples = plan(std::move(entries));
   std::vector<kernel::SlopeNode> slopes;
-  append(samples, slopes);
+  append(samples, 1, slopes);
   SampledAzimuths azimuths(slopes.size(), impl_->data);
   for (std::size_t i = 0; i < slopes.size(); ++i)
     azimuths.nodes[i] = kernel.azimuths(slopes[i], azimuths.slope_columns(i));

@@ -49,6 +49,9 @@ struct SlopeSamples {
   double cut = 0.0;  ///< largest slope; steeper facets are left out
   std::vector<SampledPiece> pieces;
   std::vector<SampledSlope> slopes;
+  std::size_t orders = 1;  ///< azimuthal orders: the samples are those of all slopes of order 0, then of order 1, ...
+
+  std::size_t nodes() const { return orders * slopes.size(); }
 };
 
 struct SampledAzimuths {
@@ -60,7 +63,8 @@ struct SampledAzimuths {
 
   std::vector<kernel::AzimuthNode> nodes;
   std::size_t per_slope;
-  std::vector<double> columns;  ///< for each slope, the two sums i and q of each column (physics/columns.glsl)
+  std::vector<double>
+      columns;  ///< for each slope, the sums i and q, or i, q and u, of each column (physics/columns.glsl)
 };
 
 /// Plans slope samples and integrates over them. Any thread may use it. `data` must outlive the object.
@@ -70,9 +74,10 @@ class SlopeSampling {
   ~SlopeSampling();
 
   SlopeSamples plan(SampledEntries entries) const;
-  void append(const SlopeSamples& samples, std::vector<kernel::SlopeNode>& nodes) const;
+  /// Appends what the kernel needs for each slope and each group of `at_once` azimuthal orders.
+  void append(const SlopeSamples& samples, std::size_t at_once, std::vector<kernel::SlopeNode>& nodes) const;
   /// Computes the moments of samples.entries from the kernel's sums over the azimuths. The sums for samples.slopes[0]
-  /// are in azimuths.nodes[first].
+  /// and order 0 are in azimuths.nodes[first].
   void integrate(const SlopeSamples& samples, const SampledAzimuths& azimuths, std::size_t first, double unit_roundoff,
                  std::span<Moments> moments) const;
   void compute(SampledEntries entries, CpuKernel& kernel, double unit_roundoff, std::span<Moments> moments) const;

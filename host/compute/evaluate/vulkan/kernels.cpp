@@ -23,7 +23,7 @@ namespace {
 std::span<const std::uint32_t> shader_module(const KernelVariant& variant, bool float64) {
   using namespace spirv;
   using Module = std::array<std::span<const std::uint32_t>, 2>;  // SPIR-V in float and in double
-  const std::array<std::array<Module, 3>, 3> modules = {
+  const std::array<std::array<Module, 3>, 4> modules = {
       {{{{slopes_float, slopes_double},
          {slopes_sky_float, slopes_sky_double},
          {slopes_responses_float, slopes_responses_double}}},
@@ -32,10 +32,12 @@ std::span<const std::uint32_t> shader_module(const KernelVariant& variant, bool 
          {moments_responses_float, moments_responses_double}}},
        {{{moments_rows_float, moments_rows_double},
          {moments_sky_rows_float, moments_sky_rows_double},
-         {moments_responses_rows_float, moments_responses_rows_double}}}}};
+         {moments_responses_rows_float, moments_responses_rows_double}}},
+       {{{slopes_orders_float, slopes_orders_double}, {slopes_sky_orders_float, slopes_sky_orders_double}, {}}}}};
   if (variant.entry == EntryPoint::kMaskingTable) return float64 ? masking_table_double : masking_table_float;
   const std::size_t columns = variant.columns == 0 ? 0 : variant.column_kind == DOLP_COLUMNS_SKY ? 1 : 2;
-  const std::size_t kind = variant.entry == EntryPoint::kSlopes ? 0 : variant.width == kRowWidth ? 2 : 1;
+  const std::size_t moments_kind = variant.width == kRowWidth ? 2 : 1;
+  const std::size_t kind = variant.entry != EntryPoint::kSlopes ? moments_kind : variant.has_orders ? 3 : 0;
   return modules[kind][columns][float64 ? 1 : 0];
 }
 
@@ -110,6 +112,7 @@ KernelVariant slopes_variant(const KernelData& data) {
   KernelVariant variant = moments_variant(data, 1);
   variant.entry = EntryPoint::kSlopes;
   variant.is_multiple = data.scattering == Scattering::kMultiple;
+  variant.has_orders = data.orders.highest > 0;
   return variant;
 }
 

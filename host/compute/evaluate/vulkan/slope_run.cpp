@@ -22,7 +22,8 @@ class SlopeRun final : public TiledRun {
     add_inputs<kernel::ThetaNode>(DOLP_BINDING_THETAS, std::min(slopes, data_.thetas.size()));
     add_inputs<kernel::IndexNode>(DOLP_BINDING_INDICES, std::min(slopes, data_.indices.size()));
     add_inputs<kernel::SlopeNode>(DOLP_BINDING_SLOPES, slopes);
-    add_results(DOLP_BINDING_AZIMUTHS, slopes * packing_.output_bytes<kernel::AzimuthNode>(column_azimuths(data_)),
+    add_results(DOLP_BINDING_AZIMUTHS,
+                orders_at_once(data_) * slopes * packing_.output_bytes<kernel::AzimuthNode>(column_azimuths(data_)),
                 data_, slopes_variant(data_));
   }
 
@@ -36,7 +37,7 @@ class SlopeRun final : public TiledRun {
     for (std::size_t first = 0; first < data_.directions; first += at_once) {
       const std::size_t last = std::min(first + at_once, data_.directions);
       const SlopeBatch batch = tiles_.batch(first);
-      SampledAzimuths azimuths(batch.slopes.size(), data_);
+      SampledAzimuths azimuths(batch.nodes, data_);
       const std::span<const std::uint32_t> slopes(batch.in_lockstep);
       for (std::size_t done = 0; done < slopes.size();) {
         const std::size_t count = std::min<std::size_t>(tiles_.slopes, slopes.size() - done);
@@ -53,7 +54,7 @@ class SlopeRun final : public TiledRun {
       parallel_ranges(batch.samples.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
           const SlopeSamples& samples = batch.samples[i];
-          tiles_.sampling.integrate(samples, azimuths, batch.first[i], packing_.unit_roundoff(), moments);
+          tiles_.sampling.integrate(samples, azimuths, batch.first_node[i], packing_.unit_roundoff(), moments);
         }
       });
       cost_.sums_s += seconds_since(start);
@@ -75,13 +76,18 @@ class SlopeRun final : public TiledRun {
     upload(DOLP_BINDING_SLOPES, nodes_.size(), [&](std::size_t i) { return nodes_[i]; });
     upload(DOLP_BINDING_THETAS, thetas.size(), [&](std::size_t i) { return data_.thetas[thetas[i]]; });
     upload(DOLP_BINDING_INDICES, indices.size(), [&](std::size_t i) { return data_.indices[indices[i]]; });
-    const std::size_t per_entry = column_azimuths(data_);
-    run_kernel(slopes.size(), slopes.size() * packing_.output_bytes<kernel::AzimuthNode>(per_entry), data_);
-    const std::size_t behind = slopes.size() * packing_.node_bytes<kernel::AzimuthNode>();
+    const std::size_t per_node = column_azimuths(data_);
+    const std::size_t nodes = slopes.size() * batch.orders_at_once;
+    run_kernel(slopes.size(), nodes * packing_.output_bytes<kernel::AzimuthNode>(per_node), data_);
+    const std::size_t behind = nodes * packing_.node_bytes<kernel::AzimuthNode>();
     for (std::size_t i = 0; i < slopes.size(); ++i) {
-      azimuths.nodes[slopes[i]] = packing_.read<kernel::AzimuthNode>(scratch_, i);
-      packing_.read_numbers(scratch_, behind + i * per_entry * packing_.real_bytes(),
-                            azimuths.slope_columns(slopes[i]));
+      const SlopeBatch::Output& output = batch.outputs[slopes[i]];
+      for (std::size_t g = 0; g < output.orders; ++g) {
+        const std::size_t at = i * batch.orders_at_once + g;
+        const std::size_t node = output.node + g * output.stride;
+        azimuths.nodes[node] = packing_.read<kernel::AzimuthNode>(scratch_, at);
+        packing_.read_numbers(scratch_, behind + at * per_node * packing_.real_bytes(), azimuths.slope_columns(node));
+      }
     }
   }
 

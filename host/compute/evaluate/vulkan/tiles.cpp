@@ -44,8 +44,11 @@ std::vector<std::uint32_t> in_lockstep(const SlopeBatch& batch, const KernelData
     const Pieces& pieces = data.pieces[samples.entries.theta];
     for (const SampledPiece& piece : samples.pieces) {
       std::vector<std::uint32_t>& alike = by_bound[pieces.lockstep[piece.direction_piece]];
-      for (std::uint32_t k = piece.first; k < piece.first + piece.fine + piece.coarse; ++k) {
-        alike.push_back(static_cast<std::uint32_t>(batch.first[i] + k));
+      for (std::size_t order = 0; order < samples.orders; order += batch.orders_at_once) {
+        const std::size_t first = batch.first[i] + order / batch.orders_at_once * samples.slopes.size() + piece.first;
+        for (std::size_t k = 0; k < piece.fine + piece.coarse; ++k) {
+          alike.push_back(static_cast<std::uint32_t>(first + k));
+        }
       }
     }
   }
@@ -114,9 +117,10 @@ SlopeTiles::SlopeTiles(const MomentsRequest& moments_request, const dolp::Device
       packing(make_packing(request.precision)),
       data(kernel_data(request, tables)),
       sampling(data),
-      costs{.invocation_bytes = packing.node_bytes<kernel::SlopeNode>() + packing.node_bytes<kernel::ThetaNode>() +
-                                packing.node_bytes<kernel::IndexNode>() +
-                                packing.output_bytes<kernel::AzimuthNode>(column_azimuths(data))} {
+      costs{.invocation_bytes =
+                packing.node_bytes<kernel::SlopeNode>() + packing.node_bytes<kernel::ThetaNode>() +
+                packing.node_bytes<kernel::IndexNode>() +
+                orders_at_once(data) * packing.output_bytes<kernel::AzimuthNode>(column_azimuths(data))} {
   const std::uint64_t pairs = std::uint64_t{data.directions} * (data.is_grid ? data.indices.size() : 1);
   const std::uint64_t most = pairs * DOLP_MAX_PIECES * 2 * static_cast<std::uint64_t>(data.rule_order);
   const std::uint32_t fit =
@@ -136,13 +140,24 @@ SlopeBatch SlopeTiles::batch(std::size_t first) const {
   parallel_ranges(entries.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) batch.samples[i] = sampling.plan(std::move(entries[i]));
   });
+  batch.orders_at_once = orders_at_once(data);
   for (const SlopeSamples& samples : batch.samples) {
     batch.first.push_back(batch.slopes.size());
-    sampling.append(samples, batch.slopes);
+    batch.first_node.push_back(batch.nodes);
+    sampling.append(samples, batch.orders_at_once, batch.slopes);
+    const std::size_t stride = samples.slopes.size();
+    for (std::size_t order = 0; order < samples.orders; order += batch.orders_at_once) {
+      const std::size_t count = std::min(batch.orders_at_once, samples.orders - order);
+      for (std::size_t i = 0; i < stride; ++i)
+        batch.outputs.push_back({batch.nodes + order * stride + i, stride, count});
+    }
+    batch.nodes += samples.nodes();
   }
   batch.in_lockstep = in_lockstep(batch, data);
   return batch;
 }
+
+std::size_t orders_at_once(const KernelData& data) { return data.orders.highest > 0 ? DOLP_ROW_WIDTH : 1; }
 
 DispatchCount SlopeTiles::count() const {
   DispatchCount count{.tile_invocations = slopes};

@@ -45,8 +45,18 @@ struct Block {
 /// The slope samples of some directions, and the kernel's input for them. A run computes one batch at a time.
 struct SlopeBatch {
   std::vector<SlopeSamples> samples;
-  std::vector<std::size_t> first;  ///< for each of `samples`, the position of its first slope in `slopes`
+  /// Where the results of one of `slopes` belong in SampledAzimuths: that of order g of its group at node + g * stride.
+  struct Output {
+    std::size_t node = 0;
+    std::size_t stride = 0;
+    std::size_t orders = 1;
+  };
+  std::vector<std::size_t> first;       ///< for each of `samples`, the position of its first slope in `slopes`
+  std::vector<std::size_t> first_node;  ///< for each of `samples`, the position of its first node in SampledAzimuths
+  std::size_t nodes = 0;                ///< number of nodes in SampledAzimuths
+  std::size_t orders_at_once = 1;       ///< azimuthal orders that an invocation computes
   std::vector<kernel::SlopeNode> slopes;
+  std::vector<Output> outputs;             ///< for each of `slopes`
   std::vector<std::uint32_t> in_lockstep;  ///< positions in `slopes`: groups of kLockstep slopes with equal loop bounds
 };
 
@@ -74,6 +84,9 @@ struct RowTiles {
   TileCosts costs;
   TileSizes sizes;
 };
+
+/// Azimuthal orders that one invocation computes.
+std::size_t orders_at_once(const KernelData& data);
 
 /// The dispatches of a request for moments, if the kernel computes slope samples. The request must outlive the object.
 struct SlopeTiles {

@@ -26,7 +26,7 @@ constexpr double kSmallestSine = 1e-12;
 constexpr double kNoShare = 1e-19;  // a smaller share of the facets emits less than the rounding error
 constexpr int kHalvings = 60;
 
-enum Component : std::size_t { kIntensity, kPolarised, kCount };
+enum Component : std::size_t { kIntensity, kPolarised, kDiagonal, kCount };
 using Emitted = Values<kCount>;
 
 using Absorption = std::function<FresnelCoefficients(double cos_beta)>;
@@ -43,7 +43,7 @@ class Facets {
         special_(constants),
         absorption_(std::move(absorption)),
         is_response_(is_response),
-        smith_(masking == Masking::kSmith ? 1.0 / (1.0 + smith_lambda(slopes, view_)) : 1.0) {}
+        smith_(masking == Masking::kSmith ? 1.0 / (1.0 + smith_lambda(slopes.in_view_plane(), view_)) : 1.0) {}
 
   Moments emission(const Refinement& refinement) {
     const double steepest = end();
@@ -58,8 +58,11 @@ class Facets {
     Moments m;
     m.direct_i = integral.value[kIntensity] + beyond[kIntensity];
     m.direct_q = integral.value[kPolarised] + beyond[kPolarised];
+    m.direct_u = integral.value[kDiagonal] + beyond[kDiagonal];
     m.direct_i_error = integral.error[kIntensity] + integral.value[kCount + kIntensity] + rounding;
-    m.direct_q_error = integral.error[kPolarised] + integral.value[kCount + kPolarised] + rounding;
+    m.direct_q_error = std::max(integral.error[kPolarised] + integral.value[kCount + kPolarised],
+                                integral.error[kDiagonal] + integral.value[kCount + kDiagonal]) +
+                       rounding;
     m.evaluations = evaluations_;
     return m;
   }
@@ -71,10 +74,11 @@ class Facets {
   }
   Emitted scales(const Emitted& value) const {
     const double scale = is_response_ ? view_.cos : value[kIntensity];
-    return {scale, scale};
+    return {scale, scale, scale};
   }
   RegimeScan scan() const {
-    return {view_, theta_rad_, {.halvings = kHalvings}, [this](const SlopePoint& point) { return regime(point); }};
+    const ScanSteps steps{.halvings = kHalvings, .ridge_rad = slopes_.ridge_rad()};
+    return {view_, theta_rad_, steps, [this](const SlopePoint& point) { return regime(point); }};
   }
   Emitted facet_emission(const SlopePoint& point, double side) const {
     const double e = facing(point, side);
@@ -85,17 +89,22 @@ class Facets {
     const Bounce<double> b = bounce(k, normal, {0.0, 1.0, 0.0});
     const FresnelCoefficients r = absorption_(e * cos_alpha);
     UnitLight light = unit_light(point, k);
+    const Amplitudes<std::complex<double>> s = components(b, light.from_s), p = components(b, light.from_p);
     const double from_s = reflect(b, r, light.from_s);
     const double from_p = reflect(b, r, light.from_p);
     const double visible = masking_ == Masking::kVCavity ? std::min(e, 2.0 * view_.cos) : e * smith_;
-    return {visible * 0.5 * (from_s + from_p), visible * 0.5 * (from_s - from_p)};
+    // Half the absorbed U. The emitted U has the other sign, because s = k x z points to the other side.
+    const double diagonal = (s.s * std::conj(p.s)).real() * r.absorbed_s + (s.p * std::conj(p.p)).real() * r.absorbed_p;
+    return {visible * 0.5 * (from_s + from_p), visible * 0.5 * (from_s - from_p), -visible * diagonal};
   }
 
   Emitted pair_emission(const SlopePoint& point) {
     evaluations_ += 1.0;
     const Emitted a = facet_emission(point, 1.0);
     const Emitted b = facet_emission(point, -1.0);
-    return {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])};
+    const MirrorWeights weights = slopes_.mirror_weights(point.t * point.t, point.sin_chi, point.cos_chi);
+    return {weights.mean * (0.5 * (a[0] + b[0])), weights.mean * (0.5 * (a[1] + b[1])),
+            weights.half_difference * (0.5 * (a[2] + b[2]))};
   }
 
   std::uint64_t regime(const SlopePoint& point) const {
@@ -125,7 +134,7 @@ class Facets {
                                                    breaks, {.relative = refinement.relative_tolerance},
                                                    [this](const Emitted& value) { return scales(value); });
     const double factor = share * 2.0 * std::numbers::inv_pi;
-    return {factor * row.value[kIntensity], factor * row.value[kPolarised]};
+    return {factor * row.value[kIntensity], factor * row.value[kPolarised], factor * row.value[kDiagonal]};
   }
 
   const Slopes& slopes_;

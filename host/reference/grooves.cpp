@@ -48,16 +48,19 @@ constexpr double kBentErrors = 6.0;
 constexpr int kLookShares = 16;
 constexpr int kLookAzimuths = 16;
 constexpr double kLookSteepest = 50.0;
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 // kLost is the light that is left after kMostFollowed bounces. It may leave the groove. kReflected includes it.
 enum Component : std::size_t {
   kAlbedo,
   kReflected,
   kPolarised,
+  kDiagonal,
   kAbsorbed,
   kLost,
   kSkyReflected,
   kSkyPolarised,
+  kSkyDiagonal,
   kCount
 };
 using GrooveValues = Values<kCount>;
@@ -68,6 +71,14 @@ Groove<double> make_groove(double t) {
 }
 
 double intensity(const Electric& e) { return std::norm(e[0]) + std::norm(e[1]) + std::norm(e[2]); }
+
+// U of reflected light toward the viewer, from the waves that leave when s or p light of amplitude 1 comes from there.
+// The sign changes, because s = k x z of the two directions of propagation points to opposite sides.
+double diagonal_light(const UnitLight& light) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < light.from_s.size(); ++i) sum += (light.from_s[i] * std::conj(light.from_p[i])).real();
+  return -sum;
+}
 
 void follow(const Groove<double>& groove, const SlopePoint& point, const Vector3& omega, Facet first,
             const FacetOptics& constants, const SkyFunction* sky, GrooveLight& total) {
@@ -85,10 +96,13 @@ void follow(const Groove<double>& groove, const SlopePoint& point, const Vector3
     total.albedo += left;
     total.reflected += left * 0.5 * (s + p);
     total.polarised += left * 0.5 * (s - p);
+    const double diagonal = diagonal_light(light);
+    total.diagonal += left * diagonal;
     if (sky && left > 0.0) {
       const double g = sky->value(std::acos(std::clamp(b.k_out[2], 0.0, 1.0)) * 180.0 / pi);
       total.sky_reflected += g * left * 0.5 * (s + p);
       total.sky_polarised += g * left * 0.5 * (s - p);
+      total.sky_diagonal += g * left * diagonal;
     }
     if (count == 1) total.once_reflected += left * 0.5 * (s + p);
     total.bounces += 1.0;
@@ -128,13 +142,26 @@ std::uint64_t history(const SlopePoint& point, const Vector3& omega, Facet first
 GrooveValues value_scales(const GrooveValues& value) {
   const double floor = kNegligible * value[kAlbedo] + std::numeric_limits<double>::min();
   const double reflected = std::max(floor, value[kReflected]);
-  return {std::max(floor, value[kAlbedo]),         reflected, reflected, std::max(floor, value[kAbsorbed]),
-          std::numeric_limits<double>::infinity(), reflected, reflected};
+  return {std::max(floor, value[kAlbedo]),
+          reflected,
+          reflected,
+          reflected,
+          std::max(floor, value[kAbsorbed]),
+          kUnlimited,
+          reflected,
+          reflected,
+          reflected};
 }
 
-GrooveValues light_values(const GrooveLight& light) {
-  return {light.albedo, light.reflected + light.lost, light.polarised,    light.absorbed,
-          light.lost,   light.sky_reflected,          light.sky_polarised};
+GrooveValues light_values(const GrooveLight& light, const MirrorWeights& weights) {
+  GrooveValues values{
+      light.albedo, light.reflected + light.lost, light.polarised,     light.diagonal,    light.absorbed,
+      light.lost,   light.sky_reflected,          light.sky_polarised, light.sky_diagonal};
+  for (std::size_t k = 0; k < kCount; ++k) {
+    const bool is_diagonal = k == kDiagonal || k == kSkyDiagonal;
+    values[k] *= is_diagonal ? weights.half_difference : weights.mean;
+  }
+  return values;
 }
 
 class Surveyor {
@@ -154,7 +181,8 @@ class Surveyor {
     const GrooveValues expected = look_at_all();
     const auto [bends_end, end] = ends(expected);
     const SpecialAngles special(constants_);
-    const RegimeScan scan(view_, theta_rad_, {.per_gamma = kStepsPerGamma}, [&](const SlopePoint& point) {
+    const ScanSteps steps{.per_gamma = kStepsPerGamma, .ridge_rad = slopes_.ridge_rad()};
+    const RegimeScan scan(view_, theta_rad_, steps, [&](const SlopePoint& point) {
       if (is_abandoned()) return std::uint64_t{0};
       const Vector3 omega = toward_view(point, view_);
       return history(point, omega, Facet::kA, special, sky_) * 3 + history(point, omega, Facet::kB, special, sky_);
@@ -170,31 +198,36 @@ class Surveyor {
         task, slopes_, scan, {refinement_.relative_tolerance / kBentErrors, refinement_.subdivisions}, expected);
 
     const double share = slopes_.share_above(end);
-    const double tail_weight = share * view_.cos;
+    const double tail_weight = share * slopes_.weight_above(end) * view_.cos;
     const GrooveValues at_end = look(end);
     const double tail_most = std::min(tail_weight, kTailRoom * share * at_end[kReflected]);
     const double half_lost = 0.5 * (integral.value[kLost] + integral.value[kCount + kLost]);
     const double unknown = 0.5 * tail_most + half_lost;
     const auto integral_error = [&](std::size_t k) {
-      const bool is_signed = k == kPolarised || k == kSkyReflected || k == kSkyPolarised;
-      const double magnitude = is_signed ? integral.value[kReflected] : integral.value[k];
+      const bool is_own = k == kAlbedo || k == kAbsorbed;
+      const double magnitude = is_own ? integral.value[k] : integral.value[kReflected];
       return kBentErrors * (integral.error[k] + integral.value[kCount + k]) + kRounding * magnitude;
     };
     Moments m;
     m.albedo = integral.value[kAlbedo] + tail_weight;
     m.r_i = integral.value[kReflected] + 0.5 * tail_most - half_lost;
     m.r_q = integral.value[kPolarised];
+    m.r_u = integral.value[kDiagonal];
     m.deficit = integral.value[kAbsorbed] + (tail_weight - 0.5 * tail_most) + half_lost;
     m.albedo_error = integral_error(kAlbedo) + kRounding * tail_weight;
     // Amplitudes have an absolute rounding error, so their squares have a large relative error if the index is near 1.
     const double amplitude_error = kRounding * (std::sqrt(m.r_i * m.albedo) + kRounding * m.albedo);
     m.r_i_error = integral_error(kReflected) + unknown + amplitude_error;
-    m.r_q_error = std::max(integral_error(kPolarised), integral_error(kReflected)) + 2.0 * unknown + amplitude_error;
+    m.r_q_error = std::max({integral_error(kPolarised), integral_error(kDiagonal), integral_error(kReflected)}) +
+                  2.0 * unknown + amplitude_error;
     m.deficit_error = integral_error(kAbsorbed) + unknown + kRounding * tail_weight;
     if (sky_) {
-      const double sky_error = std::max(integral_error(kSkyReflected), integral_error(kSkyPolarised));
-      m.columns = {{integral.value[kSkyReflected], integral.value[kSkyPolarised],
-                    std::max(sky_error, m.r_i_error) + 2.0 * unknown + tail_most + half_lost}};
+      const double sky_error = std::max(
+          {integral_error(kSkyReflected), integral_error(kSkyPolarised), integral_error(kSkyDiagonal), m.r_i_error});
+      m.columns = {{.i = integral.value[kSkyReflected],
+                    .q = integral.value[kSkyPolarised],
+                    .error = sky_error + 2.0 * unknown + tail_most + half_lost,
+                    .u = integral.value[kSkyDiagonal]}};
     }
     return m;
   }
@@ -208,7 +241,7 @@ class Surveyor {
     const GrooveLight light = light_in_groove(point.t, point.sin_chi, point.cos_chi, view_, constants_, sky_);
     bounces_ += light.bounces;
     evaluations_ += 1.0;
-    return light_values(light);
+    return light_values(light, slopes_.mirror_weights(point.t * point.t, point.sin_chi, point.cos_chi));
   }
   GrooveValues look(double t) {
     GrooveValues mean{};
@@ -268,8 +301,9 @@ GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zeni
   GrooveLight total;
   for (const Facet first : {Facet::kA, Facet::kB}) follow(groove, point, omega, first, constants, sky, total);
   const double per_width = 0.5 / groove.cos_alpha;
-  for (double* value : {&total.albedo, &total.reflected, &total.polarised, &total.absorbed, &total.lost,
-                        &total.once_reflected, &total.once_absorbed, &total.sky_reflected, &total.sky_polarised}) {
+  for (double* value :
+       {&total.albedo, &total.reflected, &total.polarised, &total.diagonal, &total.absorbed, &total.lost,
+        &total.once_reflected, &total.once_absorbed, &total.sky_reflected, &total.sky_polarised, &total.sky_diagonal}) {
     *value *= per_width;
   }
   return total;

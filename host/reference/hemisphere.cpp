@@ -43,13 +43,14 @@ double masking_tolerance_for(const Refinement& refinement) {
   return std::max(1e-14, 1e-3 * kInnerShare * refinement.relative_tolerance);
 }
 
-enum Component : std::size_t { kAlbedo, kReflected, kPolarised, kAbsorbed, kMomentCount };
+// kDiagonal is r_u.
+enum Component : std::size_t { kAlbedo, kReflected, kPolarised, kDiagonal, kAbsorbed, kMomentCount };
 template <std::size_t N>
 Values<N> moment_scales(const Values<N>& value) {
   const double floor = kNegligible * value[kAlbedo] + std::numeric_limits<double>::min();
   const double reflected = std::max(floor, value[kReflected]);
   const double absorbed = std::max(kSmallAbsorbed * value[kAlbedo] + floor, value[kAbsorbed]);
-  Values<N> scales{std::max(floor, value[kAlbedo]), reflected, reflected, absorbed};
+  Values<N> scales{std::max(floor, value[kAlbedo]), reflected, reflected, reflected, absorbed};
   std::fill(scales.begin() + kMomentCount, scales.end(), scales[kAlbedo]);
   return scales;
 }
@@ -58,11 +59,13 @@ template <std::size_t K>
 class Hemisphere {
  public:
   // The inner integral, over the azimuth, gives the moments, r_i for each of K curves and r_q for each curve. The outer
-  // integral, over the zenith, adds r_i and r_q with the factor sky_->value(), and the errors of the inner integrals.
+  // integral, over the zenith, adds r_i, r_q and r_u with the factor sky_->value(), and the errors of the inner
+  // integrals.
   static constexpr std::size_t kAzimuthCount = kMomentCount + 2 * K;
   static constexpr std::size_t kSkyReflected = kAzimuthCount;
   static constexpr std::size_t kSkyPolarised = kAzimuthCount + 1;
-  static constexpr std::size_t kZenithCount = kAzimuthCount + 2;
+  static constexpr std::size_t kSkyDiagonal = kAzimuthCount + 2;
+  static constexpr std::size_t kZenithCount = kAzimuthCount + 3;
   using AzimuthValues = Values<kAzimuthCount>;
   using BothValues = Values<2 * kZenithCount>;
 
@@ -153,6 +156,8 @@ class Hemisphere {
   //   beta is one of special_beta_rad()
   //   v-cavity masking reaches 1: (cos theta + cos theta_r) min(cos theta, cos theta_r) = cos^2 beta
   //   the limit b of `integral` masking (see IntegralMasking) reaches pi/2: alpha = 2 max(theta, theta_r) - pi/2
+  //   the facet is tilted along the ridge of an elliptic density: sin(theta_r) sin(delta + ridge) = sin(theta)
+  //   sin(ridge)
   Breaks azimuth_breaks(const Row& row, double width) const {
     Breaks breaks(0.0, std::asinh(1.0 / width));
     const auto add_s2 = [&](double s2) {
@@ -171,6 +176,13 @@ class Hemisphere {
         const double tan_alpha = 1.0 / std::tan(2.0 * lower_elevation);
         add_s2((tan_alpha * tan_alpha - row.t * row.t) * row.cos2_mean / (row.sin_sin * (1.0 + row.t * row.t)));
       }
+    }
+    const double ridge = slopes_.ridge_rad();
+    const double sine = fixed_.sin * std::sin(ridge) / std::max(row.running.sin, 1e-300);
+    if (ridge > 0.0 && sine <= 1.0) {
+      const double sum = std::asin(sine);
+      for (const double delta : {sum - ridge, ridge - sum, pi - sum - ridge})
+        breaks.add(std::asinh(std::tan(0.25 * delta) / width));
     }
     breaks.add(1.5);
     breaks.add(4.0);
@@ -204,7 +216,7 @@ class Hemisphere {
     std::copy_n(value.begin(), moments.size(), moments.begin());
     moments = moment_scales(moments);
     std::copy(moments.begin(), moments.end(), scales.begin());
-    scales[kSkyReflected] = scales[kSkyPolarised] = moments[kReflected];
+    scales[kSkyReflected] = scales[kSkyPolarised] = scales[kSkyDiagonal] = moments[kReflected];
     return scales;
   }
 
@@ -225,14 +237,26 @@ class Hemisphere {
       both[kZenithCount + k] = jacobian * inner.error[k];
     }
     const double g = sky_ ? sky_->value(90.0 - elevation_rad * 180.0 / pi) : 0.0;
-    both[kSkyReflected] = g * both[kReflected];
-    both[kSkyPolarised] = g * both[kPolarised];
-    both[kZenithCount + kSkyReflected] = std::abs(g) * both[kZenithCount + kReflected];
-    both[kZenithCount + kSkyPolarised] = std::abs(g) * both[kZenithCount + kPolarised];
+    for (std::size_t k = 0; k < 3; ++k) {
+      both[kSkyReflected + k] = g * both[kReflected + k];
+      both[kZenithCount + kSkyReflected + k] = std::abs(g) * both[kZenithCount + kReflected + k];
+    }
     return both;
   }
 
-  // cos(theta) f cos(theta_r) = D G M / 4. The moments need only the elements M00 and M01 of the Mueller matrix M.
+  // Weights of the facets that reflect to azimuths Delta_phi and -Delta_phi. Their slopes are along omega_i + omega_r.
+  MirrorWeights mirror_weights(const Row& row, double delta, double tan2_alpha) const {
+    const double toward_view = fixed_.sin - row.running.sin * std::cos(delta);
+    const double across = row.running.sin * std::sin(delta);
+    const double length = std::hypot(toward_view, across);
+    if (length == 0.0) return slopes_.mirror_weights(tan2_alpha, 1.0, 0.0);
+    return slopes_.mirror_weights(tan2_alpha, toward_view / length, across / length);
+  }
+
+  // cos(theta) f cos(theta_r) = D G M / 4. The moments need only three elements of the Mueller matrix M: M00, M01 and,
+  // for r_u, (R_s - R_p) / 2 sin(2 chi). chi turns the s axis of the viewer's light into the s axis of the facet, both
+  // seen along omega_i: cos(chi) = cos(eta), sin(chi) = -sin(eta). Facets at Delta_phi and -Delta_phi differ in the
+  // sign of chi.
   AzimuthValues integrand(const Row& row, double delta) const {
     const double sin_half = std::sin(0.5 * delta);
     const double cos_half = std::cos(0.5 * delta);
@@ -240,7 +264,9 @@ class Hemisphere {
     const double cos2_beta = row.cos2_mean + row.sin_sin * s2;
     const double sin2_beta = row.t * row.t / (1.0 + row.t * row.t) + row.sin_sin * cos_half * cos_half;
     const double tan2_alpha = row.t * row.t + (1.0 + row.t * row.t) * row.sin_sin * s2 / row.cos2_mean;
-    const double bare = 0.25 * slopes_.facet_density(tan2_alpha) * row.attenuation(tan2_alpha, cos2_beta);
+    const double isotropic = 0.25 * slopes_.facet_density(tan2_alpha) * row.attenuation(tan2_alpha, cos2_beta);
+    const MirrorWeights weights = mirror_weights(row, delta, tan2_alpha);
+    const double bare = isotropic * weights.mean;
 
     const double cos_beta = std::sqrt(cos2_beta);
     const FresnelCoefficients r = fresnel(constants_, cos_beta);
@@ -250,6 +276,7 @@ class Hemisphere {
     double from_s = 0.5 * (std::norm(r.r_s) + std::norm(r.r_p));
     double from_p = from_s;
     double cos_2eta = 1.0;
+    double sin_2eta = 0.0;
     if (sin_2beta > 0.0) {
       const double sin_eta = row.running.sin * std::sin(delta) / sin_2beta;
       const double cos_eta =
@@ -257,9 +284,12 @@ class Hemisphere {
       from_s = std::norm(r.r_s * cos_eta) + std::norm(r.r_p * sin_eta);
       from_p = std::norm(r.r_s * -sin_eta) + std::norm(r.r_p * cos_eta);
       cos_2eta = cos_eta * cos_eta - sin_eta * sin_eta;
+      sin_2eta = 2.0 * sin_eta * cos_eta;
     }
-    AzimuthValues values{bare, bare * (0.5 * (from_s + from_p)), bare * (0.5 * (from_s - from_p)),
-                         bare * 0.5 * (r.absorbed_s + r.absorbed_p)};
+    AzimuthValues values{
+        bare, bare * (0.5 * (from_s + from_p)), bare * (0.5 * (from_s - from_p)),
+        -isotropic * weights.half_difference * sin_2eta * (0.5 * (std::norm(r.r_s) - std::norm(r.r_p))),
+        bare * 0.5 * (r.absorbed_s + r.absorbed_p)};
     if constexpr (K > 0) {
       const std::array<double, kCurves> curves = (*curves_)(cos_beta);
       for (std::size_t k = 0; k < K; ++k) {
@@ -348,9 +378,10 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
   moments.albedo = integral.value[kAlbedo];
   moments.r_i = integral.value[kReflected];
   moments.r_q = integral.value[kPolarised];
+  moments.r_u = integral.value[kDiagonal];
   moments.albedo_error = error_at(kAlbedo);
   moments.r_i_error = error_at(kReflected) + amplitude_error;
-  moments.r_q_error = error_at(kPolarised) + amplitude_error;
+  moments.r_q_error = std::max(error_at(kPolarised), error_at(kDiagonal)) + amplitude_error;
   // The deficit is the light that is not reflected. Of its two formulas, cos(theta) - r_i is better if r_i is small.
   const double direct_error = moments.r_i_error + kRounding * cos_theta;
   const double split_error = moments.albedo_error + error_at(kAbsorbed) + kRounding * cos_theta;
@@ -359,10 +390,13 @@ Moments hemisphere_moments(const Slopes& slopes, Masking masking, double theta_d
   moments.deficit_error = is_split ? split_error : direct_error;
   moments.evaluations = hemisphere.evaluations();
   if (sky) {
-    const double sky_error =
-        std::max(error_at(SkyMoments::kSkyReflected), error_at(SkyMoments::kSkyPolarised)) + amplitude_error;
-    moments.columns = {
-        {integral.value[SkyMoments::kSkyReflected], integral.value[SkyMoments::kSkyPolarised], sky_error}};
+    const double sky_error = std::max({error_at(SkyMoments::kSkyReflected), error_at(SkyMoments::kSkyPolarised),
+                                       error_at(SkyMoments::kSkyDiagonal)}) +
+                             amplitude_error;
+    moments.columns = {{.i = integral.value[SkyMoments::kSkyReflected],
+                        .q = integral.value[SkyMoments::kSkyPolarised],
+                        .error = sky_error,
+                        .u = integral.value[SkyMoments::kSkyDiagonal]}};
   }
   return moments;
 }

@@ -161,6 +161,18 @@ struct GroovePlane {
   }
 };
 
+// Weight of the facets whose normal is tilted toward `horizontal`, for slopes that differ along and across. Their
+// azimuths count from the horizontal direction of the viewer, who receives the beam `out`.
+double facet_weight(const reference::Slopes& slopes, double tan2_alpha, const Vector& horizontal,
+                    const BeamFrame& out) {
+  const Vector viewer{-out.s[1], out.s[0], 0};
+  const Real length = sqrt(Real(horizontal[0] * horizontal[0] + horizontal[1] * horizontal[1]));
+  if (length == 0) return slopes.weight(tan2_alpha, 1.0, 0.0);
+  const Real cos_phi = (viewer[0] * horizontal[0] + viewer[1] * horizontal[1]) / length;
+  const Real sin_phi = (viewer[0] * horizontal[1] - viewer[1] * horizontal[0]) / length;
+  return slopes.weight(tan2_alpha, static_cast<double>(cos_phi), static_cast<double>(sin_phi));
+}
+
 template <class Number>
 using RealVector = reference::Vector<typename Number::value_type>;
 
@@ -206,7 +218,9 @@ ReferenceMueller bounces_in_plane(const reference::Slopes& slopes, const FacetOp
                              {along<Number>(p, waves[0]), along<Number>(p, waves[1])}}};
   const auto cotangent = static_cast<double>(cos(gamma) / sin(gamma));
   const auto factor = static_cast<double>(cos(gamma) * left / (2 * bounces * plane.across));
-  return scaled_matrix(mueller_from_jones(jones), slopes.facet_density(cotangent * cotangent) * factor);
+  const double tan2_alpha = cotangent * cotangent;
+  const double density = slopes.facet_density(tan2_alpha) * facet_weight(slopes, tan2_alpha, plane.u, out);
+  return scaled_matrix(mueller_from_jones(jones), density * factor);
 }
 
 /// Two beams, and the planes across the two kinds of grooves that reflect one beam into the other (`sign` 1 and -1).
@@ -214,9 +228,9 @@ struct GroovePair {
   BeamFrame in, out;
   GroovePlane toward, against;
 
-  GroovePair(double theta_i_deg, double theta_r_deg, double delta_phi_deg)
-      : in(incident_beam(theta_i_deg)),
-        out(reflected_beam(theta_r_deg, delta_phi_deg)),
+  explicit GroovePair(const BeamAngles& angles)
+      : in(incident_beam(angles.theta_i_deg)),
+        out(reflected_beam(angles.theta_r_deg, angles.delta_phi_deg)),
         toward(in, out, 1),
         against(in, out, -1) {}
   bool is_mirrored() const { return toward.across * toward.across < kMirrored; }
@@ -243,16 +257,21 @@ ReferenceMueller not_a_number() {
 
 ReferenceMueller reference_bounces(const Surface& surface, const FacetOptics& constants, double theta_i_deg,
                                    double theta_r_deg, double delta_phi_deg, int bounces) {
-  const GroovePair pair(theta_i_deg, theta_r_deg, delta_phi_deg);
+  const GroovePair pair({theta_i_deg, theta_r_deg, delta_phi_deg});
   if (pair.is_mirrored()) return not_a_number();
   return pair.term(reference::Slopes(surface.distribution, surface.sigma, surface.q), constants, bounces);
 }
 
 BouncesSum reference_all_bounces(const Surface& surface, const FacetOptics& constants, double theta_i_deg,
                                  double theta_r_deg, double delta_phi_deg) {
-  const GroovePair pair(theta_i_deg, theta_r_deg, delta_phi_deg);
-  if (pair.is_mirrored()) return {not_a_number(), std::numeric_limits<double>::quiet_NaN()};
   const reference::Slopes slopes(surface.distribution, surface.sigma, surface.q);
+  return reference_all_bounces(slopes, constants, {theta_i_deg, theta_r_deg, delta_phi_deg});
+}
+
+BouncesSum reference_all_bounces(const reference::Slopes& slopes, const FacetOptics& constants,
+                                 const BeamAngles& angles) {
+  const GroovePair pair(angles);
+  if (pair.is_mirrored()) return {not_a_number(), std::numeric_limits<double>::quiet_NaN()};
   BouncesSum sum;
   std::array<double, kIdleBounces> latest{};
   double recent = 0.0;
@@ -275,8 +294,14 @@ ReferenceMueller reference_scattering(const Surface& surface, const FacetOptics&
   if (surface.scattering == Scattering::kMultiple) {
     return reference_all_bounces(surface, constants, theta_i_deg, theta_r_deg, delta_phi_deg).matrix;
   }
-  const BeamFrame in = incident_beam(theta_i_deg);
-  const BeamFrame out = reflected_beam(theta_r_deg, delta_phi_deg);
+  const reference::Slopes slopes(surface.distribution, surface.sigma, surface.q);
+  return reference_single_bounce(slopes, surface.masking, constants, {theta_i_deg, theta_r_deg, delta_phi_deg});
+}
+
+ReferenceMueller reference_single_bounce(const reference::Slopes& slopes, Masking masking, const FacetOptics& constants,
+                                         const BeamAngles& angles) {
+  const BeamFrame in = incident_beam(angles.theta_i_deg);
+  const BeamFrame out = reflected_beam(angles.theta_r_deg, angles.delta_phi_deg);
   const Vector facet = sum(out.k, scaled<Real>(-1, in.k));  // 2 cos(beta) times the facet's normal
   const Real cos2_beta = dot(facet, facet) / 4;
   const auto tan2_alpha = static_cast<double>((facet[0] * facet[0] + facet[1] * facet[1]) / (facet[2] * facet[2]));
@@ -285,12 +310,11 @@ ReferenceMueller reference_scattering(const Surface& surface, const FacetOptics&
     const auto r = fresnel_amplitudes<Complex>(stack, sqrt(cos2_beta), 1 - cos2_beta);
     add(facet_matrix, scaled_matrix(mueller_from_jones(jones_matrix(in, out, r)), weight));
   }
-  const reference::Slopes slopes(surface.distribution, surface.sigma, surface.q);
-  const reference::Attenuation attenuation(slopes, surface.masking, reference::zenith_from_deg(theta_i_deg),
-                                           reference::zenith_from_deg(theta_r_deg), kMaskingTolerance);
+  const reference::Attenuation attenuation(slopes, masking, reference::zenith_from_deg(angles.theta_i_deg),
+                                           reference::zenith_from_deg(angles.theta_r_deg), kMaskingTolerance);
   const double factor =
       0.25 * slopes.facet_density(tan2_alpha) * attenuation(tan2_alpha, static_cast<double>(cos2_beta));
-  return scaled_matrix(facet_matrix, factor);
+  return scaled_matrix(facet_matrix, factor * facet_weight(slopes, tan2_alpha, facet, out));
 }
 
 ReferenceMueller reference_pbrdf(const Surface& surface, const FacetOptics& constants, double theta_i_deg,

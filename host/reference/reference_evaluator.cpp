@@ -35,6 +35,12 @@ void check_shape(Distribution distribution, Masking masking, const SlopeShape& s
   require(shape.sigma >= 0.0, "sigma must not be negative", shape.sigma);
   require(!is_cauchy || shape.q > 1.0, "q must be above 1", shape.q);
   require(!is_cauchy || masking != Masking::kSmith || shape.q > 1.5, "smith masking needs q above 1.5", shape.q);
+  require(shape.sigma_cross >= 0.0, "sigma_cross must not be negative", shape.sigma_cross);
+  if (!is_elliptic(shape)) return;
+  require(shape.sigma > 0.0, "sigma must be above 0 with sigma_cross", shape.sigma);
+  if (masking != Masking::kNone && masking != Masking::kVCavity) {
+    throw InputError("reference: a sigma_cross other than sigma needs masking none or v-cavity");
+  }
 }
 
 void check_index(const FacetOptics& optics) {
@@ -59,8 +65,7 @@ void check(const MomentsRequest& request) {
     throw InputError("reference: direct emission needs v-cavity or smith masking");
   }
   for (const double theta_deg : request.theta_deg) check_zenith(theta_deg);
-  for (const double sigma : request.sigma) check_shape(request.distribution, request.masking, {.sigma = sigma});
-  for (const double q : request.q) check_shape(request.distribution, request.masking, {.q = q});
+  for (std::size_t i = 0; i < request.size(); ++i) check_shape(request.distribution, request.masking, request[i].shape);
   for (const FacetOptics& index : request.optics) check_index(index);
 }
 
@@ -108,7 +113,7 @@ std::vector<ColumnMoments> response_columns(const MomentsRequest& request, const
 Moments point_moments(const MomentsRequest& request, const MomentsPoint& point,
                       const reference::Refinement& refinement) {
   if (point.shape.sigma == 0.0) return mirror_point(request, point);
-  const reference::Slopes slopes(request.distribution, point.shape.sigma, point.shape.q);
+  const reference::Slopes slopes(request.distribution, point.shape);
   const auto integrate = [&](const SkyFunction* sky) {
     return request.scattering == Scattering::kSingle
                ? reference::hemisphere_moments(slopes, request.masking, point.theta_deg, point.index, refinement, sky)
@@ -132,6 +137,7 @@ Moments point_moments(const MomentsRequest& request, const MomentsPoint& point,
         reference::direct_emission(slopes, request.masking, point.theta_deg, point.index, refinement);
     m.direct_i = direct.direct_i;
     m.direct_q = direct.direct_q;
+    m.direct_u = direct.direct_u;
     m.direct_i_error = direct.direct_i_error;
     m.direct_q_error = direct.direct_q_error;
     m.evaluations += direct.evaluations;
@@ -142,18 +148,11 @@ Moments point_moments(const MomentsRequest& request, const MomentsPoint& point,
 
 ScatteringMatrix scattering_matrix(const ScatteringRequest& request, const ScatteringEntry& entry) {
   const BeamAngles& angles = request.angles.at(entry.angles);
-  const SlopeShape& shape = request.shapes.at(entry.shape);
-  Surface surface;
-  surface.distribution = request.distribution;
-  surface.masking = request.masking;
-  surface.sigma = shape.sigma;
-  surface.q = shape.q;
+  const reference::Slopes slopes(request.distribution, request.shapes.at(entry.shape));
   const FacetOptics& index = request.optics.at(entry.index);
-  const auto [theta_i_deg, theta_r_deg, delta_phi_deg] = angles;
-  const BouncesSum f =
-      request.scattering == Scattering::kMultiple
-          ? reference_all_bounces(surface, index, theta_i_deg, theta_r_deg, delta_phi_deg)
-          : BouncesSum{reference_scattering(surface, index, theta_i_deg, theta_r_deg, delta_phi_deg), 0.0};
+  const BouncesSum f = request.scattering == Scattering::kMultiple
+                           ? reference_all_bounces(slopes, index, angles)
+                           : BouncesSum{reference_single_bounce(slopes, request.masking, index, angles), 0.0};
   ScatteringMatrix matrix;
   for (std::size_t i = 0; i < matrix.m.size(); ++i) matrix.m[i] = f.matrix[i / 4][i % 4];
   matrix.error = f.error + kScatteringError * std::abs(matrix.m[0]);

@@ -56,7 +56,7 @@ std::vector<double> changes(const std::vector<double>& points, const std::functi
 }  // namespace
 
 std::vector<double> RegimeScan::chi_breaks(double t) const {
-  std::vector<double> layers;
+  std::vector<double> layers{0.5 * pi - steps_.ridge_rad};
   const double layer = view_.cos / std::max(view_.sin, 1e-300);
   for (double x = layer; x < kThinLayer; x *= kPlaneLayerGrowth) layers.push_back(std::asin(x));
   const double gamma = std::atan2(1.0, t);

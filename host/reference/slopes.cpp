@@ -18,6 +18,53 @@ Slopes::Slopes(Distribution distribution, double sigma, double q)
   in_plane_norm_ *= boost::math::tgamma_delta_ratio(q_ - 0.5, -0.5);
 }
 
+Slopes::Slopes(Distribution distribution, const SlopeShape& shape)
+    : Slopes(distribution, widest_sigma(shape), shape.q) {
+  if (!is_elliptic(shape)) return;
+  const double narrow = std::numbers::sqrt2 * narrowest_sigma(shape);
+  elongation_ = m_ / narrow;
+  excess_ = (1.0 / narrow - 1.0 / m_) * (1.0 / narrow + 1.0 / m_);
+  const double narrow_deg = shape.azimuth_deg + (shape.sigma < shape.sigma_cross ? 0.0 : 90.0);
+  narrow_cos_ = std::cos(narrow_deg * pi / 180.0);
+  narrow_sin_ = std::sin(narrow_deg * pi / 180.0);
+  ridge_rad_ = std::atan2(std::abs(narrow_cos_), std::abs(narrow_sin_));
+}
+
+double Slopes::weight(double tan2_alpha, double cos_phi, double sin_phi) const {
+  if (elongation_ == 1.0) return 1.0;
+  const double narrow = cos_phi * narrow_cos_ + sin_phi * narrow_sin_;
+  const double off = narrow * narrow * tan2_alpha * excess_;
+  if (is_gaussian()) return elongation_ * std::exp(-off);
+  return elongation_ * std::exp(-q_ * std::log1p(off / (1.0 + tan2_alpha / (m_ * m_))));
+}
+
+Slopes Slopes::in_view_plane() const {
+  if (elongation_ == 1.0) return *this;
+  const double m = m_ * std::hypot(narrow_sin_, narrow_cos_ / elongation_);
+  return {distribution_, m / std::numbers::sqrt2, q_};
+}
+
+MirrorWeights Slopes::mirror_weights(double tan2_alpha, double cos_phi, double sin_phi) const {
+  const double own = weight(tan2_alpha, cos_phi, sin_phi);
+  const double mirrored = weight(tan2_alpha, cos_phi, -sin_phi);
+  return {0.5 * (own + mirrored), 0.5 * (own - mirrored)};
+}
+
+double Slopes::weight_above(double t) const {
+  if (elongation_ == 1.0) return 1.0;
+  constexpr int kAzimuths = 256;  // the mean over a period converges exponentially
+  // At an azimuth with off = (1 / m^2 of this azimuth) - (1 / m^2), the integral of P t dt from t on is elementary.
+  double sum = 0.0;
+  for (int i = 0; i < kAzimuths; ++i) {
+    const double narrow = std::cos((i + 0.5) * 0.5 * pi / kAzimuths);
+    const double off = narrow * narrow * excess_;
+    const double decay =
+        is_gaussian() ? -t * t * off : (1.0 - q_) * std::log1p(off / (1.0 / (t * t) + 1.0 / (m_ * m_)));
+    sum += elongation_ * std::exp(decay) / (1.0 + off * m_ * m_);
+  }
+  return sum / kAzimuths;
+}
+
 double Slopes::facet_density(double tan2_alpha) const {
   const double m2 = m_ * m_;
   const double inverse_cos4 = (1.0 + tan2_alpha) * (1.0 + tan2_alpha);

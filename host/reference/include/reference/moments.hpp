@@ -23,8 +23,8 @@ using Curves = std::function<std::array<double, kCurves>(double cos_beta)>;
 
 Zenith zenith_from_deg(double theta_deg);
 
-/// The moments of a rough surface (sigma > 0) with k_s = 1. If `sky` is given, Moments::columns contains r_i and r_q
-/// with the function `sky` as a factor of the integrand.
+/// The moments of a rough surface (sigma > 0) with k_s = 1. If `sky` is given, Moments::columns contains r_i, r_q and
+/// r_u with the function `sky` as a factor of the integrand.
 /// Equation: r = cos(theta) int f cos(theta_r) sin(theta_r) dtheta_r dDelta_phi with the pBRDF f, eqs. (7), (15), (16)
 /// of Wang, Li, Wang 2025. The outer integral is over theta_r, the inner integral over delta = pi - Delta_phi.
 /// Domain: theta in [0, 90] degrees. At 90 degrees the moments are 0 with v-cavity and smith masking. With other
@@ -56,12 +56,14 @@ struct GrooveLight {
   double albedo = 0.0;          ///< flux that leaves if the facets absorb nothing
   double reflected = 0.0;       ///< I that leaves if unpolarised light enters
   double polarised = 0.0;       ///< Q: (I that leaves if s light enters - I that leaves if p light enters) / 2
+  double diagonal = 0.0;        ///< U toward the viewer, if unpolarised light of all directions enters
   double absorbed = 0.0;        ///< absorbed by all bounces
   double lost = 0.0;            ///< I after the last followed bounce, neither in `reflected` nor in `absorbed`
   double once_reflected = 0.0;  ///< I that leaves after one bounce
   double once_absorbed = 0.0;   ///< absorbed by the first bounce
   double sky_reflected = 0.0;   ///< like `reflected`, but each ray is multiplied by the function of the sky
   double sky_polarised = 0.0;   ///< like `polarised`, but each ray is multiplied by the function of the sky
+  double sky_diagonal = 0.0;    ///< like `diagonal`, but each ray is multiplied by the function of the sky
   double bounces = 0.0;         ///< number of followed bounces
 };
 
@@ -69,7 +71,7 @@ struct GrooveLight {
 GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zenith& view, const FacetOptics& constants,
                             const SkyFunction* sky = nullptr);
 
-/// The direct emission of a rough surface (sigma > 0): direct_i, direct_q and their errors.
+/// The direct emission of a rough surface (sigma > 0): direct_i, direct_q, direct_u and their errors.
 /// Equation: cos(theta) eps = int P(t) t dt dphi e G_1 (1 - |r|^2), with the slope density P, the masking G_1 toward
 /// the viewer and the reflection amplitude r. The integral is over all facets (slope t, azimuth phi) with a projected
 /// area e = cos(theta) + sin(theta) t cos(phi) > 0.

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "model/scattering.hpp"
+#include "reference/slopes.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp {
@@ -36,6 +38,12 @@ struct BouncesSum {
 };
 BouncesSum reference_all_bounces(const Surface& surface, const FacetOptics& constants, double theta_i_deg,
                                  double theta_r_deg, double delta_phi_deg);
+BouncesSum reference_all_bounces(const reference::Slopes& slopes, const FacetOptics& constants,
+                                 const BeamAngles& angles);
+
+/// reference_scattering() with single scattering. Domain: an elliptic distribution needs masking none or v-cavity.
+ReferenceMueller reference_single_bounce(const reference::Slopes& slopes, Masking masking, const FacetOptics& constants,
+                                         const BeamAngles& angles);
 
 /// f_s: reference_scattering() divided by both cosines. Domain: zeniths below 90 degrees.
 ReferenceMueller reference_pbrdf(const Surface& surface, const FacetOptics& constants, double theta_i_deg,

@@ -23,7 +23,9 @@ struct ReferenceOptions {
 /// ReferenceMoments_CoarseQuadrature_StaysWithinItsErrors). The tolerance of the integrals is a hundredth of the
 /// request's tolerance, but at least ReferenceOptions::relative_tolerance, and at most half of the request's tolerance.
 /// Domain: theta in [0, 90] degrees; sigma >= 0; cauchy q > 1, with smith masking q > 3/2; n > 0, k >= 0. Multiple
-/// scattering needs v-cavity masking, direct emission v-cavity or smith. At 90 degrees the moments are limits.
+/// scattering needs v-cavity masking, direct emission v-cavity or smith. At 90 degrees the moments are limits. Slopes
+/// that differ along and across need masking none or v-cavity; their density is integrated over slopes and azimuths as
+/// it is.
 class ReferenceEvaluator final : public ModelEvaluator {
  public:
   explicit ReferenceEvaluator(ReferenceOptions options = {}) : options_(options) {}

@@ -1,6 +1,6 @@
 // Integrals over the slope t and the azimuth phi of the facets, split where the integrand bends sharply. The variable
-// chi = 90 degrees - phi replaces phi. Each integrand covers two facets: A at phi, B at phi + 180 degrees. So, by
-// symmetry, chi runs only from 0 to pi/2.
+// chi = 90 degrees - phi replaces phi. Each integrand covers two facets: A at phi, B at phi + 180 degrees, and with the
+// weights of Slopes::mirror_weights() their mirror images at -phi. So chi runs only from 0 to pi/2.
 #pragma once
 
 #include <algorithm>
@@ -82,7 +82,8 @@ struct ScanSteps {
   /// Let psi be the zenith of the view, projected onto the plane across the groove, and gamma the half-angle of the
   /// groove. If per_gamma is not 0, values of chi are added at equal steps of psi, of about gamma / per_gamma.
   double per_gamma = 0.0;
-  int halvings = 0;  ///< number of values toward chi = 0, each half as large as the previous one
+  int halvings = 0;        ///< number of values toward chi = 0, each half as large as the previous one
+  double ridge_rad = 0.0;  ///< Slopes::ridge_rad()
 };
 
 /// Finds the bends of the integrand for one view. Computes the regime at many slopes, then bisects where it changes.
@@ -90,7 +91,8 @@ class RegimeScan {
  public:
   RegimeScan(const Zenith& view, double theta_rad, const ScanSteps& steps, Regime regime)
       : view_(view), theta_rad_(theta_rad), steps_(steps), regime_(std::move(regime)) {}
-  /// Break points of the integral over chi: bends, unless there are too many. For grazing views also some small chi.
+  /// Break points of the integral over chi: bends, unless there are too many, and the ridge of an elliptic density. For
+  /// grazing views also some small chi.
   std::vector<double> chi_breaks(double t) const;
   /// Break points of the integral over t, up to `end`: bends at chi = 0 or pi/2. For grazing views also some small t.
   std::vector<double> t_breaks(double width, double end) const;

@@ -4,13 +4,39 @@
 #include <optional>
 
 #include "model/choices.hpp"
+#include "model/slopes.hpp"
 
 namespace dolp::reference {
 
+/// Weights of a facet at azimuth phi from the viewer and of its mirror image at -phi.
+struct MirrorWeights {
+  double mean = 1.0;
+  double half_difference = 0.0;
+};
+
+/// A slope distribution. An elliptic one is the isotropic distribution of its larger width, times weights that depend
+/// on the azimuth. Functions without an azimuth are those of the isotropic distribution.
 class Slopes {
  public:
   /// Domain: sigma > 0; cauchy q > 1.
   Slopes(Distribution distribution, double sigma, double q);
+  Slopes(Distribution distribution, const SlopeShape& shape);
+
+  /// Weight of a facet whose normal is tilted toward the azimuth phi, counter-clockwise from the viewer; 1 if
+  /// isotropic. Equation: P(t_x, t_y) = C g(t_x^2 / m^2 + t_y^2 / m_c^2), with the isotropic density C g(t^2 / m^2).
+  /// The slope t_x is along the x axis, which is at SlopeShape::azimuth_deg.
+  double weight(double tan2_alpha, double cos_phi, double sin_phi) const;
+  MirrorWeights mirror_weights(double tan2_alpha, double cos_phi, double sin_phi) const;
+
+  /// Mean weight of the facets that are steeper than t.
+  double weight_above(double t) const;
+
+  /// The isotropic distribution with the same slopes in the vertical plane of the viewer. It decides the smith masking.
+  Slopes in_view_plane() const;
+
+  /// Azimuth, in [0, pi/2] from the viewer or its opposite direction, of the axis with the larger width; 0 if
+  /// isotropic.
+  double ridge_rad() const { return ridge_rad_; }
 
   /// D(alpha) in 1/sr. Equation: (8) for the cauchy, (1) for the gaussian, of Wang, Li, Wang 2025.
   double facet_density(double tan2_alpha) const;
@@ -46,6 +72,12 @@ class Slopes {
   double q_;
   double width_;
   double in_plane_norm_;  ///< p(0)
+  // An elliptic distribution. The narrow axis is the axis with the smaller width.
+  double elongation_ = 1.0;  ///< larger width over smaller width
+  double excess_ = 0.0;      ///< 1 / m^2 along the narrow axis, minus 1 / m^2 along the other axis
+  double narrow_cos_ = 0.0;  ///< cosine of the azimuth of the narrow axis from the viewer
+  double narrow_sin_ = 1.0;
+  double ridge_rad_ = 0.0;
 };
 
 /// A zenith angle. Formulas for directions near the horizon use the elevation, in which no digits cancel.

@@ -55,15 +55,19 @@ MODEL_INACCURATE = 32  # the numbers are right for the model
 
 # The numeric axes with their symbols. The picture shows one value of each axis that it is not drawn over.
 SYMBOLS = {"q": "q", "wavelength": "λ", "temperature": "T", "n": "n", "k": "k", "theta": r"$\theta$", "sigma": r"$\sigma$",
-           "view_zenith_deg": r"$\theta_v$", "relative_azimuth_deg": r"$\Delta\phi$"}
+           "view_zenith_deg": r"$\theta_v$", "relative_azimuth_deg": r"$\Delta\phi$", "sigma_cross": r"$\sigma_c$",
+           "surface_azimuth_deg": r"$\phi_w$"}
 ACROSS = {"theta": r"zenith angle $\theta$ (degree)", "view_zenith_deg": r"zenith of the view $\theta_v$ (degree)"}
-UPWARDS = {"sigma": r"roughness $\sigma$", "relative_azimuth_deg": r"relative azimuth $\Delta\phi$ (degree)"}
+UPWARDS = {"sigma": r"roughness $\sigma$", "relative_azimuth_deg": r"relative azimuth $\Delta\phi$ (degree)",
+           "surface_azimuth_deg": r"azimuth of the surface $\phi_w$ (degree)"}
 NAMED = ("material", "band")  # axes whose values are names; the picture shows one of the names
 DEFAULTS = {"material": "one curve for each", "band": "the first"}
-UNITS = {"wavelength": " µm", "temperature": " K", "band": " µm", "theta": "°", "view_zenith_deg": "°", "relative_azimuth_deg": "°"}
+UNITS = {"wavelength": " µm", "temperature": " K", "band": " µm", "theta": "°", "view_zenith_deg": "°", "relative_azimuth_deg": "°",
+         "surface_azimuth_deg": "°"}
 KEYS = {"temperature": ("emission", "temperature_K"), "q": ("surface", "q"), "wavelength": ("spectrum", "wavelength_um"), "n": ("surface", "n"), "k": ("surface", "k"),
         "sigma": ("surface", "sigma"), "wind_m_s": ("surface", "wind_m_s"), "view_zenith_deg": ("geometry", "view_zenith_deg"),
-        "relative_azimuth_deg": ("geometry", "relative_azimuth_deg")}  # the scene's key for each axis
+        "relative_azimuth_deg": ("geometry", "relative_azimuth_deg"), "sigma_cross": ("surface", "sigma_cross"),
+        "surface_azimuth_deg": ("geometry", "surface_azimuth_deg")}  # the scene's key for each axis
 
 
 def text_of(dataset, name):

@@ -71,9 +71,11 @@ Range slope_density(Distribution distribution, const EntriesExtent& extent, doub
   const auto density = [&](double m2, double q) {
     return (is_gaussian ? std::exp(-t2 / m2) : std::exp(-q * std::log1p(t2 / m2))) / (std::numbers::pi * m2);
   };
+  // At each azimuth an elliptic density is that of a width between its two widths, times at most their quotient.
+  const double ratio = extent.width_ratio;
   const double peak = is_gaussian ? t2 : (q_low - 1.0) * t2;
-  return {(is_gaussian ? 1.0 : q_low - 1.0) * std::min(density(m2_low, q_high), density(m2_high, q_high)),
-          (is_gaussian ? 1.0 : q_high - 1.0) * density(std::clamp(peak, m2_low, m2_high), q_low)};
+  return {(is_gaussian ? 1.0 : q_low - 1.0) / ratio * std::min(density(m2_low, q_high), density(m2_high, q_high)),
+          (is_gaussian ? 1.0 : q_high - 1.0) * ratio * density(std::clamp(peak, m2_low, m2_high), q_low)};
 }
 
 /// Range of the element f_00 of the pBRDF times cos(theta_i) cos(theta_r), for k_s = 1, in 1/sr. It follows from ranges
@@ -98,9 +100,8 @@ Range beam_range(const Surface& surface, const BeamAngles& angles, const Entries
 }
 
 EntriesExtent extent_of_grid(const SceneModel& scene, const SceneEntries& entries) {
-  const auto [sigma_low, sigma_high] = std::ranges::minmax(entries.sigma());
-  const auto [q_low, q_high] = std::ranges::minmax(entries.q());
-  EntriesExtent extent{{}, {sigma_high, q_low}, {sigma_low, q_high}, {}};
+  EntriesExtent extent;
+  for (std::size_t i = 0; i < entries.entries_per_direction(); ++i) extent.add(entries[i].shape);
   for (std::size_t i = 0; i < entries.directions(); ++i)
     extent.beams.push_back(beam_angles(scene, entries[i * entries.entries_per_direction()]));
   if (!entries.has_own_index()) return extent;
@@ -129,15 +130,19 @@ std::vector<FacetOptics> bounding_indices(const SpectralRule& rule, const Entrie
 
 }  // namespace
 
+void EntriesExtent::add(const SlopeShape& shape) {
+  roughest = {std::max(roughest.sigma, widest_sigma(shape)), std::min(roughest.q, shape.q)};
+  smoothest = {std::min(smoothest.sigma, narrowest_sigma(shape)), std::max(smoothest.q, shape.q)};
+  if (is_elliptic(shape)) width_ratio = std::max(width_ratio, widest_sigma(shape) / narrowest_sigma(shape));
+}
+
 std::vector<EntriesExtent> entry_extents(const SceneModel& scene, const SceneEntries& entries) {
   if (entries.is_grid()) return {extent_of_grid(scene, entries)};
-  std::vector<EntriesExtent> extents(entries.variants().size(), {{}, {0.0, kInfinity}, {kInfinity, 0.0}, {}});
+  std::vector<EntriesExtent> extents(entries.variants().size());
   for (const SceneEntry& entry : entries.all()) {
     EntriesExtent& extent = extents[entry.variant];
     extent.beams.push_back(beam_angles(scene, entry));
-    extent.roughest = {std::max(extent.roughest.sigma, entry.shape.sigma), std::min(extent.roughest.q, entry.shape.q)};
-    extent.smoothest = {std::min(extent.smoothest.sigma, entry.shape.sigma),
-                        std::max(extent.smoothest.q, entry.shape.q)};
+    extent.add(entry.shape);
     if (entry.index) extent.optics.push_back(*entry.index);
   }
   return extents;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <dolp/effect.hpp>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -21,9 +22,11 @@ KeptEffects without(KeptEffects kept, Part part);
 
 struct EntriesExtent {
   std::vector<BeamAngles> beams;  ///< in hemispherical mode, theta_i_deg is theta and the other angles mean nothing
-  SlopeShape roughest;            ///< the largest sigma and the smallest q
-  SlopeShape smoothest;           ///< the smallest sigma and the largest q
-  std::vector<FacetOptics> optics;
+  SlopeShape roughest = {0.0, std::numeric_limits<double>::infinity()};   ///< the largest sigma and the smallest q
+  SlopeShape smoothest = {std::numeric_limits<double>::infinity(), 0.0};  ///< the smallest sigma and the largest q
+  double width_ratio = 1.0;  ///< largest quotient of the widths along and across
+  std::vector<FacetOptics> optics = {};
+  void add(const SlopeShape& shape);
 };
 
 /// For a grid one extent, because all its SceneVariants have equal directions. For points, one for each SceneVariant.

@@ -7,9 +7,10 @@ namespace dolp {
 namespace {
 
 // A grid is cut along theta first, because kernels share work among the entries of one direction.
-constexpr std::array kCuttingOrder = {Axis::kViewZenith,  Axis::kRelativeAzimuth, Axis::kTheta, Axis::kMaterial,
-                                      Axis::kBand,        Axis::kWavelength,      Axis::kN,     Axis::kK,
-                                      Axis::kTemperature, Axis::kSigma,           Axis::kQ};
+constexpr std::array kCuttingOrder = {Axis::kViewZenith,    Axis::kRelativeAzimuth, Axis::kTheta, Axis::kMaterial,
+                                      Axis::kBand,          Axis::kWavelength,      Axis::kN,     Axis::kK,
+                                      Axis::kTemperature,   Axis::kSigma,           Axis::kQ,     Axis::kSigmaCross,
+                                      Axis::kSurfaceAzimuth};
 static_assert(kCuttingOrder.size() == kAxisCount);
 
 /// The member of the entry, or of its variant, that has the value on an axis of numbers.
@@ -21,6 +22,10 @@ double* value_at(SceneEntry& entry, SceneVariant& variant, Axis axis) {
       return &entry.shape.sigma;
     case Axis::kQ:
       return &entry.shape.q;
+    case Axis::kSigmaCross:
+      return &entry.shape.sigma_cross;
+    case Axis::kSurfaceAzimuth:
+      return &entry.shape.azimuth_deg;
     case Axis::kN:
       return &entry.index->n;
     case Axis::kK:
@@ -102,7 +107,7 @@ std::vector<SceneVariant> grid_variants(const Axes& axes) {
   return variants;
 }
 
-SceneEntries SceneEntries::grid(Axes axes, const OpticalConstants& index) {
+SceneEntries SceneEntries::grid(Axes axes, const OpticalConstants& index, const CrossSlopes& slopes) {
   SceneEntries entries;
   entries.is_grid_ = true;
   entries.counts_ = axis_counts(axes);
@@ -114,6 +119,7 @@ SceneEntries SceneEntries::grid(Axes axes, const OpticalConstants& index) {
   entries.whole_axes_ = std::make_shared<const Axes>(axes);
   entries.axes_ = std::move(axes);
   entries.index_ = index;
+  entries.slopes_ = slopes;
   return entries;
 }
 
@@ -139,11 +145,13 @@ SceneEntry SceneEntries::operator[](std::size_t entry) const {
   const PerAxis at = axis_positions(entry);
   SceneEntry result;
   result.theta_deg = theta_deg()[at[Axis::kTheta]];
-  result.shape = {sigma()[at[Axis::kSigma]], q()[at[Axis::kQ]]};
+  result.shape = slopes_.shape(sigma()[at[Axis::kSigma]], q()[at[Axis::kQ]]);
   if (has_own_index()) result.index = index_at(at);
   const auto find = [&](Axis axis) {
     return axes_[axis].empty() ? std::nullopt : std::optional(axes_[axis][at[axis]]);
   };
+  if (const auto cross = find(Axis::kSigmaCross)) result.shape.sigma_cross = *cross;
+  if (const auto azimuth = find(Axis::kSurfaceAzimuth)) result.shape.azimuth_deg = *azimuth;
   result.view_zenith_deg = find(Axis::kViewZenith);
   result.relative_azimuth_deg = find(Axis::kRelativeAzimuth);
   result.variant = static_cast<std::uint32_t>(variant_at(at));
@@ -151,7 +159,7 @@ SceneEntry SceneEntries::operator[](std::size_t entry) const {
 }
 
 SceneEntries SceneEntries::part(const PerAxis& first, const PerAxis& count) const {
-  SceneEntries part = grid(axes_part(axes_, first, count), index_);
+  SceneEntries part = grid(axes_part(axes_, first, count), index_, slopes_);
   part.whole_ = whole_;
   part.whole_axes_ = whole_axes_;
   for (const Axis axis : kAllAxes) part.first_[axis] = first_[axis] + first[axis];
@@ -185,6 +193,9 @@ bool SceneEntries::has_values(Axis axis) const {
       return is_grid_ ? !axes_[axis].empty() : std::ranges::all_of(points_, [&](const SceneEntry& point) {
         return (axis == Axis::kViewZenith ? point.view_zenith_deg : point.relative_azimuth_deg).has_value();
       });
+    case Axis::kSigmaCross:
+    case Axis::kSurfaceAzimuth:
+      return !is_grid_ || !axes_[axis].empty();
     case Axis::kWavelength:
       return variants_.front().wavelength_um.has_value();
     case Axis::kTemperature:
@@ -207,7 +218,7 @@ SceneEntries SceneEntries::changed(Axis axis, const std::function<double(double)
     std::ranges::transform(axes[axis], axes[axis].begin(), change);
     if (axis == Axis::kN) index.n = change(index.n);
     if (axis == Axis::kK) index.k = change(index.k);
-    return grid(std::move(axes), index);
+    return grid(std::move(axes), index, slopes_);
   }
   SceneEntries entries = *this;
   const bool is_of_variant = std::ranges::find(kVariantAxes, axis) != kVariantAxes.end();
@@ -217,6 +228,9 @@ SceneEntries SceneEntries::changed(Axis axis, const std::function<double(double)
     if (is_of_variant) *value_at(none, variant, axis) = change(*value_at(none, variant, axis));
   for (SceneEntry& point : entries.points_)
     if (!is_of_variant) *value_at(point, unused, axis) = change(*value_at(point, unused, axis));
+  const bool follows_wind = axis == Axis::kSigma && slopes_.wind_model == WindModel::kDirectional;
+  for (SceneEntry& point : entries.points_)
+    if (follows_wind) point.shape.sigma_cross = sigma_across_wind(point.shape.sigma);
   return entries;
 }
 
@@ -236,7 +250,7 @@ SceneEntries SceneEntries::chosen(std::span<const std::size_t> positions) const 
     point.variant = variant_number;
   }
   if (variants.empty()) variants = {{}};
-  return {std::move(points), std::move(variants)};
+  return {std::move(points), std::move(variants), slopes_.wind_model};
 }
 
 std::vector<SceneEntries> SceneEntries::parts(std::size_t most) const {

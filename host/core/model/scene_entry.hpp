@@ -78,11 +78,13 @@ struct GridRun {
 class SceneEntries {
  public:
   SceneEntries() = default;
-  SceneEntries(std::vector<SceneEntry> points, std::vector<SceneVariant> variants = {{}})  // NOLINT: a list is entries
-      : variants_(std::move(variants)), points_(std::move(points)) {}
+  SceneEntries(std::vector<SceneEntry> points, std::vector<SceneVariant> variants = {{}},  // NOLINT: a list is entries
+               WindModel wind_model = WindModel::kIsotropic)
+      : slopes_{.wind_model = wind_model}, variants_(std::move(variants)), points_(std::move(points)) {}
   SceneEntries(std::initializer_list<SceneEntry> points) : points_(points) {}
   /// `index`: index of the surface. It gives k if the grid has an axis of n only, and n if it has an axis of k only.
-  static SceneEntries grid(Axes axes, const OpticalConstants& index);
+  /// `slopes`: of the scene, for entries without sigma_cross or azimuth on an axis.
+  static SceneEntries grid(Axes axes, const OpticalConstants& index, const CrossSlopes& slopes = {});
   static SceneEntries grid(std::vector<double> theta_deg, std::vector<double> sigma, std::vector<double> q);
 
   bool is_grid() const { return is_grid_; }
@@ -106,11 +108,14 @@ class SceneEntries {
   PerAxis axis_positions(std::size_t entry) const { return positions_on_axes(entry, counts_); }
   /// A direction of a grid is a combination of theta, view zenith and relative azimuth. A direction's entries are
   /// consecutive, and so are the directions of one variant and index.
-  std::size_t entries_per_direction() const { return sigma().size() * q().size(); }
+  std::size_t entries_per_direction() const {
+    return sigma().size() * q().size() * counts_[Axis::kSigmaCross] * counts_[Axis::kSurfaceAzimuth];
+  }
   std::size_t directions() const {
     return counts_[Axis::kViewZenith] * counts_[Axis::kRelativeAzimuth] * counts_[Axis::kTheta];
   }
   const OpticalConstants& index() const { return index_; }
+  const CrossSlopes& slopes() const { return slopes_; }
   /// The subscript in variants() for the entry with the axis positions `on_axes`.
   std::size_t variant_at(const PerAxis& on_axes) const;
   bool has_own_index() const { return !axes_[Axis::kN].empty() || !axes_[Axis::kK].empty(); }
@@ -140,6 +145,7 @@ class SceneEntries {
   bool is_grid_ = false;
   Axes axes_;
   OpticalConstants index_;
+  CrossSlopes slopes_;
   PerAxis counts_ = {};
   PerAxis first_ = {};
   PerAxis whole_ = {};

@@ -228,7 +228,7 @@ Radiometry::Optics Radiometry::optics_with(std::vector<FacetOptics> facets) cons
 PointResult Radiometry::finished(PointResult result) const {
   if (!settings_.kept.moments) result[kAlbedo] = kNan;
   if (!knows_emissivity_) result[kEmissivityS] = result[kEmissivityP] = kNan;
-  if (!knows_rho_) result[kRhoI] = result[kRhoQ] = result[kRhoErrorEstimate] = kNan;
+  if (!knows_rho_) result[kRhoI] = result[kRhoQ] = result[kRhoU] = result[kRhoErrorEstimate] = kNan;
   result[kErrorEstimate] += settings_.dropped;
   result.status |= tolerance_status(result, scene_.accuracy.tolerance);
   return result;
@@ -325,6 +325,8 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
   sum.q += sky.q;
   sum.i_error += sky.i_error;
   sum.q_error += sky.q_error;
+  sum.u += sky.u;
+  sum.u_error += sky.u_error;
   if (bistatic)
     add_beam(sum, beam_specular_, kept_rule_, scattered, {diffuse_beam.data(), diffuse_beam.size()}, cos_theta);
   add_path(sum, scene_.path, kept_rule_.path_exitance);
@@ -336,6 +338,7 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
   result[kStokesV] = unit * sum.v + 0.0;
   result[kRhoI] = mean.rho_i;
   result[kRhoQ] = mean.rho_q;
+  result[kRhoU] = mean.rho_u + 0.0;
   result[kAlbedo] = moments.front().albedo / cos_theta;
   result[kRhoErrorEstimate] = relative_bound(mean.error, mean.rho_i);
   set_dolp(result, sum);

@@ -20,16 +20,18 @@ Reflectance reflectance(const Surface& surface, const Moments& moments, double c
   Reflectance r;
   r.rho_i = scale * moments.r_i + diffuse.i;
   r.rho_q = scale * moments.r_q + diffuse.q;
+  r.rho_u = scale * moments.r_u;
   r.absorbed = (1.0 - surface.specular) + scale * moments.deficit - diffuse.i;
   r.rho_i_error = scale * moments.r_i_error + kReflectanceRounding * std::abs(r.rho_i) + diffuse.error;
   r.rho_q_error = scale * moments.r_q_error + kReflectanceRounding * std::abs(r.rho_q) + diffuse.error;
+  r.rho_u_error = moments.r_u == 0.0 ? 0.0 : scale * moments.r_q_error + kReflectanceRounding * std::abs(r.rho_u);
   r.absorbed_error = scale * moments.deficit_error + kReflectanceRounding * absorbed_terms + diffuse.error;
   r.mismatch = scale * std::abs((moments.r_i - cos_theta) + moments.deficit);
   return r;
 }
 
 bool is_unphysical(const Reflectance& r) {
-  const double q = std::abs(r.rho_q);
+  const double q = std::hypot(r.rho_q, r.rho_u);
   const double above = std::max(q - r.absorbed - r.absorbed_error, r.rho_i + q - 1.0 - r.rho_i_error);
   const double below = q - r.rho_i - r.rho_i_error;
   return std::max(above, below) > r.rho_q_error + kReflectanceRounding;
@@ -66,14 +68,17 @@ MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Refle
   double total = 0.0;
   double rho_i_error = 0.0;
   double rho_q_error = 0.0;
+  double rho_u_error = 0.0;
   for (std::size_t j = 0; j < reflectances.size(); ++j) {
     const Reflectance& r = reflectances[j];
     const double weight = sample_weight(rule.samples[j]);
     total += weight;
     mean.rho_i += weight * r.rho_i;
     mean.rho_q += weight * r.rho_q;
+    mean.rho_u += weight * r.rho_u;
     rho_i_error += std::abs(weight) * (r.rho_i_error + rule.relative_error * std::abs(r.rho_i));
     rho_q_error += std::abs(weight) * (r.rho_q_error + rule.relative_error * std::abs(r.rho_q));
+    rho_u_error += std::abs(weight) * (r.rho_u_error + rule.relative_error * std::abs(r.rho_u));
   }
   const auto spectral_error = [&](double Reflectance::*rho) {
     return panel_error(
@@ -81,11 +86,13 @@ MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Refle
   };
   rho_i_error += spectral_error(&Reflectance::rho_i);
   rho_q_error += spectral_error(&Reflectance::rho_q);
+  rho_u_error += spectral_error(&Reflectance::rho_u);
   if (rule.diffuse && light == MeanLight::kIncident)
     mean.rho_i += rule.diffuse->surroundings + cos_theta * rule.diffuse->irradiance;
   mean.rho_i /= total;
   mean.rho_q /= total;
-  mean.error = std::max(rho_i_error, rho_q_error) / total;
+  mean.rho_u /= total;
+  mean.error = std::max({rho_i_error, rho_q_error, rho_u_error}) / total;
   return mean;
 }
 
@@ -102,16 +109,20 @@ Emissivity direct_emissivity(const Surface& surface, const Moments& moments, dou
   if (surface.specular == 0.0) return {.i = rest - diffuse.i, .q = -diffuse.q, .terms = rest + diffuse.i};
   return {.i = scale * moments.direct_i + rest - diffuse.i,
           .q = scale * moments.direct_q - diffuse.q,
+          .u = scale * moments.direct_u,
           .i_error = scale * moments.direct_i_error,
           .q_error = scale * moments.direct_q_error,
+          .u_error = moments.direct_u == 0.0 ? 0.0 : scale * moments.direct_q_error,
           .terms = scale * std::abs(moments.direct_i) + rest + diffuse.i};
 }
 
 Emissivity kirchhoff_emissivity(const Reflectance& r) {
   return {.i = r.absorbed,
           .q = -r.rho_q,
+          .u = -r.rho_u,
           .i_error = r.absorbed_error,
           .q_error = r.rho_q_error,
+          .u_error = r.rho_u_error,
           .terms = std::abs(r.absorbed)};
 }
 

@@ -12,9 +12,11 @@ namespace dolp {
 struct Reflectance {
   double rho_i = 0.0;
   double rho_q = 0.0;
+  double rho_u = 0.0;
   double absorbed = 0.0;  ///< 1 - rho_i, computed without cancellation
   double rho_i_error = 0.0;
   double rho_q_error = 0.0;
+  double rho_u_error = 0.0;  ///< 0 if U is 0 by symmetry
   double absorbed_error = 0.0;
   double mismatch = 0.0;  ///< |rho_i + absorbed - 1|; not exactly 0, because separate sums give rho_i and absorbed
 };
@@ -23,15 +25,18 @@ struct Reflectance {
 struct Emissivity {
   double i = 0.0;
   double q = 0.0;
+  double u = 0.0;
   double i_error = 0.0;
   double q_error = 0.0;
+  double u_error = 0.0;
   double terms = 0.0;  ///< sum of the magnitudes of the terms of i; rounding errors are relative to it
 };
 
 struct MeanReflectance {
   double rho_i = 0.0;
   double rho_q = 0.0;
-  double error = 0.0;  ///< error of rho_i or rho_q, whichever is larger
+  double rho_u = 0.0;
+  double error = 0.0;  ///< error of rho_i, rho_q or rho_u, whichever is largest
 };
 
 Reflectance reflectance(const Surface& surface, const Moments& moments, double cos_theta, const DiffuseLight& diffuse);

@@ -51,7 +51,9 @@ void add_moments_sample(Stokes& sum, const SpectralSample& sample, const Reflect
   sum.i += intensity.value;
   sum.q += net * r.rho_q;
   sum.i_error += intensity.error + rounding * intensity.terms;
+  sum.u += net * r.rho_u;
   sum.q_error += std::abs(net) * r.rho_q_error + rounding * net_terms * polarised_terms(r);
+  sum.u_error += std::abs(net) * r.rho_u_error + rounding * net_terms * std::abs(r.rho_u);
 }
 
 void add_emitting_sample(Stokes& sum, const SpectralSample& sample, const Reflectance& r, const Emissivity& e,
@@ -59,12 +61,15 @@ void add_emitting_sample(Stokes& sum, const SpectralSample& sample, const Reflec
   const double incident = direct + sample.surroundings;
   sum.i += sample.emitted * e.i + incident * r.rho_i;
   sum.q += sample.emitted * e.q + incident * r.rho_q;
+  sum.u += sample.emitted * e.u + incident * r.rho_u;
   const double emitted_terms = std::abs(sample.emitted) * e.terms;
   const double emitted = std::abs(sample.emitted);
   sum.i_error += emitted * e.i_error + std::abs(incident) * r.rho_i_error +
                  rounding * (emitted_terms + std::abs(incident * r.rho_i));
   sum.q_error += emitted * e.q_error + std::abs(incident) * r.rho_q_error +
                  rounding * (emitted_terms + std::abs(incident) * polarised_terms(r));
+  sum.u_error += emitted * e.u_error + std::abs(incident) * r.rho_u_error +
+                 rounding * (std::abs(sample.emitted * e.u) + std::abs(incident * r.rho_u));
 }
 
 struct Span {
@@ -103,14 +108,17 @@ Stokes stokes_sum(const SpectralRule& rule, std::span<const Reflectance> reflect
   };
   sum.i_error += spectral_error(&Reflectance::rho_i, &Emissivity::i);
   sum.q_error += spectral_error(&Reflectance::rho_q, &Emissivity::q);
+  sum.u_error += spectral_error(&Reflectance::rho_u, &Emissivity::u);
   return sum;
 }
 
 void add_specular(Stokes& sum, double net, const Moments& moments) {
   sum.i += net * moments.r_i;
   sum.q += net * moments.r_q;
+  sum.u += net * moments.r_u;
   sum.i_error += std::abs(net) * (moments.r_i_error + kRadianceRounding * std::abs(moments.r_i));
   sum.q_error += std::abs(net) * (moments.r_q_error + kRadianceRounding * std::abs(moments.r_q));
+  if (moments.r_u != 0.0) sum.u_error += std::abs(net) * moments.r_q_error;
 }
 
 void add_specular_sky(Stokes& sum, double specular, double rounding, const SkyWeights& weights,
@@ -118,15 +126,19 @@ void add_specular_sky(Stokes& sum, double specular, double rounding, const SkyWe
   if (specular == 0.0) return;  // the moments may lack the columns of the sky
   assert(weights.of.size() == static_cast<Eigen::Index>(moments.columns.size()));
   double error = weights.error * (std::abs(moments.r_i) + moments.r_i_error);
+  double u = 0.0;
   for (std::size_t k = 0; k < moments.columns.size(); ++k) {
     const ColumnMoments& with = moments.columns[k];
     const double weight = weights.of[static_cast<Eigen::Index>(k)];
     sum.i += specular * weight * with.i;
     sum.q += specular * weight * with.q;
+    u += specular * weight * with.u;
     error += std::abs(weight) * (with.error + rounding * std::abs(moments.r_i));
   }
   sum.i_error += std::abs(specular) * error;
   sum.q_error += std::abs(specular) * error;
+  sum.u += u;
+  if (u != 0.0) sum.u_error += std::abs(specular) * error;
 }
 
 void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std::span<const SkyWeights> weights,
@@ -153,6 +165,7 @@ void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std:
   };
   sum.i_error += spectral_error(&ColumnMoments::i);
   sum.q_error += spectral_error(&ColumnMoments::q);
+  sum.u_error += spectral_error(&ColumnMoments::u);
 }
 
 void add_beam(Stokes& sum, double k_s, const SpectralRule& rule, std::span<const Scattered> scattered,

@@ -61,6 +61,8 @@ constexpr Synonyms kSynonyms[] = {
     {"", "reflectance reflectivity reflectances", "surface.reflectance_file"},
     {"", "spectral_response srf rsr quantum_efficiency qe detectivity filter", "spectrum.response_file"},
     {"", "wind wind_speed u10", "surface.wind_m_s"},
+    {"", "sigma_c sigma_y sigma_across anisotropy", "surface.sigma_cross"},
+    {"", "wind_direction wind_azimuth brush_azimuth", "geometry.surface_azimuth_deg"},
     {"", "film films layer layers coatings thin_film", "surface.coating"},
     {"", "temperature temp t surface_temperature", "emission.temperature_K"},
     {"", "tsky t_sky sky_temperature ambient background_temperature t_surr t_bg", "surroundings.temperature_K"},

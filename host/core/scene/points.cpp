@@ -65,8 +65,9 @@ std::vector<ColumnRule> column_rules(PointsKind kind, const std::vector<std::str
     rules.push_back({"delta_phi_deg", kAzimuthDegRange, &Points::delta_phi_deg});
   }
   for (const Axis axis : kColumnOrder) {
-    const bool is_of_shape = axis == Axis::kSigma || axis == Axis::kQ || axis == Axis::kN || axis == Axis::kK;
-    if (has_pairs && !is_of_shape) continue;
+    constexpr std::array kOfPairs = {Axis::kSigma, Axis::kQ,          Axis::kN,
+                                     Axis::kK,     Axis::kSigmaCross, Axis::kSurfaceAzimuth};
+    if (has_pairs && std::ranges::find(kOfPairs, axis) == kOfPairs.end()) continue;
     rules.push_back({describe(axis).column, describe(axis).range, axis});
   }
   rules.push_back({kWind.column, kWind.range, Axis::kSigma, true});

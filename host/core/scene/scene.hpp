@@ -64,6 +64,8 @@ struct Surface {
   Scattering scattering = Scattering::kSingle;  ///< kMultiple only with v-cavity
   double sigma = 0.0;
   std::optional<double> wind_m_s = {};  ///< wind from which sigma follows; nullopt if the scene gives sigma
+  WindModel wind_model = WindModel::kIsotropic;
+  double sigma_cross = 0.0;  ///< SlopeShape::sigma_cross
   double q = 2.0;
   double specular = 1.0;  ///< k_s in [0, 1]
   double diffuse = 0.0;   ///< k_d in [0, 1]; the largest k_d of the spectrum if there is a diffuse_table
@@ -129,6 +131,7 @@ struct Geometry {
   Mode mode = Mode::kHemispherical;
   double view_zenith_deg = 60.0;        ///< zenith of the view; only for bistatic mode
   double relative_azimuth_deg = 180.0;  ///< only for bistatic mode; 180 is the specular side
+  double surface_azimuth_deg = 0.0;     ///< SlopeShape::azimuth_deg
 };
 
 struct Accuracy {
@@ -164,12 +167,14 @@ struct SceneModel {
   Accuracy accuracy;
   std::shared_ptr<const std::vector<Material>> materials = {};  ///< materials on the grid's axis of materials
   std::vector<Spectrum> bands = {};                             ///< bands on the grid's axis of bands
+  CrossSlopes cross_slopes() const { return {surface.sigma_cross, geometry.surface_azimuth_deg, surface.wind_model}; }
 };
 
 struct SceneValues : SceneModel {
   std::string title;
   SceneNames names;
   Axes grid;                       ///< values in the user's order; [surface] gives sigma or q if [grid] does not
+  bool has_cross_slopes() const;   ///< true if slopes may differ along and across
   AxisLabels labels;               ///< names of the materials and bands on the grid's axes
   std::vector<double> wind_m_s;    ///< winds from which the grid's sigmas follow; empty if the scene gives sigmas
   std::string path_name;           ///< path of the scene as the user gave it, for messages

@@ -116,9 +116,23 @@ void set_sigma(SceneValues& s, const KeyValue& v) {
   s.surface.wind_m_s.reset();
 }
 
+/// Computes the slope widths of the winds, which the keys of the winds and of their model give in any order.
+void take_winds(SceneValues& s) {
+  const auto width = [&](double wind_m_s) { return sigma_in_wind(wind_m_s, s.surface.wind_model); };
+  if (s.surface.wind_m_s) s.surface.sigma = width(*s.surface.wind_m_s);
+  if (s.wind_m_s.empty()) return;
+  s.grid[Axis::kSigma].clear();
+  std::ranges::transform(s.wind_m_s, std::back_inserter(s.grid[Axis::kSigma]), width);
+}
+
 void set_wind(SceneValues& s, const KeyValue& v) {
-  s.surface.sigma = sigma_of_wind(v.number);
   s.surface.wind_m_s = v.number;
+  take_winds(s);
+}
+
+void set_wind_model(SceneValues& s, const KeyValue& v) {
+  assign(s.surface.wind_model, v);
+  take_winds(s);
 }
 
 /// Makes a key that gives E0. Its setter also sets the kind of the source.
@@ -151,8 +165,7 @@ SceneKey air_number(const char* key, const char* unit, const NumberRange& range,
 SceneKey wind_axis() {
   const auto set = [](SceneValues& s, const KeyValue& v) {
     s.wind_m_s = v.numbers;
-    s.grid[Axis::kSigma].clear();
-    std::ranges::transform(v.numbers, std::back_inserter(s.grid[Axis::kSigma]), sigma_of_wind);
+    take_winds(s);
   };
   return with_set(key_at(
                       described("grid.wind_m_s", Type::kAxis, kWind.units, kWind.range, "",
@@ -239,6 +252,17 @@ std::vector<SceneKey> surface_keys() {
                  "wind over a sea; sets sigma by 2 sigma^2 = 0.003 + 0.00512 wind; only with distribution gaussian",
                  [](auto& s) { return &s.surface.wind_m_s; }),
           set_wind),
+      with_set(choice("surface.wind_model", Surface().wind_model,
+                      "isotropic: the wind gives one slope width; directional: sigma^2 = 0.00316 wind along it, and "
+                      "0.003 + 0.00192 wind across (only masking none or v-cavity)",
+                      [](auto& s) { return &s.surface.wind_model; }),
+               set_wind_model),
+      number(
+          "surface.sigma_cross", "1", kSigmaCrossRange, "surface.sigma",
+          "slope width across, along the surface's y axis, as of brushed metal; sigma is that along its x axis (only "
+          "masking none or v-cavity)",
+          [](auto& s) { return &s.surface.sigma_cross; },
+          [](const SceneValues& s) { return s.surface.sigma_cross > 0.0; }),
       number("surface.q", "1", kQRange, "2", "tail exponent q of the cauchy distribution; 2 is GGX",
              [](auto& s) { return &s.surface.q; }),
       choice("surface.masking", Surface().masking, "geometric attenuation G; smith with cauchy needs every q > 1.5",
@@ -353,6 +377,10 @@ std::vector<SceneKey> geometry_keys() {
       number("geometry.relative_azimuth_deg", "degree", kAzimuthDegRange, "180",
              "azimuth Delta phi between source and view in bistatic mode; 180 is the specular side",
              [](auto& s) { return &s.geometry.relative_azimuth_deg; }),
+      number("geometry.surface_azimuth_deg", "degree", kAzimuthDegRange, "0",
+             "azimuth of the surface's x axis (upwind), from the viewer's horizontal direction, counter-clockwise from "
+             "above; only for slopes that differ along and across",
+             [](auto& s) { return &s.geometry.surface_azimuth_deg; }),
       grid_axis(Axis::kTheta, "{ from = 0, to = 90, count = 91 }",
                 "zenith theta of the view (hemispherical mode) or of the source (bistatic mode)"),
       grid_axis(Axis::kViewZenith, "",
@@ -378,6 +406,10 @@ std::vector<SceneKey> geometry_keys() {
       grid_axis(Axis::kTemperature, "",
                 "temperatures of the surface in the table; the first one replaces a missing emission.temperature_K"),
       grid_axis(Axis::kQ, "surface.q", "tail exponents q of the table"),
+      grid_axis(Axis::kSigmaCross, "",
+                "slope widths across of the table; the first one replaces a missing surface.sigma_cross"),
+      grid_axis(Axis::kSurfaceAzimuth, "",
+                "azimuths of the surface's x axis; the first one replaces a missing geometry.surface_azimuth_deg"),
       grid_axis(Axis::kWavelength, "",
                 "wavelengths of the table, not a band; the first one replaces a missing spectrum.wavelength_um"),
       grid_axis(Axis::kN, "",

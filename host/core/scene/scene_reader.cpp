@@ -178,6 +178,10 @@ void fill_from_grid(SceneValues& scene, const SceneDocument& document) {
     scene.geometry.view_zenith_deg = grid[Axis::kViewZenith].front();
   if (!grid[Axis::kRelativeAzimuth].empty() && !document.find("geometry.relative_azimuth_deg"))
     scene.geometry.relative_azimuth_deg = grid[Axis::kRelativeAzimuth].front();
+  if (!grid[Axis::kSigmaCross].empty() && !document.find("surface.sigma_cross"))
+    scene.surface.sigma_cross = grid[Axis::kSigmaCross].front();
+  if (!grid[Axis::kSurfaceAzimuth].empty() && !document.find("geometry.surface_azimuth_deg"))
+    scene.geometry.surface_azimuth_deg = grid[Axis::kSurfaceAzimuth].front();
   if (!grid[Axis::kWavelength].empty() && !document.find("spectrum.wavelength_um"))
     scene.spectrum = {grid[Axis::kWavelength].front(), grid[Axis::kWavelength].front()};
   if (!scene.bands.empty()) scene.spectrum = scene.bands.front();
@@ -253,6 +257,29 @@ void check_scattering(const SceneValues& scene, const SceneDocument& document) {
   if (is_direct) check_needs(document, "emission.model", {{can_be_direct, maskings}});
 }
 
+void check_cross_slopes(const SceneValues& scene, const SceneDocument& document) {
+  const Surface& surface = scene.surface;
+  const bool is_directional = surface.wind_model == WindModel::kDirectional;
+  const bool has_orders = surface.masking == Masking::kNone || surface.masking == Masking::kVCavity;
+  const bool has_bracket = scene.emission && scene.emission->has_bracket;
+  for (const char* key : {"surface.sigma_cross", "grid.sigma_cross", "surface.wind_model"}) {
+    if (!document.find(key) || (key == std::string_view("surface.wind_model") && !is_directional)) continue;
+    check_needs(
+        document, key,
+        {{has_orders, "surface.masking = \"none\" or \"v-cavity\""}, {!has_bracket, "emission.bracket = false"}});
+    if (is_directional)
+      check_needs(document, key,
+                  {{surface.wind_m_s || !scene.wind_m_s.empty(), "surface.wind_m_s or grid.wind_m_s"},
+                   {!document.find("surface.sigma_cross") && !document.find("grid.sigma_cross"),
+                    "no sigma_cross beside surface.wind_model = \"directional\""}});
+  }
+  for (const char* key : {"geometry.surface_azimuth_deg", "grid.surface_azimuth_deg"}) {
+    if (document.find(key))
+      check_needs(document, key,
+                  {{scene.has_cross_slopes(), "surface.sigma_cross or surface.wind_model = \"directional\""}});
+  }
+}
+
 void check_coating(const SceneValues& scene, const SceneDocument& document) {
   std::size_t varied = 0;
   for (std::size_t i = 0; i < scene.surface.coating.size(); ++i) {
@@ -301,6 +328,7 @@ SceneValues build_scene(const SceneDocument& document, const std::string& path_n
   check_radiation(scene, document);
   check_scattering(scene, document);
   check_coating(scene, document);
+  check_cross_slopes(scene, document);
   scene.document = std::make_shared<const SceneDocument>(document);
   return scene;
 }

@@ -24,9 +24,11 @@ enum class Axis : std::uint8_t {
   kRelativeAzimuth,
   kTheta,
   kSigma,
-  kQ
+  kQ,
+  kSigmaCross,
+  kSurfaceAzimuth
 };
-inline constexpr std::size_t kAxisCount = static_cast<std::size_t>(Axis::kQ) + 1;
+inline constexpr std::size_t kAxisCount = static_cast<std::size_t>(Axis::kSurfaceAzimuth) + 1;
 
 template <class Value>
 using AxisArray = EnumArray<Axis, Value, kAxisCount>;
@@ -56,6 +58,9 @@ inline constexpr std::array<AxisDescription, kAxisCount> kAxes = {{
     {"theta", "theta_deg", "degree", "zenith angle", kZenithDegRange, true},
     {"sigma", "sigma", "1", "roughness sigma of the slope distribution", kSigmaRange, true},
     {"q", "q", "1", "exponent q of the slope distribution", kQRange, true},
+    {"sigma_cross", "sigma_cross", "1", "roughness sigma across the surface's x axis", kSigmaCrossRange, false},
+    {"surface_azimuth_deg", "surface_azimuth_deg", "degree", "azimuth of the surface's x axis from the view",
+     kAzimuthDegRange, false},
 }};
 
 static_assert(kAxes.back().name != nullptr, "each axis has a row");
@@ -77,10 +82,19 @@ inline constexpr AxisDescription kBandHigh = {"band_high",        "band_um", "um
                                               kWavelengthUmRange, false};
 
 /// The order in which error messages list the columns of points.
-inline constexpr std::array<Axis, kAxisCount> kColumnOrder = {
-    Axis::kTheta,          Axis::kSigma,    Axis::kQ,           Axis::kN,    Axis::kK,
-    Axis::kWavelength,     Axis::kMaterial, Axis::kTemperature, Axis::kBand, Axis::kViewZenith,
-    Axis::kRelativeAzimuth};
+inline constexpr std::array<Axis, kAxisCount> kColumnOrder = {Axis::kTheta,
+                                                              Axis::kSigma,
+                                                              Axis::kQ,
+                                                              Axis::kN,
+                                                              Axis::kK,
+                                                              Axis::kWavelength,
+                                                              Axis::kMaterial,
+                                                              Axis::kTemperature,
+                                                              Axis::kBand,
+                                                              Axis::kViewZenith,
+                                                              Axis::kRelativeAzimuth,
+                                                              Axis::kSigmaCross,
+                                                              Axis::kSurfaceAzimuth};
 
 /// The values of each axis, in ascending or descending order, without repetition. A grid has at least one value of each
 /// required axis.

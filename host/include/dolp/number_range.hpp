@@ -8,6 +8,7 @@ namespace dolp {
 inline constexpr NumberRange kZenithDegRange{0.0, 90.0};
 inline constexpr NumberRange kAzimuthDegRange{-360.0, 360.0};
 inline constexpr NumberRange kSigmaRange{0.0, 10.0};
+inline constexpr NumberRange kSigmaCrossRange{0.0, 10.0, NumberRange::Ends::kOpenBelow};
 inline constexpr NumberRange kWindRange{0.0, 100.0};
 inline constexpr NumberRange kQRange{1.0, 1e4, NumberRange::Ends::kOpenBelow};
 inline constexpr NumberRange kNRange{0.0, 1e6, NumberRange::Ends::kOpenBelow};

@@ -17,7 +17,7 @@ namespace dolp {
 /// Units: Stokes parameters are exitances, in W m-2 um-1 at one wavelength and W m-2 over a band; in bistatic mode they
 /// are radiances, in W m-2 sr-1 um-1 and W m-2 sr-1. The angle of polarisation is in degrees. The other quantities
 /// have unit 1.
-/// Q = I_s - I_p; U = V = 0 in hemispherical mode. Over a band, the reflectance rho is a weighted mean. The weight is
+/// Q = I_s - I_p; in hemispherical mode V = 0, and U = 0 unless slopes differ along and across. Over a band, the reflectance rho is a weighted mean. The weight is
 /// the emission pi B(T) or, in a scene without emission, the incident radiation. Without both, the weight is constant.
 enum class Quantity : std::uint8_t {
   kDolp,    ///< sqrt(Q^2 + U^2) / I; negative if I is negative, NaN if I is 0
@@ -29,6 +29,7 @@ enum class Quantity : std::uint8_t {
   kStokesV,
   kRhoI,         ///< (rho_s + rho_p) / 2, including the specular weight k_s and the diffuse part
   kRhoQ,         ///< (rho_s - rho_p) / 2, including k_s and the diffuse part
+  kRhoU,         ///< rho_U, including k_s; nonzero only if slopes differ along and across
   kAlbedo,       ///< A(theta): specular reflectance if all facets reflect perfectly, without the weight k_s
   kEmissivityS,  ///< emissivity by the emission model of the scene; over a band, its mean with the weight pi B(T)
   kEmissivityP,
@@ -47,8 +48,9 @@ inline constexpr std::array<Quantity, kQuantityCount> kAllQuantities = enumerato
 /// Some of the quantities, in the order of the enumeration.
 using Quantities = std::vector<Quantity>;
 
-/// Needs of a quantity: rho or moments (integrals over the facets) from the run; emission or a bracket in the scene.
-enum class QuantityNeeds : std::uint8_t { kNothing, kReflectance, kMoments, kEmission, kBracket };
+/// Needs of a quantity: rho or moments (integrals over the facets) from the run; emission, a bracket, or slopes that
+/// differ along and across in the scene.
+enum class QuantityNeeds : std::uint8_t { kNothing, kReflectance, kMoments, kEmission, kBracket, kCrossSlopes };
 
 struct QuantityDescription {
   const char* name;
@@ -57,8 +59,8 @@ struct QuantityDescription {
   const char* ancillary;  ///< names of the variables with the quantity's error bound and status; "" if none
   QuantityNeeds needs;
 
-  /// True if the quantity needs emission or a bracket. Only then can results at points lack the quantity.
-  constexpr bool is_optional() const { return needs == QuantityNeeds::kEmission || needs == QuantityNeeds::kBracket; }
+  /// True if the quantity depends on what the scene has. Only then can results at points lack the quantity.
+  constexpr bool is_optional() const { return needs >= QuantityNeeds::kEmission; }
 };
 
 inline constexpr const char* kDolpQualifiers = "error_estimate status";
@@ -80,6 +82,8 @@ inline constexpr std::array<QuantityDescription, kQuantityCount> kQuantities = {
      QuantityNeeds::kReflectance},
     {"rho_q", "hemispherical-directional reflectance, half the difference of s and p", "1", kRhoQualifiers,
      QuantityNeeds::kReflectance},
+    {"rho_u", "hemispherical-directional reflectance, Stokes parameter U", "1", kRhoQualifiers,
+     QuantityNeeds::kCrossSlopes},
     {"albedo", "albedo of the surface model with perfectly reflecting facets", "1", kStatusQualifier,
      QuantityNeeds::kMoments},
     {"emissivity_s", "emissivity of s-polarised radiation that the emission uses", "1", kStatusQualifier,
@@ -114,7 +118,8 @@ inline constexpr std::array<Quantity, kQuantityCount> kCsvOrder = {
     Quantity::kErrorEstimate, Quantity::kRhoErrorEstimate,
     Quantity::kEmissivityS,   Quantity::kEmissivityP,
     Quantity::kDolpLow,       Quantity::kDolpHigh,
-    Quantity::kQOverI,        Quantity::kAolp};
+    Quantity::kQOverI,        Quantity::kAolp,
+    Quantity::kRhoU};
 static_assert(std::ranges::is_permutation(kCsvOrder, kAllQuantities), "each quantity is in it once");
 
 }  // namespace dolp

@@ -68,6 +68,8 @@ Scene Scene::for_points() const {
                                                     {Axis::kK, "surface.k"},
                                                     {Axis::kViewZenith, "geometry.view_zenith_deg"},
                                                     {Axis::kRelativeAzimuth, "geometry.relative_azimuth_deg"},
+                                                    {Axis::kSigmaCross, "surface.sigma_cross"},
+                                                    {Axis::kSurfaceAzimuth, "geometry.surface_azimuth_deg"},
                                                     {Axis::kSigma, "surface.sigma"},
                                                     {Axis::kQ, "surface.q"}};
   std::vector<Setting> settings;

@@ -20,8 +20,13 @@ namespace dolp::fit {
 namespace {
 
 // Parameter sets that differ only in these keys become points of one list, which one call of the evaluator computes.
-constexpr std::array<std::string_view, 5> kPointKeys = {"surface.n", "surface.k", "surface.sigma", "surface.wind_m_s",
-                                                        "surface.q"};
+constexpr std::array<std::string_view, 7> kPointKeys = {"surface.n",
+                                                        "surface.k",
+                                                        "surface.sigma",
+                                                        "surface.wind_m_s",
+                                                        "surface.q",
+                                                        "surface.sigma_cross",
+                                                        "geometry.surface_azimuth_deg"};
 
 bool is_point_key(const std::string& key) { return std::ranges::find(kPointKeys, key) != kPointKeys.end(); }
 
@@ -245,7 +250,8 @@ void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>
 void Model::add_points(std::vector<SceneEntry>& points, const Group& group, const SceneValues& scene) const {
   const Surface& surface = scene.surface;
   for (const Measurement& measurement : group.data->measurements) {
-    SceneEntry& point = points.emplace_back(SceneEntry{measurement.theta_deg, {surface.sigma, surface.q}, {}});
+    SceneEntry& point = points.emplace_back(
+        SceneEntry{measurement.theta_deg, scene.cross_slopes().shape(surface.sigma, surface.q), {}});
     if (surface.material.is_constant()) point.index = surface.material.constant;
     if (!measurement.wavelength_um) continue;
     const auto position = std::ranges::lower_bound(group.wavelength_um, *measurement.wavelength_um);

@@ -26,13 +26,15 @@ constexpr const char* kThetaKey = "grid.theta_deg";
 constexpr const char* kWindKey = "surface.wind_m_s";
 
 /// Keys whose values entries may have themselves.
-constexpr std::array<std::pair<Axis, const char*>, 10> kAxisKeys = {
+constexpr std::array<std::pair<Axis, const char*>, 12> kAxisKeys = {
     {{Axis::kViewZenith, "geometry.view_zenith_deg"},
      {Axis::kRelativeAzimuth, "geometry.relative_azimuth_deg"},
      {Axis::kTheta, kThetaKey},
      {Axis::kSigma, "surface.sigma"},
      {Axis::kSigma, kWindKey},
      {Axis::kQ, "surface.q"},
+     {Axis::kSigmaCross, "surface.sigma_cross"},
+     {Axis::kSurfaceAzimuth, "geometry.surface_azimuth_deg"},
      {Axis::kN, "surface.n"},
      {Axis::kK, "surface.k"},
      {Axis::kWavelength, "spectrum.wavelength_um"},
@@ -65,9 +67,9 @@ double step_at(double x, const NumberRange& range) {
   return std::min(kStep * size, 0.5 * (range.max - x));
 }
 
-double wind_from_sigma(double sigma) {
-  const double still = sigma_of_wind(0.0);
-  const double unit = sigma_of_wind(1.0);
+double wind_from_sigma(double sigma, WindModel model) {
+  const double still = sigma_in_wind(0.0, model);
+  const double unit = sigma_in_wind(1.0, model);
   return (sigma - still) * (sigma + still) / ((unit - still) * (unit + still));
 }
 
@@ -126,8 +128,10 @@ class Steps {
     return evaluate_scene(changed, entries_.changed(*axis_, change), evaluator, progress);
   }
 
-  double to_key(double own) const { return key_ == kWindKey ? wind_from_sigma(own) : own; }
-  double from_key(double value) const { return key_ == kWindKey ? sigma_of_wind(value) : value; }
+  double to_key(double own) const { return key_ == kWindKey ? wind_from_sigma(own, scene_.surface.wind_model) : own; }
+  double from_key(double value) const {
+    return key_ == kWindKey ? sigma_in_wind(value, scene_.surface.wind_model) : value;
+  }
 
   const SceneValues& scene_;
   const SceneEntries& entries_;

@@ -9,6 +9,7 @@
 #include <dolp/number_range.hpp>
 #include "base/text.hpp"
 #include "model/films.hpp"
+#include "plan/slope_orders.hpp"
 #include "run/scene_run.hpp"
 #include "table/table.hpp"
 
@@ -77,6 +78,19 @@ void check_wavelengths(const SceneValues& scene, const Points& points) {
 
 void check_shapes(const SceneValues& scene, const Points& points) {
   const Surface& surface = scene.surface;
+  const bool has_orders = surface.masking == Masking::kNone || surface.masking == Masking::kVCavity;
+  if (points[Axis::kSigmaCross] && !has_orders) {
+    throw InputError(points.where() + ": column \"sigma_cross\" needs surface.masking = \"none\" or \"v-cavity\"");
+  }
+  if (points[Axis::kSurfaceAzimuth] && !points[Axis::kSigmaCross] && !scene.has_cross_slopes()) {
+    throw InputError(points.where() +
+                     ": column \"surface_azimuth_deg\" needs surface.sigma_cross or surface.wind_model = "
+                     "\"directional\" in the scene, or a column \"sigma_cross\"");
+  }
+  if (points[Axis::kSigmaCross] && surface.wind_model == WindModel::kDirectional) {
+    throw InputError(points.where() +
+                     ": column \"sigma_cross\" cannot be combined with surface.wind_model = \"directional\"");
+  }
   if (points.has_winds && surface.distribution != Distribution::kGaussian) {
     throw InputError(points.where() + ": column \"wind_m_s\" needs surface.distribution = \"gaussian\"");
   }
@@ -134,6 +148,16 @@ void check_labels_chosen(const SceneValues& scene, const Points& points) {
   }
 }
 
+void check_cross_slopes(const SceneValues& scene, const SlopeShape& shape, const std::string& where) {
+  if (!is_elliptic(shape)) return;
+  const double most = largest_width_ratio(scene.accuracy.tolerance);
+  if (widest_sigma(shape) <= most * narrowest_sigma(shape)) return;
+  throw InputError(fmt::format(
+      "{}: sigma = {} and sigma_cross = {}: the quotient of the widths along and across is at most {:.3g} at "
+      "accuracy.tolerance = {:g}",
+      where, format_number(shape.sigma), format_number(shape.sigma_cross), most, scene.accuracy.tolerance));
+}
+
 SceneEntries grid_entries(const SceneValues& scene) {
   const PerAxis counts = axis_counts(scene.grid);
   double size = 1.0;
@@ -142,7 +166,20 @@ SceneEntries grid_entries(const SceneValues& scene) {
     throw InputError(fmt::format("{}: grid: {} entries; at most {} in one table", scene.path_name,
                                  fmt::join(counts, " x "), kMostTableEntries));
   }
-  return SceneEntries::grid(scene.grid, scene.surface.material.constant);
+  SceneEntries entries = SceneEntries::grid(scene.grid, scene.surface.material.constant, scene.cross_slopes());
+  for (std::size_t i = 0; scene.has_cross_slopes() && i < entries.entries_per_direction(); ++i)
+    check_cross_slopes(scene, entries[i].shape, scene.path_name);
+  return entries;
+}
+
+SlopeShape shape_at(const SceneValues& scene, const Points& points, std::size_t row) {
+  const bool is_directional = scene.surface.wind_model == WindModel::kDirectional;
+  double sigma = value_or(points[Axis::kSigma], row, scene.surface.sigma);
+  if (points.has_winds && is_directional) sigma = sigma_along_wind(wind_of_sigma(sigma));
+  SlopeShape shape = scene.cross_slopes().shape(sigma, value_or(points[Axis::kQ], row, scene.surface.q));
+  shape.sigma_cross = value_or(points[Axis::kSigmaCross], row, shape.sigma_cross);
+  shape.azimuth_deg = value_or(points[Axis::kSurfaceAzimuth], row, shape.azimuth_deg);
+  return shape;
 }
 
 SceneEntries point_entries(const SceneValues& scene, const Points& points) {
@@ -153,9 +190,10 @@ SceneEntries point_entries(const SceneValues& scene, const Points& points) {
   const auto columns = variant_columns(scene, points);
   const bool has_variants = !columns.empty() || !points.films.empty();
   const bool has_views = points[Axis::kViewZenith] || points[Axis::kRelativeAzimuth];
-  const bool has_shapes = points[Axis::kSigma] || points[Axis::kQ];
+  const bool has_shapes =
+      points[Axis::kSigma] || points[Axis::kQ] || points[Axis::kSigmaCross] || points[Axis::kSurfaceAzimuth];
   if (points[Axis::kTheta] && !has_shapes && !has_views && !has_own_index && !has_variants) {
-    return SceneEntries::grid(*points[Axis::kTheta], {surface.sigma}, {surface.q});
+    return SceneEntries::grid(make_axes(*points[Axis::kTheta], {surface.sigma}, {surface.q}), {}, scene.cross_slopes());
   }
   if (points[Axis::kWavelength] && points.size() > 0) check_wavelengths(scene, points);
   std::map<SceneVariant, std::uint32_t> variants;
@@ -164,7 +202,8 @@ SceneEntries point_entries(const SceneValues& scene, const Points& points) {
   for (std::size_t row = 0; row < points.size(); ++row) {
     SceneEntry entry;
     entry.theta_deg = value_or(points[Axis::kTheta], row, scene.grid[Axis::kTheta].front());
-    entry.shape = {value_or(points[Axis::kSigma], row, surface.sigma), value_or(points[Axis::kQ], row, surface.q)};
+    entry.shape = shape_at(scene, points, row);
+    check_cross_slopes(scene, entry.shape, points.where(row));
     const OpticalConstants& index = surface.material.constant;
     if (has_own_index)
       entry.index =
@@ -178,7 +217,7 @@ SceneEntries point_entries(const SceneValues& scene, const Points& points) {
   }
   std::vector<SceneVariant> all(std::max<std::size_t>(1, variants.size()));
   for (const auto& [variant, position] : variants) all[position] = variant;
-  return {std::move(entries), std::move(all)};
+  return {std::move(entries), std::move(all), scene.cross_slopes().wind_model};
 }
 
 }  // namespace dolp

@@ -129,7 +129,7 @@ std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points&
       optics = coated.optics_at(scene.spectrum.min_um);
     }
     result.push_back({{(*points.theta_i_deg)[row], (*points.theta_r_deg)[row], (*points.delta_phi_deg)[row]},
-                      {value_or(points[Axis::kSigma], row, surface.sigma), value_or(points[Axis::kQ], row, surface.q)},
+                      shape_at(scene, points, row),
                       optics});
     OpticalConstants& index = result.back().index.index;
     index = {value_or(points[Axis::kN], row, index.n), value_or(points[Axis::kK], row, index.k)};

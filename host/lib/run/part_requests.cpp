@@ -21,7 +21,10 @@ BeamAngles requested_angles(const SceneModel& scene, const SceneEntry& entry) {
 }
 
 SlopeShape normalised(const SceneValues& scene, const SlopeShape& shape) {
-  return scene.surface.distribution == Distribution::kGaussian ? SlopeShape{.sigma = shape.sigma} : shape;
+  SlopeShape normal = shape;
+  if (scene.surface.distribution == Distribution::kGaussian) normal.q = SlopeShape{}.q;
+  if (!is_elliptic(shape)) normal.sigma_cross = normal.azimuth_deg = 0.0;
+  return normal;
 }
 
 Treatment treatment(const SceneValues& scene, const SceneEntry& entry) {
@@ -62,6 +65,7 @@ std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const Scene
   most_points *= entries.size();
   const auto add = [&](const FacetOptics& index) { indices.insert(index); };
   for (const SceneEntry& entry : entries.all()) {
+    if (is_elliptic(entry.shape)) return {};
     shapes.insert({moment_zenith_deg(scene, entry), entry.shape.sigma, entry.shape.q});
     const std::vector<FacetOptics>& samples = spectral[entry.variant];
     if (entry.index) std::ranges::for_each(with_index(samples, entry.index), add);
@@ -76,7 +80,7 @@ std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const Scene
 std::vector<FacetOptics> indices_of_grid(const SceneModel& scene, const EffectPlan& plan, const SceneEntries& entries) {
   const PerAxis& counts = entries.whole();
   if (counts[moment_axis(scene)] * counts[Axis::kSigma] * counts[Axis::kQ] < kLeastEntries) return {};
-  const SceneEntries whole = SceneEntries::grid(entries.whole_axes(), entries.index());
+  const SceneEntries whole = SceneEntries::grid(entries.whole_axes(), entries.index(), entries.slopes());
   std::vector<FacetOptics> indices;
   if (whole.has_own_index()) {
     PerAxis on_axes{};
@@ -208,11 +212,25 @@ void PartRequests::request_grid(const Selection& selection) {
   } else {
     q_at_ = compact_used_values(grid.q(), q, moments_.q);
   }
+  request_cross_slopes(grid);
   theta_at_ = compact_used_values(zeniths, theta, moments_.theta_deg);
   for (double& theta_deg : moments_.theta_deg) {
     theta_deg = zenith_before_limit_deg(scene_.surface.masking, theta_deg);
   }
   if (!is_whole) mark_wanted(selection);
+}
+
+/// Leaves the request without slopes along and across if they are equal: then azimuths share their moments.
+void PartRequests::request_cross_slopes(const SceneEntries& grid) {
+  const auto [cross, azimuth_deg, wind_model] = grid.slopes();
+  MomentsRequest request = moments_;
+  request.wind_model = wind_model;
+  request.sigma_cross = grid.has_values(Axis::kSigmaCross) ? grid.axes()[Axis::kSigmaCross] : std::vector{cross};
+  request.azimuth_deg =
+      grid.has_values(Axis::kSurfaceAzimuth) ? grid.axes()[Axis::kSurfaceAzimuth] : std::vector{azimuth_deg};
+  if (!request.has_elliptic_shapes()) return;
+  moments_ = std::move(request);
+  moments_.basis = nullptr;  // responses are for isotropic slopes
 }
 
 /// Adds the n and k of the used index sets to the request for moments. A set that equals the one before adds nothing.
@@ -249,7 +267,9 @@ PartRequests::MomentsSpan PartRequests::member_moments(std::size_t member) const
   const SceneEntries& grid = selection_.part;
   const PerAxis on_axes = grid.axis_positions(selection_.position(member));
   const std::size_t entries_per_index = moments_.theta_deg.size() * moments_.shapes();
-  const std::size_t shape = sigma_at_[on_axes[Axis::kSigma]] * moments_.q.size() + q_at_[on_axes[Axis::kQ]];
+  std::size_t shape = sigma_at_[on_axes[Axis::kSigma]] * moments_.q.size() + q_at_[on_axes[Axis::kQ]];
+  shape = shape * moments_.sigma_cross.size() + on_axes[Axis::kSigmaCross] % moments_.sigma_cross.size();
+  shape = shape * moments_.azimuth_deg.size() + on_axes[Axis::kSurfaceAzimuth] % moments_.azimuth_deg.size();
   const std::size_t theta_offset = theta_at_[on_axes[moment_axis(scene_)]] * moments_.shapes();
   const bool has_one_index = grid.has_own_index() && !has_films();
   return {index_set_offset_[index_set(grid, on_axes)] * entries_per_index + theta_offset + shape,
@@ -265,7 +285,7 @@ std::optional<std::size_t> PartRequests::requested_direction(std::size_t member)
 void PartRequests::request_points(const Selection& selection) {
   moments_.layout = MomentsRequest::Layout::kList;
   spans_of_points_.reserve(selection.size());
-  std::map<std::array<double, 6>, MomentsSpan> known;
+  std::map<std::array<double, 8>, MomentsSpan> known;
   for (std::size_t i = 0; i < selection.size(); ++i) {
     const SceneEntry entry = selection[i];
     if (!wants_moments(scene_, entry, plan_)) {
@@ -277,8 +297,9 @@ void PartRequests::request_points(const Selection& selection) {
     // An entry without its own n and k has the key (number of its variant, -1). No real index has k = -1.
     const OpticalConstants key = entry.index.value_or(OpticalConstants{static_cast<double>(entry.variant), -1.0});
     const double films_at = has_films() ? entry.variant : -1.0;
-    const auto [known_span, is_new] =
-        known.try_emplace({zenith_deg, shape.sigma, shape.q, key.n, key.k, films_at}, MomentsSpan{});
+    const auto [known_span, is_new] = known.try_emplace(
+        {zenith_deg, shape.sigma, shape.q, shape.sigma_cross, shape.azimuth_deg, key.n, key.k, films_at},
+        MomentsSpan{});
     if (is_new) {
       const std::vector<FacetOptics> entry_optics = with_index(samples_[entry.variant], entry.index);
       known_span->second = {moments_.size(), entry.index && !has_films() ? std::size_t{0} : std::size_t{1}};

@@ -75,6 +75,7 @@ class PartRequests {
   std::size_t first_beam(std::size_t member) const { return first_beam_[member]; }
 
  private:
+  void request_cross_slopes(const SceneEntries& grid);
   void request_grid(const Selection& selection);
   void request_indices(const SceneEntries& grid, const std::vector<char>& is_used);
   void mark_wanted(const Selection& selection);

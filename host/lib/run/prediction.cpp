@@ -34,7 +34,7 @@ SceneEntries entries_of_drawn_directions(const SceneEntries& grid, Axis drawn_fr
     const bool is_whole = has_responses && axis < Axis::kViewZenith && axis != Axis::kTemperature;
     if (!is_whole) axes[axis] = {axes[axis][axes[axis].size() / 2]};
   }
-  return SceneEntries::grid(axes, grid.index());
+  return SceneEntries::grid(axes, grid.index(), grid.slopes());
 }
 
 /// The work of all requests for moments or for beams. A run makes the requests of the first refinement level first.

@@ -25,6 +25,9 @@ SceneEntries grid_entries(const SceneValues& scene);
 /// theta_deg form a grid. Errors: InputError that names the file, the line, the column, and what is allowed.
 SceneEntries point_entries(const SceneValues& scene, const Points& points);
 
+/// The slope distribution of one of the points.
+SlopeShape shape_at(const SceneValues& scene, const Points& points, std::size_t row);
+
 /// Refuses points whose slope distribution or films do not fit the scene's surface, for example wind speeds without the
 /// gaussian distribution. Errors: InputError, as for point_entries().
 void check_surface(const SceneValues& scene, const Points& points);

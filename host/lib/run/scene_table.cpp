@@ -163,6 +163,8 @@ Quantities output_quantities(const SceneValues& scene, const EffectPlan* plan) {
         return plan == nullptr ? scene.emission.has_value() : gives_emissivity(scene, *plan);
       case QuantityNeeds::kBracket:
         return scene.emission && scene.emission->has_bracket;
+      case QuantityNeeds::kCrossSlopes:
+        return scene.has_cross_slopes() && (plan == nullptr || plan->gives_rho);
     }
     return false;
   };

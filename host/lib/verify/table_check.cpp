@@ -297,7 +297,7 @@ TableCheck check_table(const TableSample& sample, const SceneValues& scene, cons
                     name));
   }
   check_axes(table, scene, name);
-  const SceneEntries grid = SceneEntries::grid(table.axes, scene.surface.material.constant);
+  const SceneEntries grid = SceneEntries::grid(table.axes, scene.surface.material.constant, scene.cross_slopes());
   ReferenceEvaluator reference({.relative_tolerance = kReferenceTolerance});
   const SceneEntries chosen = grid.chosen(sample.positions);
   const std::vector<PointResult> results = scene.spectrum.is_band()

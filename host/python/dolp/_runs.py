@@ -25,9 +25,9 @@ def table(scene: Scene, *, evaluator: str | None = None, device: str = "", keep_
     """The table over the scene's grid: a Dataset with the contents of the table's file, and with
     the names of materials and bands as an index, as in `t.sel(material="iron", band="8-14")`.
 
-    `axes` (theta_deg, sigma or wind_m_s, q, wavelength_um or band_um, temperature_K, and n, k or material; in bistatic
-    mode view_zenith_deg and relative_azimuth_deg) replace axes of the scene. Each axis is a number or a list, and the
-    table has all combinations of their values. Materials are names, as in `dolp.table(scene, material=["gold (Ordal)",
+    `axes` (theta_deg, sigma or wind_m_s, q, sigma_cross, surface_azimuth_deg, wavelength_um or band_um, temperature_K,
+    and n, k or material; in bistatic mode view_zenith_deg and relative_azimuth_deg) replace axes of the scene. Each axis
+    is a number or a list, and the table has all combinations of their values. Materials are names, as in `dolp.table(scene, material=["gold (Ordal)",
     "iron"])`, or "all". A complex n gives n and k. Winds become a second coordinate along sigma;
     `t.swap_dims(sigma="wind_m_s").sel(wind_m_s=5)` selects a wind.
 
@@ -54,7 +54,7 @@ def table(scene: Scene, *, evaluator: str | None = None, device: str = "", keep_
             on_axes, flag("keep_all", keep_all), word_list("quantities", quantities), word_list("derivatives", derivatives)))
         warn_of_model(scene, whole.get("status", 0), whole.attrs)
         return whole
-    optional = ("temperature_K", "view_zenith_deg", "relative_azimuth_deg")
+    optional = ("temperature_K", "view_zenith_deg", "relative_azimuth_deg", "sigma_cross", "surface_azimuth_deg")
     columns = [column for column, *_ in _native.axes() if column not in optional or column in axes]
     _check_varied("axes", [key], columns)
     others = {name: values for name, values in axes.items() if name != key}
@@ -89,7 +89,7 @@ def evaluate(scene: Scene, *, evaluator: str | None = None, device: str = "", ke
              derivatives: Iterable[str] = (), **points: Array) -> xr.Dataset:
     """The quantities of a table at points: a Dataset with the shape to which the arrays of `points` broadcast.
 
-    `points` (theta_deg, sigma or wind_m_s, q, wavelength_um, n, k, view_zenith_deg, relative_azimuth_deg): arrays of the same shape are combined value by
+    `points` (theta_deg, sigma or wind_m_s, q, sigma_cross, surface_azimuth_deg, wavelength_um, n, k, view_zenith_deg, relative_azimuth_deg): arrays of the same shape are combined value by
     value, unlike the axes of `table`. Numbers that you do not give come from the scene. A complex n gives n and k. Any
     other number of the scene can be given too, with its key as the name; each of its values is a separate run.
     DataArrays keep their dimensions and coordinates. Without DataArrays, a dimension along which only one array varies

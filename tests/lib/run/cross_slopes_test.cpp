@@ -1,0 +1,122 @@
+// Slopes that differ along and across: what holds for every scene, and what scenes and points refuse.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <dolp/errors.hpp>
+#include "error_text.hpp"
+#include "evaluate/cpu/cpu_evaluator.hpp"
+#include "run/scene_run.hpp"
+#include "scene/scene_reader.hpp"
+
+namespace dolp {
+namespace {
+
+using enum Quantity;
+
+constexpr const char* kBrushed =
+    "[surface]\nn = 1.18\nk = 0.07\ndistribution = \"gaussian\"\nmasking = \"v-cavity\"\nscattering = \"multiple\"\n"
+    "sigma = 0.1\nsigma_cross = 0.2\n[emission]\ntemperature_K = 290\n[surroundings]\nprofile = \"clear-sky\"\n"
+    "[spectrum]\nwavelength_um = 10.6\n[grid]\ntheta_deg = [0, 40, 75]\n";
+
+SceneValues brushed(const std::vector<Setting>& settings = {}) { return parse_scene(kBrushed, "scene.toml", settings); }
+
+std::vector<PointResult> results(const SceneValues& scene) {
+  CpuEvaluator evaluator;
+  return evaluate_scene(scene, grid_entries(scene), evaluator, {});
+}
+
+std::string refusal(const std::vector<Setting>& settings) {
+  return error_text([&] { grid_entries(brushed(settings)); });
+}
+
+TEST(CrossSlopes, EqualWidths_HaveTheBitsOfOneWidth) {
+  const auto one = results(brushed({{"surface.sigma_cross", Value()}}));
+  const auto equal = results(brushed({{"surface.sigma_cross", 0.1}, {"geometry.surface_azimuth_deg", 30.0}}));
+  ASSERT_EQ(one.size(), equal.size());
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    for (const Quantity quantity : {kDolp, kStokesI, kStokesQ, kStokesU, kRhoI, kErrorEstimate})
+      EXPECT_EQ(one[i][quantity], equal[i][quantity]) << describe(quantity).name;
+  }
+}
+
+TEST(CrossSlopes, Azimuth_TurnsUAndRepeatsAfterAHalfTurn) {
+  for (const char* masking : {"none", "v-cavity"}) {
+    const bool is_cavity = std::string(masking) == "v-cavity";
+    const auto at = [&](double azimuth_deg) {
+      return results(brushed({{"surface.masking", masking},
+                              {"surface.scattering", is_cavity ? "multiple" : "single"},
+                              {"geometry.surface_azimuth_deg", azimuth_deg}}));
+    };
+    const auto turned = at(35.0), back = at(-35.0), half = at(215.0), along = at(0.0), across = at(90.0);
+    for (std::size_t i = 0; i < turned.size(); ++i) {
+      for (const Quantity quantity : {kStokesI, kStokesQ, kRhoI, kRhoQ, kDolp}) {
+        EXPECT_EQ(turned[i][quantity], back[i][quantity]);
+        EXPECT_NEAR(turned[i][quantity], half[i][quantity], 1e-12 * std::abs(half[i][quantity]));
+      }
+      EXPECT_EQ(turned[i][kStokesU], -back[i][kStokesU]);
+      EXPECT_NEAR(turned[i][kStokesU], half[i][kStokesU], 1e-12);
+      EXPECT_EQ(along[i][kStokesU], 0.0);
+      EXPECT_EQ(across[i][kStokesU], 0.0);
+      if (i > 0) {
+        EXPECT_GT(std::abs(turned[i][kStokesU]), 100.0 * turned[i][kErrorEstimate]);
+      }
+      EXPECT_NEAR(turned[i][kDolp], std::hypot(turned[i][kStokesQ], turned[i][kStokesU]) / turned[i][kStokesI], 1e-12);
+    }
+  }
+}
+
+// Seen from the zenith, the axes of brushed metal polarise: Q has opposite signs along and across the brush.
+TEST(CrossSlopes, Zenith_IsPolarisedAlongTheAxes) {
+  const auto at = [](double azimuth_deg) {
+    return results(brushed({{"geometry.surface_azimuth_deg", azimuth_deg}})).front();
+  };
+  const PointResult along = at(0.0), across = at(90.0), between = at(45.0);
+  const double error = between[kErrorEstimate] * between[kStokesI];
+  EXPECT_NEAR(along[kStokesQ], -across[kStokesQ], 2.0 * error);
+  EXPECT_GT(std::abs(along[kStokesQ]), 100.0 * error);
+  EXPECT_NEAR(between[kStokesQ], 0.0, error);
+}
+
+TEST(CrossSlopes, DirectionalWind_HasTheWidthsOfCoxAndMunk) {
+  const SceneValues scene = brushed({{"surface.sigma", Value()},
+                                     {"surface.sigma_cross", Value()},
+                                     {"surface.wind_model", "directional"},
+                                     {"surface.wind_m_s", 10.0}});
+  const SlopeShape shape = grid_entries(scene)[0].shape;
+  EXPECT_NEAR(shape.sigma * shape.sigma, 0.0316, 1e-12);
+  EXPECT_NEAR(shape.sigma_cross * shape.sigma_cross, 0.0222, 1e-12);
+}
+
+TEST(CrossSlopes, GridAndPoints_AgreeWithSingleScenes) {
+  const SceneValues scene = brushed({{"grid.sigma_cross", std::vector{0.1, 0.15}},
+                                     {"grid.surface_azimuth_deg", std::vector{0.0, 20.0}},
+                                     {"grid.theta_deg", std::vector{60.0}}});
+  const SceneEntries grid = grid_entries(scene);
+  ASSERT_EQ(grid.size(), 4U);
+  const auto table = results(scene);
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    const SlopeShape shape = grid[i].shape;
+    const PointResult alone = results(brushed({{"surface.sigma_cross", shape.sigma_cross},
+                                               {"geometry.surface_azimuth_deg", shape.azimuth_deg},
+                                               {"grid.theta_deg", std::vector{60.0}}}))
+                                  .front();
+    EXPECT_NEAR(table[i][kQOverI], alone[kQOverI], table[i][kErrorEstimate] + alone[kErrorEstimate]);
+    EXPECT_NEAR(table[i][kRhoU], alone[kRhoU], 1e-4 * alone[kRhoI]);
+  }
+}
+
+TEST(CrossSlopes, ImpossibleScenes_AreRefusedWithTheirKeys) {
+  const auto contains = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
+  EXPECT_TRUE(contains(refusal({{"surface.scattering", "single"}, {"surface.masking", "smith"}}), "surface.masking"));
+  EXPECT_TRUE(contains(refusal({{"surface.sigma_cross", 2.0}}), "quotient of the widths"));
+  EXPECT_TRUE(contains(refusal({{"surface.sigma", 0.0}}), "quotient of the widths"));
+  EXPECT_TRUE(contains(refusal({{"surface.wind_model", "directional"}}), "surface.wind_m_s"));
+  EXPECT_TRUE(contains(refusal({{"surface.sigma_cross", Value()}, {"geometry.surface_azimuth_deg", 3.0}}),
+                       "surface.sigma_cross"));
+}
+
+}  // namespace
+}  // namespace dolp

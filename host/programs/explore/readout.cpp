@@ -93,6 +93,24 @@ std::string no_residuals_text(const Session& session, const Scale& theta) {
   return std::ranges::any_of(residuals, is_inside) ? "" : "no measured point is at these zeniths";
 }
 
+std::string view_refusal(const Session& session, Panel panel) {
+  const Scene& scene = session.scene();
+  const bool has_index = !scene.word("surface.reflectance_file");
+  const bool is_rough = scene.number("surface.sigma") > 0.0;
+  if (panel == Panel::kSlopes && !is_rough) return "A mirror: all facets lie in the mean plane.";
+  if (panel == Panel::kMaterial && !has_index) return "The scene has measured reflectances instead of n and k.";
+  if (panel == Panel::kScattering && !has_index) return "The pBRDF needs phases, which measured reflectances lack.";
+  if (panel == Panel::kShapes && is_bistatic(scene))
+    return "A sphere needs all directions of view, and bistatic mode has one: choose the mode hemispherical.";
+  if (panel == Panel::kSky && !is_bistatic(scene)) return "This view needs a source: choose the mode bistatic.";
+  if (panel == Panel::kCamera && !is_bistatic(scene))
+    return "This view needs a camera beside a source: choose the mode bistatic.";
+  if (panel == Panel::kFit && !session.last_fit())
+    return "No fit yet: load measured points (Ctrl+O), mark the numbers that vary in the boxes beside their sliders, "
+           "then press Ctrl+F.";
+  return "";
+}
+
 std::string peak_text(const Session& session) {
   const std::optional<PeakAnswer>& peak = session.peak().answer();
   if (!session.curve().is_finished() || !peak) return "Maximum: …";

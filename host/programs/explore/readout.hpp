@@ -15,6 +15,7 @@ std::string peak_text(const Session& session);   ///< position of the maximum, a
 std::string cause_text(const Session& session);  ///< the parts of Q/I at the maximum: emission, source, surroundings
 std::string no_residuals_text(const Session& session, const Scale& theta);  ///< why the plot shows no residuals, or ""
 std::string cursor_text(const Session& session);
+std::string view_refusal(const Session& session, Panel panel);  ///< why a view cannot show this scene; "" if it can
 /// Q/I at the maximum, first with all effects, then without `effect`: "-14.36 → -59.59 %". Empty if not known.
 std::string without_text(const Session& session, const std::string& effect);
 /// The numbers of without_text() in a sentence. Empty if without_text() has no numbers.

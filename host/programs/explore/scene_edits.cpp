@@ -73,23 +73,38 @@ std::string different_numbers(const Scene& scene, const Scene& other) {
   return join(words);
 }
 
+bool has_value(const Scene& scene, const Key& key) {
+  if (key.type == Key::Type::kNumber) return scene.number(key.key).has_value();
+  if (key.type == Key::Type::kText) return scene.word(key.key).has_value();
+  return key.type == Key::Type::kPair && !scene.numbers(key.key).empty();
+}
+
 std::vector<Control> controls_without_films() {
   const auto key = [](const char* name) { return &described(name); };
   constexpr const char* kDiffuse = "f_d = (k_d/π)(cos θi cos θr)^c, eq. (14)";
+  constexpr const char* kNeedsDiffuse = "a diffuse part, k_d > 0";
+  constexpr const char* kNeedsIndex = "n and k instead of measured reflectances";
+  constexpr const char* kNeedsAir = "the sky clear-sky or overcast";
+  constexpr const char* kNeedsBistatic = "the mode bistatic";
   constexpr const char* kAir = "Idso (1981): radiance of the sky from vapour and temperature of the air at the ground";
   return {
       {key("surface.distribution"), "distribution", "D(α): eq. (8) cauchy, eq. (1) gaussian"},
       {key("surface.masking"), "masking", "G: eqs. (9)–(13) for integral"},
       {key("surface.scattering"), "scattering", "only the first facet, or all bounces in V-grooves"},
-      {key("surface.diffuse_polarisation"), "diffuse light", "1 − R on the way out", {}, is_diffuse},
-      {key("surface.n"), "n", "N = n + ik", {1.0, 40.0, true}, has_index},
-      {key("surface.k"), "k", "N = n + ik, k ≥ 0 absorbs", {0.0, 100.0}, has_index},
-      {key("surface.sigma"), "σ", "m² = 2σ²; D(α) of eq. (8) or (1)", {0.01, 2.0, true}, has_no_wind},
+      {key("surface.diffuse_polarisation"), "diffuse light", "1 − R on the way out", {}, is_diffuse, kNeedsDiffuse},
+      {key("surface.n"), "n", "N = n + ik", {1.0, 40.0, true}, has_index, kNeedsIndex},
+      {key("surface.k"), "k", "N = n + ik, k ≥ 0 absorbs", {0.0, 100.0}, has_index, kNeedsIndex},
+      {key("surface.sigma"), "σ", "m² = 2σ²; D(α) of eq. (8) or (1)", {0.01, 2.0, true}, has_no_wind, "no wind"},
       {key("surface.wind_m_s"), "U", "m² = 0.003 + 0.00512 U (Cox and Munk 1954), D(α) of eq. (1)", {0.0, 30.0}},
-      {key("surface.q"), "q", "D = (q−1)/(π m² cos⁴α) · (1 + tan²α/m²)^(−q), eq. (8)", {1.1, 20.0, true}, is_cauchy},
+      {key("surface.q"),
+       "q",
+       "D = (q−1)/(π m² cos⁴α) · (1 + tan²α/m²)^(−q), eq. (8)",
+       {1.1, 20.0, true},
+       is_cauchy,
+       "the distribution cauchy"},
       {key("surface.specular"), "k_s", "f_s = k_s D G M / (4 cos θi cos θr), eqs. (7), (15)", {0.0, 1.0}},
       {key("surface.diffuse"), "k_d", kDiffuse, {0.0, 1.0}},
-      {key("surface.diffuse_exponent"), "c", kDiffuse, {-0.95, 0.0}, is_diffuse},
+      {key("surface.diffuse_exponent"), "c", kDiffuse, {-0.95, 0.0}, is_diffuse, kNeedsDiffuse},
       {key("emission.model"), "emissivity",
        "1 − ρ of the rough surface, 1 − R(θ) of the smooth one, or (1 − R) G of the facets in view"},
       {key("emission.bracket"), "bracket", "ε_I between the direct emission and 1 − ρ_I"},
@@ -98,16 +113,31 @@ std::vector<Control> controls_without_films() {
       {key("source.relative_irradiance"), "e", "e = E0/(π B(T)), eq. (18)", {0.001, 10.0, true}},
       {key("source.scale"), "scale", "E0 → scale · E0", {0.01, 100.0, true}},
       {key("surroundings.temperature_K"), "T_surr", "reflects B(λ, T_surr) ρ", {0.0, 400.0}},
-      {key("surroundings.vapour_cm"), "water", kAir, {0.0, 2.7}, has_air, 1.27},
-      {key("surroundings.air_temperature_K"), "T_air", kAir, {230.0, 320.0}, has_air, 288.15},
+      {key("surroundings.vapour_cm"), "water", kAir, {0.0, 2.7}, has_air, kNeedsAir, 1.27},
+      {key("surroundings.air_temperature_K"), "T_air", kAir, {230.0, 320.0}, has_air, kNeedsAir, 288.15},
       {key("path.transmittance"), "τ", "I → τ I + L_path", {0.0, 1.0}},
       {key("path.temperature_K"), "T_path", "L_path = (1 − τ) B(λ, T_path)", {0.0, 400.0}},
       {key("path.radiance"), "L_path", "I → τ I + L_path", {0.001, 100.0, true}},
       {key("spectrum.wavelength_um"), "λ", "B(λ, T), N(λ)", {1.0, 20.0}},
-      {key("spectrum.response_per"), "response", "weight R, or R λ/λ0 if R is per photon", {}, has_response},
+      {key("spectrum.response_per"),
+       "response",
+       "weight R, or R λ/λ0 if R is per photon",
+       {},
+       has_response,
+       "a response of the camera"},
       {key("geometry.mode"), "mode", "eq. (18) all around, or f of eq. (7) for one source and view"},
-      {key("geometry.view_zenith_deg"), "θv", "direction of the view, eq. (2)", {0.0, 90.0}, is_bistatic},
-      {key("geometry.relative_azimuth_deg"), "Δφ", "cos 2β = ωi · ωr, eq. (2)", {0.0, 360.0}, is_bistatic},
+      {key("geometry.view_zenith_deg"),
+       "θv",
+       "direction of the view, eq. (2)",
+       {0.0, 90.0},
+       is_bistatic,
+       kNeedsBistatic},
+      {key("geometry.relative_azimuth_deg"),
+       "Δφ",
+       "cos 2β = ωi · ωr, eq. (2)",
+       {0.0, 360.0},
+       is_bistatic,
+       kNeedsBistatic},
       {key("accuracy.tolerance"), "tolerance", "|δDOLP|, |δρ|/ρ_I ≤ tolerance", {1e-9, 1e-2, true}},
       {key("accuracy.precision"), "precision", "arithmetic of the device"},
   };
@@ -159,13 +189,13 @@ const Key& described(const std::string& key) {
 }
 
 std::optional<double> Control::value(const Scene& scene) const {
-  if (!is_number() || !is_shown(scene)) return std::nullopt;
+  if (!is_number() || !may_apply(scene)) return std::nullopt;
   const std::optional<double> number = scene.number(key->key);
   return number ? number : standard;
 }
 
 std::optional<std::size_t> Control::word(const Scene& scene) const {
-  const std::optional<std::string> word = is_number() || !is_shown(scene) ? std::nullopt : scene.word(key->key);
+  const std::optional<std::string> word = is_number() || !may_apply(scene) ? std::nullopt : scene.word(key->key);
   if (!word) return std::nullopt;
   return static_cast<std::size_t>(std::ranges::find(key->words, *word) - key->words.begin());
 }
@@ -196,6 +226,32 @@ Scale range_in(const Scene& scene, const Control& control) {
   constexpr Scale kSmithQ{1.6, 20.0, true};  // smith masking needs q > 1.5
   const bool is_smith = scene.word("surface.masking") == "smith" && is_cauchy(scene);
   return is_smith && control.key->key == "surface.q" ? kSmithQ : control.slider;
+}
+
+void ControlRows::follow(const Scene& opened) {
+  std::string content = opened.name() + '\n' + opened.text();
+  if (content == opened_) return;
+  opened_ = std::move(content);
+  shown_.clear();
+}
+
+bool ControlRows::stays(const Scene& scene, const Control& control) const {
+  if (control.applies(scene) || !has(control.key->key)) return false;
+  // Of alternatives, such as sigma and wind, only one has a row: the one that applies, otherwise the first.
+  return std::ranges::none_of(controls(), [&](const Control& other) {
+    const bool share_a_row = control.is_number() && other.is_number() && !control.standard && !other.standard;
+    const bool is_rival = share_a_row && std::ranges::count(control.key->rivals, other.key->key) > 0;
+    const bool is_earlier = &other < &control && has(other.key->key);
+    return is_rival && (other.applies(scene) || is_earlier);
+  });
+}
+
+std::string unused_text(const Scene& scene, const Control& control) {
+  if (!control.may_apply(scene)) return fmt::format("{}: needs {}", control.key->key, control.needs);
+  for (const std::string& rival : control.key->rivals) {
+    if (has_value(scene, described(rival))) return fmt::format("{}: the scene has {} instead", control.key->key, rival);
+  }
+  return control.key->key + ": not in this scene";
 }
 
 std::string parent_table(const std::string& key) { return key.substr(0, key.rfind('.')); }

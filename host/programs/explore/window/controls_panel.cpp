@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include <algorithm>
 
@@ -76,6 +77,7 @@ Value parse_value(const std::string& text) {
 struct Controls {
   Session& session;
   NumberFields& fields;
+  ControlRows& rows;
 
   struct Slider {  // with a text field beside it
     std::string id, label;
@@ -142,11 +144,16 @@ struct Controls {
     const auto change = [&](const std::string& text) { return Setting{key, parse_value(text)}; };
     draw_slider({key, control.label_with_unit(), note_on(control, session), key, control.slider, change}, value,
                 &control);
-    if (!session.residuals().data() || !session.varies(key)) return;
+    if (!session.residuals().data()) return;
+    const std::string fit_row = "fit " + key;
+    if (session.varies(key)) rows.note(fit_row);
+    if (!rows.has(fit_row)) return;
+    ImGui::BeginDisabled(!session.varies(key));
     const FitRange range = fit_range(session.marked(), session.scene(), control, value);
     row_label("  fit from, to");
-    draw_ends("fit " + key, {range.low, range.high},
+    draw_ends(fit_row, {range.low, range.high},
               [&](const std::string& low, const std::string& high) { return session.set_fit_range(key, low, high); });
+    ImGui::EndDisabled();
   }
 
   void draw_choice(const Control& control, std::size_t position) {
@@ -164,17 +171,52 @@ struct Controls {
     }
   }
 
+  /// The value of a control that the scene does not use: n or k of the surface's material, otherwise "".
+  std::string unused_value(const Control& control) const {
+    const bool is_n = control.key->key == "surface.n", is_k = control.key->key == "surface.k";
+    if ((!is_n && !is_k) || !control.may_apply(session.scene())) return "";
+    try {
+      const double at_um = spectrum_um(session.scene()).first;
+      const auto [n, k] = session.scene().refractive_index(at_um);
+      return fmt::format("{:.4g} at {:.4g} µm", is_n ? n : k, at_um);
+    } catch (const InputError&) {
+      return "";  // the file of the material has no value at this wavelength
+    }
+  }
+
+  /// Draws a greyed row in the place of a control that the scene no longer uses.
+  void draw_unused(const Control& control) {
+    ImGui::BeginDisabled();
+    row_label(control.label_with_unit());
+    ImGui::SetNextItemWidth(-1.0F);
+    std::string text = shown(unused_value(control));
+    ImGui::InputText(("##unused " + control.key->key).c_str(), &text, ImGuiInputTextFlags_ReadOnly);
+    ImGui::EndDisabled();
+    name_item("unused " + control.key->key);
+    tooltip(unused_text(session.scene(), control));
+  }
+
+  /// True if the control applies. Otherwise draws its greyed row, if the row stays.
+  bool may_draw(const Control& control) {
+    if (control.applies(session.scene())) {
+      rows.note(control.key->key);
+      return true;
+    }
+    if (rows.stays(session.scene(), control)) draw_unused(control);
+    return false;
+  }
+
   // The next two functions read each value when its control is drawn: an earlier control may have changed the scene.
   void draw_choices(const std::string& table) {
     for (const Control& control : controls()) {
-      if (parent_table(control.key->key) != table) continue;
-      if (const auto position = control.word(session.scene())) draw_choice(control, *position);
+      if (control.is_number() || parent_table(control.key->key) != table || !may_draw(control)) continue;
+      draw_choice(control, *control.word(session.scene()));
     }
   }
   void draw_numbers(const std::string& table) {
     for (const Control& control : controls()) {
-      if (parent_table(control.key->key) != table) continue;
-      if (const auto value = control.value(session.scene())) draw_number(control, *value);
+      if (!control.is_number() || parent_table(control.key->key) != table || !may_draw(control)) continue;
+      draw_number(control, *control.value(session.scene()));
     }
   }
 
@@ -261,10 +303,16 @@ struct Controls {
   }
 
   void draw_sky() {
+    constexpr const char* kPair = "sky of two temperatures";
     draw_sky_list();
+    if (read_sky_pair(sky_file(session.scene()))) rows.note(kPair);
+    if (!rows.has(kPair)) return;
     for (const auto& [name, temperature_K] :
          {std::pair{"zenith", &SkyPair::zenith_K}, {"horizon", &SkyPair::horizon_K}}) {
-      if (const auto sky = read_sky_pair(sky_file(session.scene()))) draw_sky_temperature(name, *sky, temperature_K);
+      const auto sky = read_sky_pair(sky_file(session.scene()));
+      ImGui::BeginDisabled(!sky);
+      draw_sky_temperature(name, sky.value_or(SkyPair()), temperature_K);
+      ImGui::EndDisabled();
     }
   }
 
@@ -315,16 +363,23 @@ struct Controls {
     if (ImGui::Checkbox("band", &is_band))
       set(is_band ? Setting{kKey, {8.0, 14.0}} : Setting{"spectrum.wavelength_um", 10.6});
     const std::vector<double> ends = session.scene().numbers(kKey);
-    if (ends.empty()) return;
-    if (const auto file = session.scene().word("spectrum.response_file"))
-      coloured_text(kDimColour, "response of the camera: " + *file + "; a change of λ1 or λ2 makes it a band");
+    if (ends.empty()) return draw_numbers("spectrum");
     row_label("λ1, λ2 [µm]");
     draw_ends(kKey, {ends[0], ends[1]}, [&](const std::string& low, const std::string& high) {
       return set({kKey, TomlText{fmt::format("[{}, {}]", low, high)}});
     });
   }
 
+  void draw_response() {
+    const std::string file = session.scene().word("spectrum.response_file").value_or("");
+    draw_choices("spectrum");
+    if (!rows.has("spectrum.response_per")) return;
+    coloured_text(kDimColour, file.empty() ? "no response of the camera"
+                                           : file_name(file) + "; a change of λ1 or λ2 makes it a band");
+  }
+
   void draw_all() {
+    rows.follow(session.edits().opened());
     heading("Surface");
     draw_surface();
     draw_coating();
@@ -332,15 +387,18 @@ struct Controls {
     for (const char* effect : {"emission", "source", "surroundings", "path"}) {
       draw_effect_box(effect);
       draw_choices(effect);
-      if (!has_effect(session.scene(), effect)) continue;
+      const bool is_there = has_effect(session.scene(), effect);
+      if (is_there) rows.note(effect);
+      if (!rows.has(effect)) continue;
+      ImGui::BeginDisabled(!is_there);
       if (effect == std::string_view("source")) draw_source_kind();
       if (effect == std::string_view("surroundings")) draw_sky();
+      ImGui::EndDisabled();
       draw_numbers(effect);
     }
     heading("Spectrum and geometry");
     draw_spectrum();
-    draw_choices("spectrum");
-    draw_numbers("spectrum");
+    draw_response();
     draw_choices("geometry");
     draw_numbers("geometry");
   }
@@ -353,7 +411,9 @@ struct Controls {
 
 }  // namespace
 
-void draw_controls(Session& session, NumberFields& fields) { Controls{session, fields}.draw_all(); }
-void draw_accuracy_controls(Session& session, NumberFields& fields) { Controls{session, fields}.draw_accuracy(); }
+void draw_controls(Session& session, ControlState& state) { Controls{session, state.fields, state.rows}.draw_all(); }
+void draw_accuracy_controls(Session& session, ControlState& state) {
+  Controls{session, state.fields, state.rows}.draw_accuracy();
+}
 
 }  // namespace dolp::explore

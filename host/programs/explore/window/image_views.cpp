@@ -241,9 +241,6 @@ void ScatteringView::draw(Session& session, ImVec2 size) {
 }
 
 void ShapeView::draw(Session& session, ImVec2 size) {
-  if (is_bistatic(session.scene())) {
-    return coloured_text(kDimColour, "Bistatic mode has only one direction of view: see the view sky.");
-  }
   const float line = ImGui::GetTextLineHeight();
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   ImGui::InvisibleButton("shapes", {std::max(size.x, 1.0F), std::max(size.y, 1.0F)});
@@ -275,9 +272,6 @@ void ShapeView::draw(Session& session, ImVec2 size) {
 }
 
 void draw_sky(const Session& session, ImVec2 size) {
-  if (!is_bistatic(session.scene())) {
-    return coloured_text(kDimColour, "This sky shows directions of a source: choose the mode bistatic.");
-  }
   const SourceSky& sky = session.source_sky();
   const Colours colours{dolp_range(all_points(sky), 90.0, true)};
   const float line = ImGui::GetTextLineHeight();

@@ -120,18 +120,13 @@ void draw_effects(const Session& session) {
 
 void draw_fit_result(Session& session) {
   ImGui::BeginChild("fit result");
-  if (const std::optional<Fit>& fit = session.last_fit()) {
-    const std::optional<std::size_t> current = session.minimum();
-    const std::optional<std::size_t> clicked = draw_minima(*fit, current);
-    coloured_text(kDimColour, current ? "A click moves the sliders to a minimum."
-                                      : "The scene has changed since the fit. A click brings a minimum back.");
-    draw_words(*fit);
-    if (clicked) session.visit_minimum(*clicked);
-  } else {
-    coloured_text(kDimColour,
-                  "No fit yet: load measured points (Ctrl+O), mark the numbers that vary in the boxes beside their "
-                  "sliders, then press Ctrl+F.");
-  }
+  const Fit& fit = session.last_fit().value();
+  const std::optional<std::size_t> current = session.minimum();
+  const std::optional<std::size_t> clicked = draw_minima(fit, current);
+  coloured_text(kDimColour, current ? "A click moves the sliders to a minimum."
+                                    : "The scene has changed since the fit. A click brings a minimum back.");
+  draw_words(fit);
+  if (clicked) session.visit_minimum(*clicked);
   ImGui::EndChild();
 }
 

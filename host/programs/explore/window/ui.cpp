@@ -158,7 +158,7 @@ void draw_message(const Message& message) {
 }
 
 void draw_accuracy(Ui& ui) {
-  draw_accuracy_controls(ui.session, ui.fields);
+  draw_accuracy_controls(ui.session, ui.controls);
   for (const std::string& line : cost_lines(ui.session)) coloured_text(kTextColour, line);
   BackgroundTask &reference = ui.actions.true_error_task, &table = ui.actions.table_task;
   ImGui::BeginDisabled(!ui.session.curve().is_finished() || reference.is_running());
@@ -173,21 +173,38 @@ void draw_accuracy(Ui& ui) {
   if (!ui.is_narrow) draw_message(ui.session.message());
 }
 
-bool draw_tab(const std::string& name, bool is_shown) {
-  const float width = ImGui::CalcTextSize(name.c_str()).x + 2.0F * ImGui::GetStyle().FramePadding.x;
-  if (ImGui::GetContentRegionAvail().x < width) ImGui::NewLine();
+constexpr float kTabPadding = 3.0F;  // left and right of a button's text, in pixels of the usual text size
+constexpr float kTabGap = 2.0F;
+
+float tab_width(const std::string& name) { return ImGui::CalcTextSize(name.c_str()).x + scaled(2.0F * kTabPadding); }
+
+/// Draws a button. If `refusal` is not empty, the button is grey, and `refusal` is its tooltip.
+bool draw_tab(const std::string& name, bool is_shown, const std::string& refusal = "") {
+  if (ImGui::GetContentRegionAvail().x < tab_width(name)) ImGui::NewLine();
   ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(is_shown ? ImGuiCol_TabActive : ImGuiCol_Tab));
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {scaled(kTabPadding), 0.0F});
+  ImGui::BeginDisabled(!refusal.empty());
   const bool is_clicked = ImGui::SmallButton(name.c_str());
+  ImGui::EndDisabled();
+  ImGui::PopStyleVar();
   ImGui::PopStyleColor();
   name_item("panel " + name);
-  ImGui::SameLine(0.0F, ImGui::GetStyle().ItemInnerSpacing.x);
+  if (!refusal.empty()) tooltip(refusal);
+  ImGui::SameLine(0.0F, scaled(kTabGap));
   return is_clicked;
+}
+
+float panel_tabs_width() {
+  float width = 0.0F;
+  for (const char* name : kPanelNames) width += tab_width(name) + scaled(kTabGap);
+  return width;
 }
 
 void draw_panel_tabs(Ui& ui) {
   for (std::size_t i = 0; i < kPanelNames.size(); ++i) {
     const auto panel = static_cast<Panel>(i);
-    if (!draw_tab(kPanelNames[i], panel == ui.session.view().panel && (!ui.is_narrow || ui.page.empty()))) continue;
+    const bool is_shown = panel == ui.session.view().panel && (!ui.is_narrow || ui.page.empty());
+    if (!draw_tab(kPanelNames[i], is_shown, view_refusal(ui.session, panel))) continue;
     ui.session.set_view(&View::panel, panel);
     ui.page.clear();
   }
@@ -208,12 +225,16 @@ void draw_panel(Ui& ui, ImVec2 size) {
       [](Ui& u, ImVec2 room) { draw_sky(u.session, room); },
       [](Ui& u, ImVec2 room) { draw_camera(u.session, room); },
       [](Ui& u, ImVec2) { draw_fit_result(u.session); }};
-  kDraw.at(static_cast<std::size_t>(ui.session.view().panel))(ui, size);
+  const Panel panel = ui.session.view().panel;
+  const std::string refusal = view_refusal(ui.session, panel);
+  if (!refusal.empty()) return coloured_text(kDimColour, refusal);
+  kDraw.at(static_cast<std::size_t>(panel))(ui, size);
 }
 
 void draw_plots(Ui& ui, ImVec2 size) {
   const float gap = ImGui::GetStyle().ItemSpacing.x;
-  const float curve_width = 0.54F * size.x;
+  // The buttons of the views have one line, unless the curve would have less than 45 % of the width.
+  const float curve_width = std::clamp(size.x - gap - panel_tabs_width(), 0.45F * size.x, 0.54F * size.x);
   constexpr ImGuiWindowFlags kStill = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
   ImGui::BeginChild("curves", {curve_width, size.y}, false, kStill);
   ui.curves.draw(ui.session, ui.axis_editor, ImGui::GetContentRegionAvail());
@@ -237,7 +258,7 @@ void draw_one_page(Ui& ui) {
 }
 
 void draw_right(Ui& ui, float window_height) {  // draws everything right of the controls
-  draw_view_controls(ui.session, ui.fields);
+  draw_view_controls(ui.session, ui.controls.fields);
   const float em = ImGui::GetFontSize();
   const ImVec2 room = ImGui::GetContentRegionAvail();
   const float readout = (room.x < 64.0F * em ? 4.8F : 3.8F) * ImGui::GetTextLineHeightWithSpacing();
@@ -284,7 +305,7 @@ void draw_all(Ui& ui, const std::function<void()>& catch_up) {
   ui.is_narrow = all.x - left < 46.0F * em;
   ImGui::BeginChild("controls", {left, all.y}, true);
   draw_fit(ui.session, ui.actions);
-  draw_controls(ui.session, ui.fields);
+  draw_controls(ui.session, ui.controls);
   draw_pins(ui.session);
   draw_snapshots(ui.session);
   ImGui::EndChild();

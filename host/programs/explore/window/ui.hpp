@@ -51,7 +51,7 @@ class Actions {
 struct Ui {
   Session& session;
   Actions& actions;
-  NumberFields fields = {};
+  ControlState controls = {};
   AxisEditor axis_editor = {};
   MapView map = {};
   ScatteringView scattering_view = {};

@@ -9,8 +9,14 @@ namespace dolp::explore {
 
 // Each view fills the current ImGui window, or an area of the given size.
 
-void draw_controls(Session& session, NumberFields& fields);
-void draw_accuracy_controls(Session& session, NumberFields& fields);  ///< draws tolerance and precision
+/// What the controls of the scene remember from frame to frame.
+struct ControlState {
+  NumberFields fields = {};
+  ControlRows rows = {};
+};
+
+void draw_controls(Session& session, ControlState& state);
+void draw_accuracy_controls(Session& session, ControlState& state);  ///< draws tolerance and precision
 
 /// The y values of a line in a plot. All lines of the plot have the same x values.
 struct NamedLine {

@@ -88,9 +88,9 @@ void draw_effects(const Session& session) {
   const std::array<Column, 5> columns = {
       {{is_stale(session) ? "the scene before" : "effect", "a part of the scene", 6.8F},
        {"plan", "kept, dropped, absent, or not needed by what is kept", 4.2F},
-       {"at cursor", "what it adds to DOLP at the cursor: a bound (≤) where it is dropped, else an estimate", 6.0F},
-       {"Q/I → without it",
-        "Q/I at the maximum of the curve with all effects → without this one; their difference is its part", 9.4F},
+       {"at cursor", "what it adds to DOLP at the cursor: a bound (≤) where it is dropped, else an estimate", 6.4F},
+       {"Q/I → without it", "Q/I at the cursor with all effects → without this one; their difference is its part",
+        10.2F},
        {"why", "the reason of the plan", 14.0F}}};
   const float em = ImGui::GetFontSize();
   const bool is_narrow = ImGui::GetContentRegionAvail().x < 36.0F * em;

@@ -233,8 +233,8 @@ void draw_panel(Ui& ui, ImVec2 size) {
 
 void draw_plots(Ui& ui, ImVec2 size) {
   const float gap = ImGui::GetStyle().ItemSpacing.x;
-  // The buttons of the views have one line, unless the curve would have less than 45 % of the width.
-  const float curve_width = std::clamp(size.x - gap - panel_tabs_width(), 0.45F * size.x, 0.54F * size.x);
+  // The buttons of the views have one line, unless the curve would have less than half of the width.
+  const float curve_width = std::clamp(size.x - gap - panel_tabs_width(), 0.5F * size.x, 0.54F * size.x);
   constexpr ImGuiWindowFlags kStill = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
   ImGui::BeginChild("curves", {curve_width, size.y}, false, kStill);
   ui.curves.draw(ui.session, ui.axis_editor, ImGui::GetContentRegionAvail());
@@ -274,7 +274,7 @@ void draw_right(Ui& ui, float window_height) {  // draws everything right of the
   }
   ImGui::BeginChild("readout", {0.0F, readout});
   if (ui.is_narrow) draw_message(ui.session.message());
-  coloured_text(kTextColour, peak_text(ui.session));
+  coloured_text(kTextColour, headline(ui.session));
   coloured_text(kTextColour, cause_text(ui.session));
   coloured_text(kDimColour, cursor_text(ui.session));
   ImGui::EndChild();

@@ -25,6 +25,11 @@ struct NamedLine {
   std::vector<double> values;
 };
 
+struct ShownCurve {
+  const Curve* curve;
+  CurveStyle style;
+};
+
 /// Draws the current curve, the overlay, pins and measured points. A click or drag in the plot moves the cursor. A
 /// click on the overlay in the legend hides the overlay. A click on a pin in the legend hides or shows the pin.
 class CurveView {
@@ -40,9 +45,12 @@ class CurveView {
   void choose_axes(const Session& session, Zoom& zoom, const Scale& zeniths, Scale& values);
   void edit_axes(View& view, AxisEditor& editor, const Plot& plot, const std::string& values);
 
+  float draw_legend_above(const std::vector<ShownCurve>& curves, Session& session, ImVec2 size);
+
   Area area_;
   Scale x_, y_;
   Plotted quantity_ = Plotted::kDolp;
+  float legend_height_ = 0.0F;  ///< height of the legend's entries in the last frame
 };
 
 void draw_effects(const Session& session);

@@ -51,6 +51,35 @@ const WithoutEffect* without(const Session& session, const std::string& effect) 
 
 const char* polarisation(const Point& point) { return point[Quantity::kQOverI] > 0.0 ? "s" : "p"; }
 
+bool is_medium(const std::string& key) {
+  return key == "surface.n" || key == "surface.k" || key == "surface.reflectance_file" ||
+         key.starts_with("surface.material") || key.starts_with("surface.coating");
+}
+
+/// A setting of the scene in words, for a title: "σ 0.3". Empty for settings that change no result.
+std::string change_text(const Scene& scene, const Setting& change) {
+  const std::string& key = change.key;
+  const bool is_table = key.find('.') == std::string::npos;
+  if (is_table) return "without " + key;  // a setting can only remove a table
+  if (std::holds_alternative<std::monostate>(change.value.content())) return "";
+  const bool is_flag = described(key).type == Key::Type::kFlag;
+  if (is_flag || key.starts_with("grid.") || key.starts_with("accuracy.")) return "";
+  if (is_medium(key)) return material_name(scene);
+  const std::vector<double> band = scene.numbers("spectrum.band_um");
+  if (key == "spectrum.band_um") return fmt::format("λ {:.4g} to {:.4g} µm", band.at(0), band.at(1));
+  const auto shown = std::ranges::find(controls(), key, [](const Control& control) { return control.key->key; });
+  if (shown == controls().end()) return key + ' ' + std::filesystem::path(plain_text(change.value)).filename().string();
+  if (!shown->is_number()) return shown->label + ' ' + scene.word(key).value_or("");
+  const std::string unit = unit_text(*shown->key);
+  return fmt::format("{} {:.4g}{}{}", shown->label, scene.number(key).value_or(0.0), unit.empty() ? "" : " ", unit);
+}
+
+std::string without_spectrum(const std::string& title) {  // "Paint, 8-14 um" becomes "Paint"
+  const std::size_t comma = title.rfind(", ");
+  const bool has_unit = title.ends_with("um") || title.ends_with("µm");
+  return has_unit && comma != std::string::npos ? title.substr(0, comma) : title;
+}
+
 bool has_q_over_i(const Point& point) { return point.is_good() && std::isfinite(point[Quantity::kQOverI]); }
 
 }  // namespace
@@ -208,6 +237,21 @@ std::string without_words(const Session& session, const std::string& effect) {
   add("cursor", session.peak().cursor(), *away->at_cursor);
   add("maximum of the curve", session.peak().answer()->at, *away->at_peak);
   return fmt::format("{}", fmt::join(sentences, "\n"));
+}
+
+std::string figure_title(const SceneEdits& edits) {
+  const Scene& scene = edits.scene();
+  std::string title = scene.title();
+  std::vector<std::string> changed;
+  for (const Setting& change : scene.settings()) {
+    if (change.key == "title") return title;
+    const std::string text = change_text(scene, change);
+    if (!text.empty() && std::ranges::count(changed, text) == 0) changed.push_back(text);
+    if (change.key.starts_with("spectrum.")) title = without_spectrum(title);
+  }
+  const std::string words = join(changed);
+  if (title.empty() || words.empty()) return title + words;
+  return title + (words.starts_with("without") ? " " : " with ") + words;
 }
 
 std::string table_command(const SceneEdits& edits) {

@@ -22,7 +22,9 @@ std::string without_text(const Session& session, const std::string& effect);
 /// The numbers of without_text() in a sentence, and the numbers at the maximum in a second one. Empty if not known.
 std::string without_words(const Session& session, const std::string& effect);
 std::vector<std::string> cost_lines(const Session& session);  ///< time, evaluations and error of the finished curve
-std::string table_command(const SceneEdits& edits);           ///< a shell command that writes the scene's table
+/// The title of the scene as it is: what was typed as its title, otherwise its title as opened, with what has changed.
+std::string figure_title(const SceneEdits& edits);
+std::string table_command(const SceneEdits& edits);  ///< a shell command that writes the scene's table
 /// JSON for tools/plot_view.py: the visible curves with the axes `x` and `y`, the measured points, and the map if the
 /// window shows it. Values have the units of the labels. A value is null where the model gives none.
 std::string plot_json(const Session& session, const Scale& x, const Scale& y);

@@ -49,15 +49,6 @@ std::vector<std::vector<std::string>> shape_words(const Scene& scene) {
   return groups;
 }
 
-std::string material_name(const Scene& scene) {
-  std::string name = medium_name(scene, "surface");
-  for (std::size_t layer = 1; layer <= scene_films(scene).size(); ++layer) {
-    const std::string film = fmt::format("surface.coating.{}", layer);
-    name += fmt::format(", film {} {:.4g} µm", medium_name(scene, film), scene.number(film + ".thickness_um").value());
-  }
-  return name;
-}
-
 /// The numbers and the sky of `scene` that differ from `other`: "T 300 K, clear-sky".
 std::string different_numbers(const Scene& scene, const Scene& other) {
   std::vector<std::string> words;
@@ -267,6 +258,15 @@ std::string unit_text(const Key& key) {
 }
 
 bool is_bistatic(const Scene& scene) { return scene.word("geometry.mode") == "bistatic"; }
+
+std::string material_name(const Scene& scene) {
+  std::string name = medium_name(scene, "surface");
+  for (std::size_t layer = 1; layer <= scene_films(scene).size(); ++layer) {
+    const std::string film = fmt::format("surface.coating.{}", layer);
+    name += fmt::format(", film {} {:.4g} µm", medium_name(scene, film), scene.number(film + ".thickness_um").value());
+  }
+  return name;
+}
 
 std::string surface_name(const Scene& scene, const Scene* other) {
   std::vector<std::string> common, parts;

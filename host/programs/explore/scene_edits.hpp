@@ -66,6 +66,8 @@ std::string unused_text(const Scene& scene, const Control& control);  ///< why t
 /// before the material that is the same for `other`. If the surfaces are equal, adds what else differs: "T 300 K".
 std::string surface_name(const Scene& scene, const Scene* other = nullptr);
 
+std::string material_name(const Scene& scene);  ///< the material of the surface, and its films
+
 /// A scene file with changes. `dolp eval` computes the same results from the file if --set makes the same changes.
 class SceneEdits {
  public:

@@ -228,6 +228,29 @@ TEST(ExploreSession, PinsAndPointsOfAnotherScene_AreKnown_AndMissingResidualsHav
   EXPECT_FALSE(session.is_foreign(session.pins()[0].curve.scene()));
 }
 
+TEST(FigureTitle, HasWhatChanged_UntilATitleIsTyped_WhichComputesNothingAgain) {
+  const auto title = [](const std::string& scene_title, const std::vector<std::string>& changes) {
+    const std::string rest = kPaint.substr(std::string("title = \"Paint").size());
+    SceneEdits edits(Scene::from_text("title = \"" + scene_title + rest));
+    edits.set(settings_from_text(changes));
+    return figure_title(edits);
+  };
+  EXPECT_EQ(title("Paint, 10 um", {}), "Paint, 10 um");
+  EXPECT_EQ(title("Paint, 10 um", {"accuracy.tolerance=1e-2", "grid.theta_deg=[0,1]"}), "Paint, 10 um");
+  EXPECT_EQ(title("Paint, 10 um", {"surface.sigma=0.3", "surface.masking=none"}),
+            "Paint, 10 um with σ 0.3, masking none");
+  EXPECT_EQ(title("Paint, 10 um", {"surface.n=1.7", "surface.k=0.2", "spectrum.band_um=[8,14]"}),
+            "Paint with n 1.7 k 0.2, λ 8 to 14 µm");
+  EXPECT_EQ(title("Paint", {"surroundings=none"}), "Paint without surroundings");
+  EXPECT_EQ(title("Paint", {"surface.sigma=0.3", "title=Mine"}), "Mine");
+  Driver driver(paint());
+  driver.session.set("title", "Mine");
+  EXPECT_TRUE(driver.session.wanted().empty());
+  EXPECT_EQ(figure_title(driver.session.edits()), "Mine");
+  driver.session.undo();
+  EXPECT_EQ(figure_title(driver.session.edits()), "Paint");
+}
+
 TEST(ExploreSession, TableCommand_IsQuotedForAShell) {
   Session session(SceneEdits(Scene::from_text(paint().opened().text(), {}, "a plate's scene.toml")));
   session.set("surface.sigma", 0.2);

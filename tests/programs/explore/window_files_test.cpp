@@ -131,6 +131,17 @@ TEST_F(WindowFiles, Plots_SavedByShortcut_AreLinesAndTextOfWhatIsShown) {
   EXPECT_TRUE(save("missing/plot.svg").is_error);
 }
 
+TEST_F(WindowFiles, TitleClicked_TakesATypedOne_WhichUndoTakesBack) {
+  click_control("title");
+  keys("ctrl+a");
+  type("Mine");
+  keys("Return");
+  frames();
+  EXPECT_EQ(title(), "Mine");
+  keys("ctrl+z");
+  EXPECT_EQ(title(), "Painted");
+}
+
 TEST_F(WindowFiles, Snapshot_Clicked_RestoresTheState_AndTakesATypedName) {
   keys("ctrl+p");
   keys("ctrl+b");

@@ -1,6 +1,7 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include "base/atomic_file.hpp"
 #include "base/python_picture.hpp"
@@ -260,6 +261,26 @@ void draw_recent(Actions& actions) {
   ImGui::EndMenu();
 }
 
+/// Draws the title of the scene as a menu with a field for another title. The scene gets it when the menu closes.
+void draw_title(Ui& ui) {
+  constexpr float kWidth = 30.0F;
+  Session& session = ui.session;
+  const std::string title = figure_title(session.edits());
+  name_next("title", title.c_str());
+  if (ImGui::BeginMenu((shown(title) + "###title").c_str())) {
+    if (!ui.typed_title) {
+      ui.typed_title = title;
+      ImGui::SetKeyboardFocusHere();
+    }
+    ImGui::TextDisabled("title of the scene and of its figures");
+    ImGui::SetNextItemWidth(kWidth * ImGui::GetFontSize());
+    if (ImGui::InputText("##title", &*ui.typed_title, ImGuiInputTextFlags_EnterReturnsTrue)) ImGui::CloseCurrentPopup();
+    ImGui::EndMenu();
+  } else if (const auto typed = std::exchange(ui.typed_title, std::nullopt); typed && *typed != title) {
+    session.set("title", *typed);
+  }
+}
+
 }  // namespace
 
 void run_shortcuts(Ui& ui) {
@@ -286,7 +307,7 @@ void draw_menus(Ui& ui) {
     ImGui::EndMenu();
   }
   ImGui::TextDisabled("|");
-  ImGui::TextUnformatted(shown(ui.session.scene().title()).c_str());
+  draw_title(ui);
   if (ui.session.edits().is_changed()) ImGui::TextDisabled("(changed)");
   ImGui::EndMainMenuBar();
 }

@@ -60,6 +60,7 @@ struct Ui {
   PathDialog dialog = {};
   /// A scene file, and the folder where the user last saved a file for this scene; suggested_path() uses this folder.
   std::pair<std::string, std::filesystem::path> saved = {};
+  std::optional<std::string> typed_title = {};  ///< while the menu of the title is open
   bool is_narrow = false;
   std::string page = "curve";  ///< page of a narrow window: "curve", "effects", "accuracy"; "": the panel View::panel
   bool shows_help = false;

@@ -62,9 +62,9 @@ std::string change_text(const Scene& scene, const Setting& change) {
   const bool is_table = key.find('.') == std::string::npos;
   if (is_table) return "without " + key;  // a setting can only remove a table
   if (std::holds_alternative<std::monostate>(change.value.content())) return "";
+  if (is_medium(key)) return material_name(scene);
   const bool is_flag = described(key).type == Key::Type::kFlag;
   if (is_flag || key.starts_with("grid.") || key.starts_with("accuracy.")) return "";
-  if (is_medium(key)) return material_name(scene);
   const std::vector<double> band = scene.numbers("spectrum.band_um");
   if (key == "spectrum.band_um") return fmt::format("λ {:.4g} to {:.4g} µm", band.at(0), band.at(1));
   const auto shown = std::ranges::find(controls(), key, [](const Control& control) { return control.key->key; });

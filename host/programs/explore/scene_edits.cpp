@@ -347,6 +347,41 @@ Setting coating_setting(const std::vector<Film>& films) {
   return {kCoating, TomlText{'[' + join(texts) + ']'}};
 }
 
+std::vector<Setting> medium_change(const Scene& scene, const std::string& table, const std::vector<Setting>& medium) {
+  if (table == "surface") {
+    std::vector<Setting> changes = medium;
+    for (Setting& change : changes) change.key = table + '.' + change.key;
+    return changes;
+  }
+  std::vector<Film> films = scene_films(scene);
+  for (std::size_t layer = 1; layer <= films.size(); ++layer) {
+    if (table != fmt::format("{}.{}", kCoating, layer)) continue;
+    const Film& old = films[layer - 1];  // keeps the thickness and its spread, which are last in a Film
+    Film changed = medium;
+    changed.insert(changed.end(), std::ranges::find(old, "thickness_um", &Setting::key), old.end());
+    films[layer - 1] = std::move(changed);
+  }
+  return {coating_setting(films)};
+}
+
+std::vector<BuiltInMaterial> sorted_materials() {
+  std::vector<BuiltInMaterial> all = materials();
+  std::vector<std::string> kinds;  // in the order of the list
+  for (const BuiltInMaterial& material : all) {
+    if (std::ranges::count(kinds, material.kind) == 0) kinds.push_back(material.kind);
+  }
+  std::ranges::sort(all, {}, [&](const BuiltInMaterial& material) {
+    return std::pair(std::ranges::find(kinds, material.kind) - kinds.begin(), lower_case(material.name));
+  });
+  return all;
+}
+
+bool has_words(const std::string& text, const std::string& search) {
+  const std::string known = lower_case(text);
+  return std::ranges::all_of(split(lower_case(search), ' '),
+                             [&](std::string_view word) { return known.find(word) != std::string::npos; });
+}
+
 std::string plain_text(const Value& value) {
   const auto* word = std::get_if<std::string>(&value.content());
   return word ? *word : value.text();

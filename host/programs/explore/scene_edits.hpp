@@ -107,7 +107,13 @@ class SceneEdits {
 using Film = std::vector<Setting>;
 std::vector<Film> scene_films(const Scene& scene);        ///< the outermost film first
 Setting coating_setting(const std::vector<Film>& films);  ///< setting that gives a scene these films
-std::string plain_text(const Value& value);               ///< text of a value, without quotes
+/// The settings that give the surface, or the film whose keys are in `table`, another medium, such as {{"material",
+/// "iron"}}.
+std::vector<Setting> medium_change(const Scene& scene, const std::string& table, const std::vector<Setting>& medium);
+std::vector<BuiltInMaterial> sorted_materials();  ///< the materials of one kind after the other, each kind by name
+/// True if `text` contains each word of `search`. Ignores case.
+bool has_words(const std::string& text, const std::string& search);
+std::string plain_text(const Value& value);  ///< text of a value, without quotes
 
 /// Applies `change`. If it conflicts with earlier choices in the scene, also replaces those that must be replaced, and
 /// returns their new values. Errors: InputError if the scene refuses `change` all the same; `edits` is then unchanged.

@@ -57,6 +57,24 @@ TEST(Controls, OfDiffuseLightAndOfTheAir_AreShownWhereTheSceneUsesThem) {
   EXPECT_FALSE(water.value(paint().scene()) || air.value(paint().scene()));
 }
 
+TEST(Materials, AreSortedWithinTheirKinds_AndFoundByWords) {
+  const std::vector<BuiltInMaterial> all = sorted_materials();
+  EXPECT_EQ(all.size(), materials().size());
+  EXPECT_EQ(all.front().name, "aluminium (Ordal)");
+  std::vector<std::string> kinds;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool is_same_kind = !kinds.empty() && kinds.back() == all[i].kind;
+    EXPECT_TRUE(!is_same_kind || lower_case(all[i - 1].name) < lower_case(all[i].name)) << all[i].name;
+    EXPECT_TRUE(is_same_kind || std::ranges::count(kinds, all[i].kind) == 0) << all[i].name;
+    kinds.push_back(all[i].kind);
+  }
+  EXPECT_EQ(std::ranges::count(kinds, "metal"), 13);
+  EXPECT_EQ(std::ranges::count(kinds, ""), 0);
+  EXPECT_TRUE(has_words("metal gold (Ordal), 2 to 20 µm", "Ord GOLD"));
+  EXPECT_FALSE(has_words("metal gold (Ordal), 2 to 20 µm", "gold olmon"));
+  EXPECT_TRUE(has_words("iron", " "));
+}
+
 TEST(ControlRows, RowsOnceShown_StayUntilAnotherSceneIsOpened_AndAlternativesShareOne) {
   SceneEdits edits = paint();
   ControlRows rows;

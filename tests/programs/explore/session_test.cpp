@@ -241,6 +241,8 @@ TEST(FigureTitle, HasWhatChanged_UntilATitleIsTyped_WhichComputesNothingAgain) {
             "Paint, 10 um with σ 0.3, masking none");
   EXPECT_EQ(title("Paint, 10 um", {"surface.n=1.7", "surface.k=0.2", "spectrum.band_um=[8,14]"}),
             "Paint with n 1.7 k 0.2, λ 8 to 14 µm");
+  EXPECT_EQ(title("Paint", {"surface.coating=[{n=1.4,thickness_um=2}]", "surface.coating.1.k=0.1"}),
+            "Paint with n 1.5 k 0.1, film n 1.4 k 0.1 2 µm");
   EXPECT_EQ(title("Paint", {"surroundings=none"}), "Paint without surroundings");
   EXPECT_EQ(title("Paint", {"surface.sigma=0.3", "title=Mine"}), "Mine");
   Driver driver(paint());

@@ -262,9 +262,19 @@ TEST_F(Window, Films_AreAddedOutside_ChangedAndRemoved) {
   EXPECT_NEAR(std::log10(*number("surface.coating.1.thickness_um") / expected), 0.0, 5.0 * kGrab / 2.0);
   const Scene before = session().scene();
   click_control("surface.coating.1.material");
-  click(app_->control_area("surface.coating.1.material").at(0.5F, 2.6F));  // the first material of the list
-  EXPECT_TRUE(word("surface.coating.1.material"));
+  type("met gold ord");
+  keys("Return");
+  EXPECT_EQ(word("surface.coating.1.material"), "gold (Ordal)");
   EXPECT_EQ(number("surface.coating.1.thickness_um"), before.number("surface.coating.1.thickness_um"));
+  keys("ctrl+z");
+  EXPECT_EQ(session().scene().toml(), before.toml());
+  put("own.csv", "wavelength_um,n,k\n5,1.4,0.01\n20,1.4,0.01\n");
+  click_control("surface.coating.1.material");
+  click_control("surface.coating.1.material own file…");
+  frames();
+  type("own.csv");
+  keys("Return");
+  EXPECT_EQ(word("surface.coating.1.material_file"), at("own.csv").string());
   keys("ctrl+z");
   EXPECT_EQ(session().scene().toml(), before.toml());
   click_control("remove surface.coating.2");

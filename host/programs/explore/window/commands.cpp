@@ -283,6 +283,18 @@ void draw_title(Ui& ui) {
 
 }  // namespace
 
+void ask_for_material(Ui& ui, const std::string& table) {
+  const std::filesystem::path folder = std::filesystem::path(ui.session.scene().name()).parent_path();
+  ui.dialog.open({.title = "Open a file of n and k",
+                  .path = folder.empty() ? "" : folder.string() + '/',
+                  .suffixes = {".csv", ".yml", ".yaml", ".txt", ".dat", ".nk", ".lnk"},
+                  .must_exist = true,
+                  .accept = [&ui, table](Path path) {
+                    const std::string file = std::filesystem::absolute(path).lexically_normal().string();
+                    ui.session.set(medium_change(ui.session.scene(), table, {{"material_file", file}}));
+                  }});
+}
+
 void run_shortcuts(Ui& ui) {
   const ImGuiIO& io = ImGui::GetIO();
   if (ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId) || !io.KeyCtrl || io.KeyAlt) return;

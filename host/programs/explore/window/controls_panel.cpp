@@ -76,8 +76,9 @@ Value parse_value(const std::string& text) {
 
 struct Controls {
   Session& session;
-  NumberFields& fields;
-  ControlRows& rows;
+  ControlState& state;
+  NumberFields& fields = state.fields;
+  ControlRows& rows = state.rows;
 
   struct Slider {  // with a text field beside it
     std::string id, label;
@@ -166,7 +167,7 @@ struct Controls {
       name_item(key);
       tooltip(note);
     } else if (const auto clicked =
-                   draw_list(key, -1.0F, words[position], note, position, {words.begin(), words.end()})) {
+                   draw_list({key, -1.0F, words[position], note, position, {words.begin(), words.end()}})) {
       session.set(key, TomlText{words[*clicked]});
     }
   }
@@ -220,35 +221,40 @@ struct Controls {
     }
   }
 
-  /// Draws the list of materials for the surface or a film. Returns the settings of the material that the user chooses.
+  /// Draws the list of materials for the surface or a film. Returns the settings that give it the material that the
+  /// user chooses.
   std::vector<Setting> draw_material(const std::string& table) {
-    static const std::vector<BuiltInMaterial> known = materials();
+    static const std::vector<BuiltInMaterial> known = sorted_materials();
+    constexpr std::size_t kTyped = 0, kFile = 1, kBuiltIn = 2;  // positions in the list
     const Scene& scene = session.scene();
     const bool is_typed = control(table + ".n").value(scene).has_value();
-    const std::string current = is_typed ? "n and k as below" : scene.word(table + ".material").value_or("file");
-    // Entry 0 is "n and k as below". Then come the built-in materials. A material from a file has no entry.
+    const std::string file = file_name(scene.word(table + ".material_file").value_or("own file"));
+    const std::string current = is_typed ? "n and k as below" : scene.word(table + ".material").value_or(file);
     const auto now = std::ranges::find(known, current, &BuiltInMaterial::name);
     std::optional<std::size_t> chosen;
-    if (is_typed || now != known.end()) chosen = is_typed ? 0 : static_cast<std::size_t>(now - known.begin()) + 1;
+    if (is_typed) chosen = kTyped;
+    if (now != known.end()) chosen = static_cast<std::size_t>(now - known.begin()) + kBuiltIn;
     const auto [from_um, to_um] = spectrum_um(scene);
-    std::vector<ListEntry> entries = {{"n and k as below"}};
+    std::vector<ListEntry> entries = {{"n and k as below"}, {"own file…", "a file of n and k over the wavelength"}};
     for (const BuiltInMaterial& material : known) {
       const bool is_known = material.from_um <= from_um && to_um <= material.to_um;
       entries.push_back({fmt::format("{}, {:g} to {:g} µm", material.name, material.from_um, material.to_um),
-                         material.source + (is_known ? "" : "\nnot known over the spectrum of this scene"), is_known});
+                         material.source + (is_known ? "" : "\nnot known over the spectrum of this scene"), is_known,
+                         material.kind});
     }
     row_label("material");
     const std::string note = is_typed ? "a built-in material, or your n and k" : "N = n + ik of " + surface_name(scene);
-    const auto clicked = draw_list(table + ".material", -1.0F, current, note, chosen, entries);
+    const auto clicked = draw_list({table + ".material", -1.0F, current, note, chosen, entries}, &state.search);
     if (!clicked) return {};
-    if (*clicked > 0) return {{"material", known[*clicked - 1].name}};
+    if (*clicked == kFile) state.wanted_file = table;
+    if (*clicked == kFile) return {};
+    if (*clicked >= kBuiltIn) return medium_change(scene, table, {{"material", known[*clicked - kBuiltIn].name}});
     const auto [n, k] = material_index(scene, table);
-    return {{"n", n}, {"k", k}};
+    return medium_change(scene, table, {{"n", n}, {"k", k}});
   }
 
   void draw_surface() {
-    std::vector<Setting> chosen = draw_material("surface");
-    for (Setting& setting : chosen) setting.key = "surface." + setting.key;
+    const std::vector<Setting> chosen = draw_material("surface");
     if (!chosen.empty()) session.set(chosen);
     draw_choices("surface");
     draw_numbers("surface");
@@ -267,14 +273,10 @@ struct Controls {
       name_item("remove " + film);
       ImGui::SameLine();
       coloured_text(kTextColour, fmt::format("film {}", layer));
-      Film chosen = draw_material(film);
+      const std::vector<Setting> chosen = draw_material(film);
       if (is_removed) films.erase(films.begin() + static_cast<std::ptrdiff_t>(layer) - 1);
-      if (!chosen.empty()) {
-        const Film& old = films[layer - 1];  // keeps the thickness and its spread, which are last in a Film
-        chosen.insert(chosen.end(), std::ranges::find(old, "thickness_um", &Setting::key), old.end());
-        films[layer - 1] = chosen;
-      }
-      if (is_removed || !chosen.empty()) return session.set({coating_setting(films)});
+      if (is_removed) return session.set({coating_setting(films)});
+      if (!chosen.empty()) return session.set(chosen);
       draw_numbers(film);
     }
   }
@@ -286,7 +288,7 @@ struct Controls {
     const std::array<Setting, 3> changes = {
         {{"source.irradiance", 1.0}, {"source.relative_irradiance", 0.6}, {"source.preset", "sun"}}};
     row_label("kind");
-    if (const auto clicked = draw_list("source kind", -1.0F, kinds[now].text, "", now, kinds)) set(changes[*clicked]);
+    if (const auto clicked = draw_list({"source kind", -1.0F, kinds[now].text, "", now, kinds})) set(changes[*clicked]);
   }
 
   /// Draws a check box that removes an effect, or restores it from the opened scene or with default values.
@@ -328,8 +330,8 @@ struct Controls {
     const auto position = static_cast<std::size_t>(now - skies.begin());
     row_label("sky");
     const auto clicked =
-        draw_list("sky", -1.0F, name, fmt::format("{} {}: {}", kSkyProfile, current, described(kSkyProfile).meaning),
-                  position, skies);
+        draw_list({"sky", -1.0F, name, fmt::format("{} {}: {}", kSkyProfile, current, described(kSkyProfile).meaning),
+                   position, skies});
     if (!clicked) return;
     if (*clicked == 0) {
       session.set(kUniformSky, session.edits().opened().number(kUniformSky).value_or(kUniformSky_K));
@@ -411,9 +413,7 @@ struct Controls {
 
 }  // namespace
 
-void draw_controls(Session& session, ControlState& state) { Controls{session, state.fields, state.rows}.draw_all(); }
-void draw_accuracy_controls(Session& session, ControlState& state) {
-  Controls{session, state.fields, state.rows}.draw_accuracy();
-}
+void draw_controls(Session& session, ControlState& state) { Controls{session, state}.draw_all(); }
+void draw_accuracy_controls(Session& session, ControlState& state) { Controls{session, state}.draw_accuracy(); }
 
 }  // namespace dolp::explore

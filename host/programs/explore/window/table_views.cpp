@@ -90,7 +90,7 @@ void draw_effects(const Session& session) {
        {"plan", "kept, dropped, absent, or not needed by what is kept", 4.2F},
        {"at cursor", "what it adds to DOLP at the cursor: a bound (≤) where it is dropped, else an estimate", 6.4F},
        {"Q/I → without it", "Q/I at the cursor with all effects → without this one; their difference is its part",
-        10.2F},
+        10.8F},
        {"why", "the reason of the plan", 14.0F}}};
   const float em = ImGui::GetFontSize();
   const bool is_narrow = ImGui::GetContentRegionAvail().x < 36.0F * em;

@@ -71,7 +71,7 @@ void draw_map_axes(const Session& session, View& view) {
   const MapAxis &x = session.map().x(), &y = session.map().y();
   for (const auto& [id, axis, other] : {std::tuple{"map x", &x, &y}, {"map y", &y, &x}}) {
     const auto position = static_cast<std::size_t>(std::ranges::find(axes, axis->name, &MapAxis::name) - axes.begin());
-    if (const auto clicked = draw_list(id, 5.5F * ImGui::GetFontSize(), axis->label, "", position, entries)) {
+    if (const auto clicked = draw_list({id, 5.5F * ImGui::GetFontSize(), axis->label, "", position, entries})) {
       // If the user chose the other axis of the map, the two axes swap.
       const std::string& name = axes[*clicked].name;
       const std::string& left = name == other->name ? axis->name : other->name;
@@ -90,7 +90,7 @@ void draw_view_controls(Session& session, NumberFields& fields) {
   for (const PlottedDescription& quantity : kAllPlotted)
     quantities.push_back({fmt::format("{}: {}", quantity.name, quantity.meaning)});
   const auto position = static_cast<std::size_t>(view.quantity);
-  if (const auto clicked = draw_list("quantity", width, described(view.quantity).name, "", position, quantities))
+  if (const auto clicked = draw_list({"quantity", width, described(view.quantity).name, "", position, quantities}))
     view.quantity = kAllPlotted[*clicked].quantity;
   ImGui::SameLine();
   ImGui::Checkbox("log", &view.is_log);
@@ -306,6 +306,7 @@ void draw_all(Ui& ui, const std::function<void()>& catch_up) {
   ImGui::BeginChild("controls", {left, all.y}, true);
   draw_fit(ui.session, ui.actions);
   draw_controls(ui.session, ui.controls);
+  if (!ui.controls.wanted_file.empty()) ask_for_material(ui, std::exchange(ui.controls.wanted_file, ""));
   draw_pins(ui.session);
   draw_snapshots(ui.session);
   ImGui::EndChild();

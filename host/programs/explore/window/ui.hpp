@@ -70,6 +70,7 @@ struct Ui {
 /// controls and before drawing the plots, so that the plots show what the user changed by the controls.
 void draw_all(Ui& ui, const std::function<void()>& catch_up);
 
+void ask_for_material(Ui& ui, const std::string& table);  ///< asks for a file of n and k for "surface", or for a film
 void run_shortcuts(Ui& ui);
 void draw_menus(Ui& ui);
 void draw_help(Ui& ui);

@@ -13,6 +13,9 @@ namespace dolp::explore {
 struct ControlState {
   NumberFields fields = {};
   ControlRows rows = {};
+  std::string search = {};  ///< text in the search field of the open list of materials
+  std::string wanted_file =
+      {};  ///< "surface", or the table of a film, whose own file of n and k the user wants to open
 };
 
 void draw_controls(Session& session, ControlState& state);

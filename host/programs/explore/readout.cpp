@@ -239,6 +239,11 @@ std::string without_words(const Session& session, const std::string& effect) {
   return fmt::format("{}", fmt::join(sentences, "\n"));
 }
 
+std::vector<std::string> about_lines(const Session& session) {
+  const std::string& device = session.curve().finished().device;
+  return {"version  " + version(), "commit   " + commit(), "device   " + (device.empty() ? "…" : device)};
+}
+
 std::string figure_title(const SceneEdits& edits) {
   const Scene& scene = edits.scene();
   std::string title = scene.title();

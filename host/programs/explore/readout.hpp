@@ -21,7 +21,8 @@ std::string view_refusal(const Session& session, Panel panel);  ///< why a view 
 std::string without_text(const Session& session, const std::string& effect);
 /// The numbers of without_text() in a sentence, and the numbers at the maximum in a second one. Empty if not known.
 std::string without_words(const Session& session, const std::string& effect);
-std::vector<std::string> cost_lines(const Session& session);  ///< time, evaluations and error of the finished curve
+std::vector<std::string> cost_lines(const Session& session);   ///< time, evaluations and error of the finished curve
+std::vector<std::string> about_lines(const Session& session);  ///< version, commit, and the device of the curve
 /// The title of the scene as it is: what was typed as its title, otherwise its title as opened, with what has changed.
 std::string figure_title(const SceneEdits& edits);
 std::string table_command(const SceneEdits& edits);  ///< a shell command that writes the scene's table

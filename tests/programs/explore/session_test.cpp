@@ -337,6 +337,15 @@ TEST(ExplorePeak, IsAmongPointsWithoutAStatus_IfThereAreSome) {
   EXPECT_TRUE(job_for({{0.1, kOutsideModelDomain}, {0.2, kIntensityNotPositive}}).empty());
 }
 
+TEST(About, HasVersionCommitAndDevice) {
+  Driver driver(paint());
+  const std::vector<std::string> lines = about_lines(driver.session);
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(lines[0], "version  " + version());
+  EXPECT_EQ(lines[1], "commit   " + commit());
+  EXPECT_GT(lines[2].size(), std::string("device   …").size());
+}
+
 TEST(ExploreSession, Headline_HasTheCursorFirst_ThenTheMaximum) {
   Driver driver(paint({"surface.sigma=0.2"}));
   const Session& session = driver.session;

@@ -318,6 +318,7 @@ void draw_all(Ui& ui, const std::function<void()>& catch_up) {
   ImGui::PopItemFlag();
   ImGui::End();
   draw_help(ui);
+  draw_about(ui);
   ui.dialog.draw();
 }
 

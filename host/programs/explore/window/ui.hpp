@@ -64,6 +64,7 @@ struct Ui {
   bool is_narrow = false;
   std::string page = "curve";  ///< page of a narrow window: "curve", "effects", "accuracy"; "": the panel View::panel
   bool shows_help = false;
+  bool shows_about = false;
 };
 
 /// Draws everything. Call this function between ImGui's NewFrame and Render. Calls `catch_up` after drawing the
@@ -74,5 +75,6 @@ void ask_for_material(Ui& ui, const std::string& table);  ///< asks for a file o
 void run_shortcuts(Ui& ui);
 void draw_menus(Ui& ui);
 void draw_help(Ui& ui);
+void draw_about(Ui& ui);
 
 }  // namespace dolp::explore

@@ -234,12 +234,25 @@ bool PathDialog::draw_list() {
   return is_repeated;
 }
 
+void PathDialog::draw_formats() {
+  for (std::size_t i = 0; i < request_.formats.size(); ++i) {
+    const Format &old = request_.formats[request_.format], &format = request_.formats[i];
+    const bool is_clicked = ImGui::RadioButton(shown(format.text).c_str(), i == request_.format);
+    name_item("format " + format.text);
+    if (!is_clicked) continue;
+    if (name_.ends_with(old.ending)) name_.replace(name_.size() - old.ending.size(), old.ending.size(), format.ending);
+    request_.format = i;
+    wants_focus_ = true;
+  }
+}
+
 void PathDialog::draw() {
   if (is_opening_) ImGui::OpenPopup(kPopup);
   is_opening_ = false;
   const float width = std::min(36.0F * ImGui::GetFontSize(), ImGui::GetMainViewport()->WorkSize.x);
   ImGui::SetNextWindowSize({width, 0.0F});
   if (!ImGui::BeginPopupModal((request_.title + kPopup).c_str(), nullptr, ImGuiWindowFlags_NoResize)) return;
+  draw_formats();
   if (std::exchange(wants_focus_, false)) ImGui::SetKeyboardFocusHere();
   constexpr ImGuiInputTextFlags kFlags = ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll;
   ImGui::SetNextItemWidth(-1.0F);
@@ -256,7 +269,7 @@ void PathDialog::draw() {
                          : is_replaced ? "This file exists and will be replaced."
                                        : " ");
   ImGui::BeginDisabled(is_missing || name_.empty());
-  is_accepted |= ImGui::Button("OK");
+  is_accepted |= ImGui::Button(request_.must_exist ? "Open" : "Save");
   ImGui::EndDisabled();
   ImGui::SameLine();
   const bool is_cancelled = ImGui::Button("Cancel") || is_pressed(GLFW_KEY_ESCAPE);
@@ -269,7 +282,9 @@ void PathDialog::draw() {
   is_accepted = is_accepted && !wants_focus_ && !name_.empty();
   if (is_accepted || is_cancelled) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
-  if (is_accepted) request_.accept(path().string());
+  if (!is_accepted) return;
+  const auto& accept = request_.formats.empty() ? request_.accept : request_.formats[request_.format].accept;
+  accept(path().string());
 }
 
 }  // namespace dolp::explore

@@ -89,12 +89,19 @@ class AxisEditor {
 
 class PathDialog {
  public:
+  struct Format {
+    std::string text;
+    std::string ending;  ///< end of the suggested name, with the suffix
+    std::function<void(const std::string& path)> accept;
+  };
   struct Request {
     std::string title;
     std::string path;                   ///< suggested
     std::vector<std::string> suffixes;  ///< suffixes of the files in the list
-    bool must_exist = false;
+    bool must_exist = false;            ///< true: the dialog opens a file, otherwise it saves one
     std::function<void(const std::string& path)> accept;
+    std::vector<Format> formats = {};  ///< formats to choose from; if there are some, they replace `accept`
+    std::size_t format = 0;            ///< the chosen format
   };
 
   void open(Request request);
@@ -102,6 +109,7 @@ class PathDialog {
 
  private:
   void enter(const std::filesystem::path& folder);
+  void draw_formats();
   bool draw_list();  ///< draws the list; true if the user clicks again on the chosen file
   std::filesystem::path path() const { return folder_ / name_; }
 

@@ -41,6 +41,7 @@ FEW_ANGLES = 25  # a curve of at most this many zeniths has a dot at each entry
 # Least number of values on each of the two axes of a map. A smaller map would suggest structure that the table lacks.
 FEWEST_OF_MAP = 6
 SMALLEST_SPAN_PERCENT = 0.01  # least range of the DOLP axis, so that rounding noise does not look like a signal
+ABOVE = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.3, "frameon": False, "fontsize": 9}
 STATUS_MEANINGS = {
     1: r"$\rho_s$ or $\rho_p$ outside [0, 1]",
     2: "tolerance not met",
@@ -290,7 +291,7 @@ def draw_curves(axes, curves):
         handles.append(Patch(color="0.4", alpha=0.25, linewidth=0.0, label="all bounces lie between"))
     if any(np.any(table.status[:, j]) for table, j, _ in curves):
         handles.append(Line2D([], [], color="0.4", alpha=0.6, linestyle="--", linewidth=1.2, label="status $\\neq$ 0"))
-    axes.legend(handles=handles, frameon=False, fontsize=9, loc="upper left" if has_bracket else "best")
+    axes.legend(handles=handles, ncols=2, **ABOVE)
 
 
 def draw_flags(axes, table):
@@ -301,7 +302,7 @@ def draw_flags(axes, table):
     grey = matplotlib.colors.ListedColormap(["0.72"])
     axes.pcolor(*grid, flagged, cmap=grey, hatch="////", edgecolor="0.55", linewidth=0)
     patch = Patch(facecolor="0.72", edgecolor="0.55", hatch="////", label="status $\\neq$ 0")
-    axes.legend(handles=[patch], fontsize=9, loc="upper left", framealpha=0.9)
+    axes.legend(handles=[patch], **ABOVE)
 
 
 def draw_contours(axes, table):
@@ -359,7 +360,7 @@ def draw_materials(tables, path):
 def new_figure(width, count):
     plt.rcParams.update({"font.size": 10.5, "hatch.linewidth": 0.6})
     plt.rcParams.update({"axes.spines.top": False, "axes.spines.right": False})
-    figure, panels = plt.subplots(1, count, figsize=(width, 4.8), dpi=150, layout="constrained", squeeze=False)
+    figure, panels = plt.subplots(1, count, figsize=(width, 5.4), dpi=150, layout="constrained", squeeze=False)
     return figure, panels[0]
 
 

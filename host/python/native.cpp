@@ -467,7 +467,7 @@ PYBIND11_MODULE(_native, module) {
   module.def("devices", [] { return to_list(dolp::devices(), description); });
   module.def("materials", [] {
     return to_list(dolp::materials(), [](const dolp::BuiltInMaterial& material) {
-      return py::make_tuple(material.name, material.from_um, material.to_um, material.source);
+      return py::make_tuple(material.name, material.from_um, material.to_um, material.source, material.kind);
     });
   });
   module.def("keys", [] {

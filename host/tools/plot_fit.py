@@ -85,7 +85,7 @@ def draw_data(upper, lower, report):
     lower.set_xlabel(r"zenith angle $\theta$ (degree)")
     label_residuals(lower, has_uncertainties)
     upper.set_ylabel(names_in(report["points"]) + " (%)")
-    upper.legend(frameon=False, fontsize=9)
+    upper.legend(frameon=False, fontsize=9, loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.3, ncols=2)
 
 
 def label_residuals(axes, has_uncertainties):
@@ -130,7 +130,7 @@ def draw_spectrum(panels, lower, report, zeniths):
         panel.set_title(f"$\\theta$ = {zenith:g}°", fontsize=10, loc="left")
         panel.set_ylabel(names_in(report["points"]) + " (%)")
         panel.tick_params(labelbottom=False)
-    panels[0].legend(frameon=False, fontsize=8)
+    panels[0].legend(frameon=False, fontsize=8, loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.3, ncols=2)
     lower.set_xlabel("wavelength λ (µm)")
     label_residuals(lower, has_uncertainties)
 

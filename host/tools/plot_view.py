@@ -6,6 +6,7 @@ Needs python3-matplotlib. Exit status: 0 done, 2 usage or wrong input, 4 the pic
 """
 import json
 import sys
+import textwrap
 
 import matplotlib
 
@@ -13,6 +14,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from matplotlib.colors import LogNorm, Normalize  # noqa: E402
+from matplotlib.patches import Patch  # noqa: E402
 from matplotlib.patheffects import withStroke  # noqa: E402
 from matplotlib.ticker import FormatStrFormatter, LogLocator, MaxNLocator  # noqa: E402
 
@@ -20,6 +22,9 @@ from matplotlib.ticker import FormatStrFormatter, LogLocator, MaxNLocator  # noq
 STYLES = {"curve": {"color": "#0072B2", "linestyle": "-"}, "overlay": {"color": "#C47C00", "linestyle": (0, (5, 3))}}
 PINS = (("#968A00", (0, (1.5, 2))), ("#AA5082", (0, (7, 2.5))), ("#008662", (0, (3, 1.5))), ("#BE4600", (0, (1, 1.5))),
         ("#3296CD", (0, (9, 1.5))), ("#181A1E", (0, (2.5, 4.5))))
+ABOVE = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": 0.3, "frameon": False, "fontsize": 8}
+LINE_INCHES = 0.17  # height of one line of a legend
+LONG_NAME = 40  # a legend whose longest name is shorter has two columns
 FAILING = {"color": "0.6", "linewidth": 0.8, "linestyle": "--"}
 BAND = "all bounces lie between"
 MODEL_FAILS = "the model fails here (status)"
@@ -41,12 +46,14 @@ def set_axes(axes, x, y):
 
 
 def draw_curves(axes, plots):
-    for curve in plots["curves"]:
+    """Draws curves and points, the main curve on top and first in the legend. Returns the lines of the legend."""
+    for order, curve in enumerate(plots["curves"]):
         style = curve["style"]
         style = STYLES.get(style) or dict(zip(("color", "linestyle"), PINS[style % len(PINS)]))
         theta, values, good = numbers(curve["theta_deg"]), numbers(curve["values"]), np.array(curve["good"], dtype=bool)
         low, high = numbers(curve["low"]), numbers(curve["high"])
-        axes.plot(theta, np.where(good, values, np.nan), label=curve["name"], linewidth=1.5, **style)
+        axes.plot(theta, np.where(good, values, np.nan), label=curve["name"], linewidth=1.5, zorder=3 - 0.01 * order,
+                  **style)
         axes.plot(theta, np.where(good, np.nan, values), label="_" if good.all() else MODEL_FAILS, **FAILING)
         if np.isfinite(low).any():
             axes.fill_between(theta, low, high, label=BAND, color=style["color"], alpha=0.2, linewidth=0)
@@ -60,7 +67,9 @@ def draw_curves(axes, plots):
     entries = {}  # legend entries; all areas labelled BAND share one, and so do all lines labelled MODEL_FAILS
     for handle, label in zip(*axes.get_legend_handles_labels()):
         entries[label if label in (MODEL_FAILS, BAND) else handle] = (handle, label)
-    axes.legend(*zip(*entries.values()), frameon=False, fontsize=8)
+    columns = 2 if max(len(label) for _, label in entries.values()) < LONG_NAME else 1
+    axes.legend(*zip(*entries.values()), ncols=columns, **ABOVE)
+    return -(-len(entries) // columns)
 
 
 def places(axis, count):
@@ -84,6 +93,8 @@ def draw_map(figure, axes, plot):
         norm, locator = LogNorm(low, high), LogLocator(subs=(1.0, 2.0, 5.0))
     mesh = axes.pcolormesh(x, y, rows, cmap=colours, norm=norm, shading="nearest", rasterized=True)
     axes.set_facecolor("0.72")
+    if rows.mask.any():
+        axes.legend(handles=[Patch(facecolor="0.72", label=MODEL_FAILS)], **ABOVE)
     levels = [level for level in locator.tick_values(low, high) if low < level < high]
     # Sets the scales of the axes before the labels of contours, because the gaps for these labels depend on the scales.
     set_axes(axes, plot["x"], plot["y"])
@@ -99,12 +110,12 @@ def draw(plots, suffix):
     plt.rcParams.update({"font.size": 10, "svg.fonttype": "none", "text.parse_math": False})
     plt.rcParams.update({"axes.spines.top": False, "axes.spines.right": False})
     has_map = plots["map"] is not None
-    size = (11.0 if has_map else 6.5, 4.6)
+    size = (11.0 if has_map else 6.5, 4.4)
     figure, panels = plt.subplots(1, 1 + has_map, figsize=size, dpi=150, layout="constrained", squeeze=False)
-    draw_curves(panels[0, 0], plots)
+    figure.set_figheight(size[1] + LINE_INCHES * draw_curves(panels[0, 0], plots))
     if has_map:
         draw_map(figure, panels[0, 1], plots["map"])
-    figure.suptitle(plots["title"])
+    figure.suptitle(textwrap.fill(plots["title"], int(9 * size[0])))
     figure.savefig(sys.stdout.buffer, format=suffix.lstrip(".") or "png")
 
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Tests the pictures of tables and fits."""
+import io
 import os
 import pathlib
 import sys
@@ -17,6 +18,7 @@ sys.path[:0] = [str(HOST), str(HOST / "tools")]
 import plot_fit  # noqa: E402  (its path has to be known first)
 import plot_skies  # noqa: E402
 import plot_table  # noqa: E402
+import plot_view  # noqa: E402
 
 
 class Pictures(PackageCase):
@@ -113,6 +115,25 @@ class Pictures(PackageCase):
             for line in axes.lines:
                 self.assertLess(np.nanmax(line.get_ydata()), axes.get_ylim()[1])
             plot_table.plt.close()
+
+    def test_plots_of_the_window_have_no_legend_on_a_curve_and_name_the_grey_of_the_map(self):
+        theta = [*range(0, 91)]
+        curve = {"style": "curve", "theta_deg": theta, "values": theta, "good": [True] * 91, "low": [None] * 91, "high": [None] * 91}
+        axis = {"label": "x", "from": 0, "to": 90, "is_log": False}
+        grid = {"x": axis, "y": axis, "label": "DOLP", "is_log": False, "is_signed": False, "colours": None}
+        for count, bad in ((1, None), (6, 2.0)):
+            plots = {"title": "Plate", "x": axis, "y": axis, "measured": [], "map": {**grid, "rows": [[1.0, bad], [2.0, 3.0]]},
+                     "curves": [{**curve, "name": f"curve {i} " + 8 * i * "x", "style": i or "curve"} for i in range(count)]}
+            with unittest.mock.patch("sys.stdout", unittest.mock.Mock(buffer=io.BytesIO())):
+                plot_view.draw(plots, ".svg")
+            figure = plot_view.plt.gcf()
+            curves, grey = figure.axes[:2]
+            self.assertGreaterEqual(curves.get_legend().get_window_extent().y0, curves.get_window_extent().y1)
+            self.assertLess(curves.get_legend().get_window_extent().y1, figure.texts[0].get_window_extent().y0)
+            self.assertTrue(curves.get_legend().texts[0].get_text().startswith("curve 0"))
+            self.assertEqual(max(curves.lines, key=lambda line: line.zorder).get_label(), plots["curves"][0]["name"])
+            self.assertEqual(grey.get_legend() is None, bad is not None)
+            plot_view.plt.close()
 
     def test_pictures_of_skies_end_before_a_limit_that_jumps(self):
         """With a diffuse part, I has no value at 90 degrees. The pictures of skies do not show Q/I there."""

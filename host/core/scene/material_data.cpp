@@ -22,14 +22,14 @@ constexpr int kFormulaSteps = 1000;
 
 enum IndexColumn : std::size_t { kIndexName = 0, kWavelength = 1, kN = 2, kK = 3, kIndexColumns = 4 };
 
-enum SourceColumn : std::size_t { kName = 0, kSource = 6, kSourceColumns = 7 };
+enum SourceColumn : std::size_t { kName = 0, kSource = 6, kKind = 7, kSourceColumns = 8 };
 
 std::vector<Material> read_sources() {
   std::vector<Material> materials;
   CsvReader row(embedded_materials_sources_csv(), "materials_sources.csv (built in)");
   row.next();  // names
   while (row.next()) {
-    if (row.cells().size() != kSourceColumns) row.fail("7 columns are expected");
+    if (row.cells().size() != kSourceColumns) row.fail("8 columns are expected");
     materials.push_back({std::string(row.cells()[kName]), std::string(row.cells()[kSource]), {}, {}, {}});
   }
   return materials;
@@ -96,6 +96,14 @@ std::vector<std::string> similar_names(std::string_view name) {
 }
 
 }  // namespace
+
+std::string material_kind(std::string_view name) {
+  CsvReader row(embedded_materials_sources_csv(), "materials_sources.csv (built in)");
+  while (row.next()) {
+    if (row.cells()[kName] == name) return std::string(row.cells()[kKind]);
+  }
+  return {};
+}
 
 const std::vector<Material>& built_in_materials() {
   static const std::vector<Material> materials = read_built_in_materials();

@@ -12,6 +12,8 @@ namespace dolp {
 /// The materials of host/data/materials.csv with their sources, in the order of host/data/materials_sources.csv.
 const std::vector<Material>& built_in_materials();
 
+std::string material_kind(std::string_view name);  ///< kind of a built-in material: "metal", "polymer", ...
+
 /// The built-in material with this name. If there is none: the one whose name begins with the words `name`. If there is
 /// none: the one whose name contains them. Null if no material or several materials fit.
 const Material* match_material(std::string_view name);

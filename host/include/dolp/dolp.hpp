@@ -145,6 +145,7 @@ struct BuiltInMaterial {
   double from_um = 0.0;  ///< shortest wavelength at which n and k are known
   double to_um = 0.0;    ///< longest wavelength at which n and k are known
   std::string source;
+  std::string kind;  ///< "metal", "infrared window", "glass or oxide", "polymer", "water or ice", "mineral or carbon"
 };
 DOLP_EXPORT std::vector<BuiltInMaterial> materials();
 /// The built-in material with this name. Whole words are enough if only one name begins with them or, if no name begins

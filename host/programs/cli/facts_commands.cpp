@@ -68,7 +68,7 @@ std::vector<double> parse_wavelengths(const std::string& text) {
 
 int show_material(const Options& options) {
   const std::vector<double> wavelengths = parse_wavelengths(options.wavelength_um);
-  const auto [name, from_um, to_um, source] = material(options.material);
+  const auto [name, from_um, to_um, source, kind] = material(options.material);
   if (wavelengths.front() < from_um || wavelengths.back() > to_um) {
     throw InputError(
         fmt::format("--at {}: {} is known from {} to {} um", one_line(options.wavelength_um), name, from_um, to_um));
@@ -88,7 +88,8 @@ int show_material(const Options& options) {
     return values.size() == 1 ? Json(values[0]) : Json(values);
   };
   report.json =
-      Json{{"name", name}, {"wavelength_um", json(wavelengths)}, {"n", json(n)}, {"k", json(k)}, {"source", source}}
+      Json{{"name", name}, {"wavelength_um", json(wavelengths)}, {"n", json(n)}, {"k", json(k)}, {"source", source},
+           {"kind", kind}}
           .dump(2, ' ', true);
   return finish(report, options);
 }
@@ -148,7 +149,8 @@ int run_materials(const Options& options) {
     list.push_back({{"name", material.name},
                     {"from_um", material.from_um},
                     {"to_um", material.to_um},
-                    {"source", material.source}});
+                    {"source", material.source},
+                    {"kind", material.kind}});
   }
   return finish_list(report, "materials", list, options);
 }

@@ -122,6 +122,10 @@ JobPart Worker::advance(Task& task) {
   news.evaluations = task.evaluations;
   if (!job.wants_effects) return news;
   news.csv = to_csv(list.columns(), results);
+  for (const Attribute& attribute : results.attributes) {
+    const bool is_device = attribute.name == "device" || attribute.name == "driver";
+    if (is_device) news.device += (news.device.empty() ? "" : ", ") + std::get<std::string>(attribute.value);
+  }
   news.effects = effects(job.scene, list.columns(), job.keep_all);
   return news;
 }

@@ -97,6 +97,7 @@ struct JobPart {
   std::vector<Effect> effects = {};
   double wall_s = 0.0;
   double evaluations = 0.0;
+  std::string device = {};  ///< name and driver of the device; empty unless Job::wants_effects
 };
 
 /// Holds the points of one job, which has one part. While a new job is computed, points() still returns the old points.

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "base/text.hpp"
 #include "explore/scene_edits.hpp"
@@ -60,9 +62,10 @@ std::vector<WithoutEffect> without_each(const Scene& scene, const SceneEdits& ed
   return without;
 }
 
-std::vector<Point>::const_iterator dolp_peak(const std::vector<Point>& points) {  // max DOLP of good points, or end()
+/// The point at the peak (see PeakAnswer), or end() if no point is good.
+std::vector<Point>::const_iterator dolp_peak(const std::vector<Point>& points) {
   const auto rank = [](const Point& point) {
-    return std::pair(point.is_good(), point.is_good() ? point_dolp(point) : 0.0);
+    return std::tuple(point.is_trusted(), point.is_good(), point.is_good() ? point_dolp(point) : 0.0);
   };
   const auto best = std::ranges::max_element(points, {}, rank);
   return best == points.end() || best->is_good() ? best : points.end();
@@ -160,10 +163,10 @@ std::vector<Job> Peak::wanted() const {
     return jobs;
   }
   for (const WithoutEffect& removed : without_) {
-    if (removed.result) continue;
+    if (removed.at_cursor) continue;
     jobs.push_back({.key = job_key(removed),
                     .scene = removed.scene,
-                    .parts = {points_at(removed.scene, {answer_->at.theta_deg})}});
+                    .parts = {points_at(removed.scene, {cursor_.theta_deg, answer_->at.theta_deg})}});
   }
   return jobs;
 }
@@ -176,7 +179,8 @@ bool Peak::take(const JobPart& news) {
   const auto has_key = [&](const WithoutEffect& without) { return news.key == job_key(without); };
   const auto removed = std::ranges::find_if(without_, has_key);
   if (removed == without_.end()) return false;
-  removed->result = news.points.front();
+  removed->at_cursor = news.points.front();
+  removed->at_peak = news.points.back();
   return true;
 }
 
@@ -184,21 +188,30 @@ void Peak::answer_from(const std::vector<Point>& points) {
   const auto best = dolp_peak(points);
   if (best == points.end()) return theta_deg_.clear();
   const double least = point_dolp(*best) - (*best)[Quantity::kErrorEstimate];
-  const auto may_be_largest = [&](const Point& point) { return point.is_good() && upper_dolp(point) >= least; };
+  const auto counts = [&](const Point& point) { return best->is_trusted() ? point.is_trusted() : point.is_good(); };
+  const auto may_be_largest = [&](const Point& point) { return counts(point) && upper_dolp(point) >= least; };
   auto first = best;
   auto last = best;
   while (first != points.begin() && may_be_largest(*(first - 1))) --first;
   while (last + 1 != points.end() && may_be_largest(*(last + 1))) ++last;
-  const bool is_at_end = best + 1 == points.end() || !(best + 1)->is_good();
-  answer_ = PeakAnswer{*best, first->theta_deg, last->theta_deg, rival(least), is_at_end};
+  const auto is_rival = [&](const Point& point) {
+    const bool is_beside = point.theta_deg >= theta_deg_.front() && point.theta_deg <= theta_deg_.back();
+    return !is_beside && may_be_largest(point);
+  };
+  answer_ = PeakAnswer{*best, first->theta_deg, last->theta_deg};
+  answer_->is_at_end = best + 1 == points.end() || !counts(*(best + 1));
+  const auto rival = std::ranges::find_if(curve_, is_rival);
+  if (rival != curve_.end()) answer_->rival_deg = rival->theta_deg;
 }
 
-std::optional<double> Peak::rival(double least) const {
-  for (const Point& point : curve_) {
-    const bool is_beside = point.theta_deg >= theta_deg_.front() && point.theta_deg <= theta_deg_.back();
-    if (!is_beside && point.is_good() && upper_dolp(point) >= least) return point.theta_deg;
-  }
-  return std::nullopt;
+void Peak::set_cursor(const Point& at) {
+  const bool is_moved = std::exchange(cursor_, at).theta_deg != at.theta_deg;
+  if (!is_moved) return;
+  for (WithoutEffect& removed : without_) removed.at_cursor.reset();
+}
+
+std::string Peak::job_key(const WithoutEffect& removed) const {
+  return fmt::format("without {} at {} {}", removed.effect, cursor_.theta_deg, key_);
 }
 
 }  // namespace dolp::explore

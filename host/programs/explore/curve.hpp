@@ -63,25 +63,34 @@ class Curve {
 /// of DOLP and the error bound of that point. Errors: Cancelled if `progress` returns false.
 std::string true_error(const Curve& curve, const Progress& progress);
 
-/// The peak of a curve: the largest DOLP of its good points (Point::is_good).
+/// The peak of a curve: the largest DOLP of its trusted points (Point::is_trusted), or of its good points
+/// (Point::is_good) if no point is trusted.
 struct PeakAnswer {
   Point at;
   // Because of the error bounds, the true maximum near this peak may lie anywhere between these two zeniths.
   double theta_low_deg = 0.0;
   double theta_high_deg = 0.0;
   std::optional<double> rival_deg;  ///< zenith elsewhere on the curve where DOLP may be higher, within the error bounds
-  bool is_at_end = false;  ///< the peak is the last zenith of the search, or the model fails at the next zenith
+  bool is_at_end =
+      false;  ///< the peak is the last zenith of the search, or the next zenith is not trusted, or not good
 };
 
-/// A scene without one of its effects, and the result of this scene at the zenith of the peak.
+/// A scene without one of its effects, and the results of this scene at two zeniths.
 struct WithoutEffect {
   std::string effect;  ///< an Effect::name, or "roughness"
   bool radiates;       ///< true for emission, source and surroundings, whose contributions add up to Q/I
   Scene scene;
-  std::optional<Point> result = {};  ///< empty until it is computed
+  std::optional<Point> at_cursor = {}, at_peak = {};  ///< empty until they are computed
+
+  /// The contribution of the effect to Q/I at a point. The contributions of emission, source and surroundings add up to
+  /// Q/I. `with` is the result with all effects, `without` the result without this effect.
+  static double contribution(const Point& with, const Point& without) {
+    return (with[Quantity::kStokesQ] - without[Quantity::kStokesQ]) / with[Quantity::kStokesI];
+  }
 };
 
-/// Searches the peak of a finished curve. Then computes, for each effect, the scene without this effect at the peak.
+/// Searches the peak of a finished curve. Then computes, for each effect, the scene without this effect at the cursor
+/// and at the peak.
 class Peak {
  public:
   static constexpr double kStepDeg = 0.02;  ///< step of the zeniths at which the search computes DOLP
@@ -90,6 +99,8 @@ class Peak {
 
   /// Begins the search for the peak of `curve`, up to the zenith `theta_max_deg`. `edits` holds the scene of `curve`.
   void follow(const Curve& curve, const SceneEdits& edits, double theta_max_deg);
+  void set_cursor(const Point& at);  ///< the point of the curve at the cursor
+  const Point& cursor() const { return cursor_; }
 
   std::vector<Job> wanted() const;
   bool take(const JobPart& news);
@@ -98,22 +109,16 @@ class Peak {
   const std::vector<WithoutEffect>& without() const { return without_; }  ///< one per effect that can be removed
   bool is_complete() const {
     return answer_ &&
-           std::ranges::all_of(without_, [](const WithoutEffect& removed) { return removed.result.has_value(); });
-  }
-
-  /// The contribution of emission, source or surroundings to Q/I at the peak. The contributions add up to Q/I.
-  double contribution(const WithoutEffect& removed) const {
-    const Point& at = answer_->at;
-    return (at[Quantity::kStokesQ] - (*removed.result)[Quantity::kStokesQ]) / at[Quantity::kStokesI];
+           std::ranges::all_of(without_, [](const WithoutEffect& removed) { return removed.at_cursor.has_value(); });
   }
 
  private:
-  std::optional<double> rival(double least) const;
   void answer_from(const std::vector<Point>& points);
-  std::string job_key(const WithoutEffect& removed) const { return "without " + removed.effect + ' ' + key_; }
+  std::string job_key(const WithoutEffect& removed) const;
 
   std::string key_;
   Scene scene_;
+  Point cursor_;
   std::vector<Point> curve_;
   std::vector<double> theta_deg_;  ///< zeniths at which to search the peak; empty if no point of the curve is good
   std::optional<PeakAnswer> answer_;

@@ -103,13 +103,10 @@ ScatteringCut scattering_cut(Evaluator& evaluator, const Scene& scene, double th
     zenith_deg.push_back(std::abs(theta_r_deg));
     azimuth_deg.push_back(theta_r_deg < 0.0 ? 0.0 : kSpecularAzimuth_deg);
   }
-  const auto [n, k] = scene.refractive_index(cut.wavelength_um);
-  const std::array theta_i = {theta_i_deg}, n_of_all = {n}, k_of_all = {k};
-  cut.matrices = evaluator.mueller(scene, {{"theta_i_deg", theta_i},
-                                           {"theta_r_deg", zenith_deg},
-                                           {"delta_phi_deg", azimuth_deg},
-                                           {"n", n_of_all},
-                                           {"k", k_of_all}});
+  const std::array theta_i = {theta_i_deg};
+  cut.matrices =
+      evaluator.mueller(at_one_wavelength(scene),
+                        {{"theta_i_deg", theta_i}, {"theta_r_deg", zenith_deg}, {"delta_phi_deg", azimuth_deg}});
   return cut;
 }
 

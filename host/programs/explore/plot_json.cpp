@@ -53,6 +53,7 @@ json map_json(const Session& session) {
 std::string plot_json(const Session& session, const Scale& x, const Scale& y) {
   const Plotted quantity = session.view().quantity;
   json curves = json::array();
+  curves.push_back(curve_json(session.curve(), curve_name(session), "curve", quantity));
   if (session.overlay()) curves.push_back(curve_json(*session.overlay(), overlay_name(session), "overlay", quantity));
   for (const Pin& pin : session.pins()) {
     if (!pin.is_visible) continue;
@@ -61,7 +62,6 @@ std::string plot_json(const Session& session, const Scale& x, const Scale& y) {
     if (name == surface_name(session.curve().shown_scene())) name = pin_name(session, pin);
     curves.push_back(curve_json(pin.curve, name, pin.colour, quantity));
   }
-  curves.push_back(curve_json(session.curve(), curve_name(session), "curve", quantity));
   json measured = json::array();
   const double scale = described(quantity).scale();
   for (const Measurement& point : session.residuals().measured(quantity)) {
@@ -69,7 +69,7 @@ std::string plot_json(const Session& session, const Scale& x, const Scale& y) {
                         {"value", scale * point.value},
                         {"uncertainty", scale * point.uncertainty.value_or(0.0)}});
   }
-  return json{{"title", session.scene().title()},
+  return json{{"title", figure_title(session.edits())},
               {"x", axis_json("zenith θ [°]", x)},
               {"y", axis_json(described(quantity).label(), y)},
               {"curves", curves},

@@ -41,6 +41,8 @@ struct Point : PointResult {
 
   /// True if the status has no bit that makes DOLP meaningless or voids its error bound.
   bool is_good() const { return promises_dolp(status) && std::isfinite(values[Quantity::kDolp]); }
+  /// True if nothing is wrong with DOLP: it also meets its tolerance, and the model is right for the surface.
+  bool is_trusted() const { return is_good() && (status & ~kRhoToleranceNotMet) == 0; }
   bool has_bracket() const {  // true if the result has dolp_low and dolp_high
     return std::isfinite(values[Quantity::kDolpLow]) && std::isfinite(values[Quantity::kDolpHigh]);
   }

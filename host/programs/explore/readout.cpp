@@ -20,18 +20,18 @@ std::string points_text(double bound) { return std::isfinite(bound) ? fmt::forma
 
 struct Part {
   std::string name;
-  double q_over_i;  ///< contribution of the effect to Q/I at the peak
+  double q_over_i;  ///< contribution of the effect to Q/I at the cursor
 };
 
-/// The contributions of emission, source and surroundings to Q/I at the peak. The class Peak knows them only for
-/// effects that can be removed. If the scene is invalid without an effect, its contribution is Q/I minus the others.
-std::vector<Part> radiating_parts(const Session& session) {
-  const Peak& peak = session.peak();
-  double rest = peak.answer()->at[Quantity::kQOverI];
+/// The contributions of emission, source and surroundings to Q/I at the cursor, whose result is `with`. The class Peak
+/// knows them only for effects that can be removed. If the scene is invalid without an effect, its contribution is Q/I
+/// minus the others.
+std::vector<Part> radiating_parts(const Session& session, const Point& with) {
+  double rest = with[Quantity::kQOverI];
   std::vector<Part> parts;
-  for (const WithoutEffect& away : peak.without()) {
+  for (const WithoutEffect& away : session.peak().without()) {
     if (!away.radiates) continue;
-    parts.push_back({away.effect, peak.contribution(away)});
+    parts.push_back({away.effect, WithoutEffect::contribution(with, *away.at_cursor)});
     rest -= parts.back().q_over_i;
   }
   const auto has = [&](const char* key) { return session.scene().number(key).has_value(); };
@@ -43,11 +43,41 @@ std::vector<Part> radiating_parts(const Session& session) {
   return parts;
 }
 
-const Point* point_without(const Session& session, const std::string& effect) {  // result at the peak, or null
-  if (!session.peak().answer()) return nullptr;
+const WithoutEffect* without(const Session& session, const std::string& effect) {  // null if not known at the cursor
   const std::vector<WithoutEffect>& all = session.peak().without();
   const auto away = std::ranges::find(all, effect, &WithoutEffect::effect);
-  return away == all.end() || !away->result ? nullptr : &*away->result;
+  return away == all.end() || !away->at_cursor ? nullptr : &*away;
+}
+
+const char* polarisation(const Point& point) { return point[Quantity::kQOverI] > 0.0 ? "s" : "p"; }
+
+bool is_medium(const std::string& key) {
+  return key == "surface.n" || key == "surface.k" || key == "surface.reflectance_file" ||
+         key.starts_with("surface.material") || key.starts_with("surface.coating");
+}
+
+/// A setting of the scene in words, for a title: "σ 0.3". Empty for settings that change no result.
+std::string change_text(const Scene& scene, const Setting& change) {
+  const std::string& key = change.key;
+  const bool is_table = key.find('.') == std::string::npos;
+  if (is_table) return "without " + key;  // a setting can only remove a table
+  if (std::holds_alternative<std::monostate>(change.value.content())) return "";
+  if (is_medium(key)) return material_name(scene);
+  const bool is_flag = described(key).type == Key::Type::kFlag;
+  if (is_flag || key.starts_with("grid.") || key.starts_with("accuracy.")) return "";
+  const std::vector<double> band = scene.numbers("spectrum.band_um");
+  if (key == "spectrum.band_um") return fmt::format("λ {:.4g} to {:.4g} µm", band.at(0), band.at(1));
+  const auto shown = std::ranges::find(controls(), key, [](const Control& control) { return control.key->key; });
+  if (shown == controls().end()) return key + ' ' + std::filesystem::path(plain_text(change.value)).filename().string();
+  if (!shown->is_number()) return shown->label + ' ' + scene.word(key).value_or("");
+  const std::string unit = unit_text(*shown->key);
+  return fmt::format("{} {:.4g}{}{}", shown->label, scene.number(key).value_or(0.0), unit.empty() ? "" : " ", unit);
+}
+
+std::string without_spectrum(const std::string& title) {  // "Paint, 8-14 um" becomes "Paint"
+  const std::size_t comma = title.rfind(", ");
+  const bool has_unit = title.ends_with("um") || title.ends_with("µm");
+  return has_unit && comma != std::string::npos ? title.substr(0, comma) : title;
 }
 
 bool has_q_over_i(const Point& point) { return point.is_good() && std::isfinite(point[Quantity::kQOverI]); }
@@ -93,38 +123,65 @@ std::string no_residuals_text(const Session& session, const Scale& theta) {
   return std::ranges::any_of(residuals, is_inside) ? "" : "no measured point is at these zeniths";
 }
 
+std::string view_refusal(const Session& session, Panel panel) {
+  const Scene& scene = session.scene();
+  const bool has_index = !scene.word("surface.reflectance_file");
+  const bool is_rough = scene.number("surface.sigma") > 0.0;
+  if (panel == Panel::kSlopes && !is_rough) return "A mirror: all facets lie in the mean plane.";
+  if (panel == Panel::kMaterial && !has_index) return "The scene has measured reflectances instead of n and k.";
+  if (panel == Panel::kScattering && !has_index) return "The pBRDF needs phases, which measured reflectances lack.";
+  if (panel == Panel::kShapes && is_bistatic(scene))
+    return "A sphere needs all directions of view, and bistatic mode has one: choose the mode hemispherical.";
+  if (panel == Panel::kSky && !is_bistatic(scene)) return "This view needs a source: choose the mode bistatic.";
+  if (panel == Panel::kCamera && !is_bistatic(scene))
+    return "This view needs a camera beside a source: choose the mode bistatic.";
+  if (panel == Panel::kFit && !session.last_fit())
+    return "No fit yet: load measured points (Ctrl+O), mark the numbers that vary in the boxes beside their sliders, "
+           "then press Ctrl+F.";
+  return "";
+}
+
+std::string headline(const Session& session) {
+  const Point* const shown = session.at_cursor();
+  if (!shown) return "At the cursor: …";
+  const std::string place =
+      fmt::format("At the cursor{}, θ = {:.1f}°", remark(session, session.curve()), shown->theta_deg);
+  const std::string status = shown->is_trusted() ? "" : " (" + status_text(shown->status) + ')';
+  if (!shown->is_good()) return fmt::format("{}: no DOLP{}. {}", place, status, peak_text(session));
+  return fmt::format("{}: DOLP {:.3f} % ± {}, {} polarised{}. {}", place, kPercent * (*shown)[Quantity::kDolp],
+                     points_text((*shown)[Quantity::kErrorEstimate]), polarisation(*shown), status, peak_text(session));
+}
+
 std::string peak_text(const Session& session) {
   const std::optional<PeakAnswer>& peak = session.peak().answer();
   if (!session.curve().is_finished() || !peak) return "Maximum: …";
   const Point& at = peak->at;
   const double error = at[Quantity::kErrorEstimate];
-  if (at[Quantity::kDolp] <= error) return "Maximum: the DOLP is 0 everywhere, within its bound";
-  const char* source_text = is_bistatic(session.scene()) ? " of the source" : "";
-  std::string text = fmt::format("Maximum: DOLP {:.3f} % at θ = {:.2f}°{}, {} polarised. Numerical error ≤ {} points; ",
-                                 kPercent * at[Quantity::kDolp], at.theta_deg, source_text,
-                                 at[Quantity::kQOverI] > 0.0 ? "s" : "p", points_text(error));
-  if (peak->rival_deg) {
-    text += fmt::format("within it the maximum may also be elsewhere, for example at {:g}°.", *peak->rival_deg);
-  } else if (peak->theta_low_deg == peak->theta_high_deg) {
-    text += fmt::format("θ is right within {:g}°.", Peak::kStepDeg);
-  } else {
-    text +=
-        fmt::format("the maximum is surely between {:.2f}° and {:.2f}°.", peak->theta_low_deg, peak->theta_high_deg);
-  }
-  if (peak->is_at_end) text += " Beyond it the model fails, or the range ends.";
+  if (at[Quantity::kDolp] <= error) return "Maximum: 0 everywhere, within its bound.";
+  const bool has_range = !peak->rival_deg && peak->theta_low_deg < peak->theta_high_deg;
+  std::string text =
+      fmt::format("Maximum: {:.3f} % ± {} at {}, {} polarised", kPercent * at[Quantity::kDolp], points_text(error),
+                  has_range ? fmt::format("{:.2f}° to {:.2f}°", peak->theta_low_deg, peak->theta_high_deg)
+                            : fmt::format("{:.2f}°", at.theta_deg),
+                  polarisation(at));
+  if (!at.is_trusted()) text += ", " + status_text(at.status);
+  if (peak->rival_deg)
+    text += fmt::format("; within this bound also elsewhere, for example at {:g}°", *peak->rival_deg);
+  if (peak->is_at_end) text += ", at the end of the good range";
   // The error bound of DOLP contains only numerical errors. The albedo shows whether the surface model itself errs.
   const double albedo = at[Quantity::kAlbedo];
-  if (albedo < kAlbedoMin) text += fmt::format(" The surface model loses energy there (albedo {:.2f}).", albedo);
-  if (albedo > kAlbedoMax) text += fmt::format(" The surface model gains energy there (albedo {:.2f}).", albedo);
-  return text;
+  if (albedo < kAlbedoMin) text += fmt::format("; the surface model loses energy there (albedo {:.2f})", albedo);
+  if (albedo > kAlbedoMax) text += fmt::format("; the surface model gains energy there (albedo {:.2f})", albedo);
+  return text + '.';
 }
 
 std::string cause_text(const Session& session) {
-  const Peak& peak = session.peak();
-  if (!session.curve().is_finished() || !peak.is_complete()) return "Cause: …";
-  const double sum = peak.answer()->at[Quantity::kQOverI];
+  if (!session.curve().is_finished() || !session.peak().is_complete()) return "Cause: …";
+  const Point& shown = session.peak().cursor();
+  const double sum = shown[Quantity::kQOverI];
+  if (!has_q_over_i(shown)) return "Cause: the model fails at the cursor.";
   std::string with, against;
-  for (const Part& part : radiating_parts(session)) {
+  for (const Part& part : radiating_parts(session, shown)) {
     std::string& side = part.q_over_i * sum >= 0.0 ? with : against;
     side += fmt::format("{}{} {:+.2f}", side.empty() ? "" : ", ", part.name, kPercent * part.q_over_i);
   }
@@ -140,11 +197,9 @@ std::string cursor_text(const Session& session) {
   const Scene& scene = session.curve().shown_scene();
   const bool has_q = scene.word("surface.distribution") == "cauchy";
   const Control& width = control(has_wind(scene) ? "surface.wind_m_s" : "surface.sigma");
-  std::string text =
-      fmt::format("Cursor{}: θ = {:.1f}°, {} = {:.4g}{}: DOLP {:.3f} % ± {}, Q/I {:+.3f} %",
-                  remark(session, session.curve()), r.theta_deg, width.label, *width.value(scene),
-                  has_q ? fmt::format(", q = {:.4g}", *scene.number("surface.q")) : "", kPercent * r[Quantity::kDolp],
-                  points_text(r[Quantity::kErrorEstimate]), kPercent * r[Quantity::kQOverI]);
+  std::string text = fmt::format(
+      "Cursor{}: {} = {:.4g}{}: Q/I {:+.3f} %", remark(session, session.curve()), width.label, *width.value(scene),
+      has_q ? fmt::format(", q = {:.4g}", *scene.number("surface.q")) : "", kPercent * r[Quantity::kQOverI]);
   if (r.has_bracket()) {
     text += fmt::format(", all bounces {:.3f} to {:.3f} %", kPercent * r[Quantity::kDolpLow],
                         kPercent * r[Quantity::kDolpHigh]);
@@ -159,22 +214,49 @@ std::string cursor_text(const Session& session) {
 }
 
 std::string without_text(const Session& session, const std::string& effect) {
-  const Point* const without = point_without(session, effect);
-  if (!without) return {};
-  if (!has_q_over_i(*without)) return "the model fails";
-  const double with = session.peak().answer()->at[Quantity::kQOverI];
-  return fmt::format("{:+.2f} → {:+.2f} %", kPercent * with, kPercent * without->values[Quantity::kQOverI]);
+  const WithoutEffect* const away = without(session, effect);
+  if (!away) return {};
+  const bool is_known = has_q_over_i(*away->at_cursor) && has_q_over_i(session.peak().cursor());
+  if (!is_known) return "the model fails";
+  return fmt::format("{:+.2f} → {:+.2f} %", kPercent * session.peak().cursor()[Quantity::kQOverI],
+                     kPercent * (*away->at_cursor)[Quantity::kQOverI]);
 }
 
 std::string without_words(const Session& session, const std::string& effect) {
-  const Point* const without = point_without(session, effect);
-  if (!without || !has_q_over_i(*without)) return {};
-  const Point& with = session.peak().answer()->at;
-  return fmt::format(
-      "At the maximum of the curve, θ = {:.2f}°, Q/I is {:+.2f} %. Without {} it is {:+.2f} %, a change of {:+.2f} "
-      "points.",
-      with.theta_deg, kPercent * with[Quantity::kQOverI], effect, kPercent * without->values[Quantity::kQOverI],
-      kPercent * (without->values[Quantity::kQOverI] - with[Quantity::kQOverI]));
+  const WithoutEffect* const away = without(session, effect);
+  if (!away) return {};
+  std::vector<std::string> sentences;
+  const auto add = [&](const char* place, const Point& with, const Point& without) {
+    if (!has_q_over_i(with) || !has_q_over_i(without)) return;
+    const double before = kPercent * with[Quantity::kQOverI], after = kPercent * without[Quantity::kQOverI];
+    sentences.push_back(
+        fmt::format("At the {}, θ = {:.2f}°, Q/I is {:+.2f} %. Without {} it is {:+.2f} %, a change of "
+                    "{:+.2f} points.",
+                    place, with.theta_deg, before, effect, after, after - before));
+  };
+  add("cursor", session.peak().cursor(), *away->at_cursor);
+  add("maximum of the curve", session.peak().answer()->at, *away->at_peak);
+  return fmt::format("{}", fmt::join(sentences, "\n"));
+}
+
+std::vector<std::string> about_lines(const Session& session) {
+  const std::string& device = session.curve().finished().device;
+  return {"version  " + version(), "commit   " + commit(), "device   " + (device.empty() ? "…" : device)};
+}
+
+std::string figure_title(const SceneEdits& edits) {
+  const Scene& scene = edits.scene();
+  std::string title = scene.title();
+  std::vector<std::string> changed;
+  for (const Setting& change : scene.settings()) {
+    if (change.key == "title") return title;
+    const std::string text = change_text(scene, change);
+    if (!text.empty() && std::ranges::count(changed, text) == 0) changed.push_back(text);
+    if (change.key.starts_with("spectrum.")) title = without_spectrum(title);
+  }
+  const std::string words = join(changed);
+  if (title.empty() || words.empty()) return title + words;
+  return title + (words.starts_with("without") ? " " : " with ") + words;
 }
 
 std::string table_command(const SceneEdits& edits) {

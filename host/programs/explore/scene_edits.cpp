@@ -49,15 +49,6 @@ std::vector<std::vector<std::string>> shape_words(const Scene& scene) {
   return groups;
 }
 
-std::string material_name(const Scene& scene) {
-  std::string name = medium_name(scene, "surface");
-  for (std::size_t layer = 1; layer <= scene_films(scene).size(); ++layer) {
-    const std::string film = fmt::format("surface.coating.{}", layer);
-    name += fmt::format(", film {} {:.4g} µm", medium_name(scene, film), scene.number(film + ".thickness_um").value());
-  }
-  return name;
-}
-
 /// The numbers and the sky of `scene` that differ from `other`: "T 300 K, clear-sky".
 std::string different_numbers(const Scene& scene, const Scene& other) {
   std::vector<std::string> words;
@@ -73,23 +64,38 @@ std::string different_numbers(const Scene& scene, const Scene& other) {
   return join(words);
 }
 
+bool has_value(const Scene& scene, const Key& key) {
+  if (key.type == Key::Type::kNumber) return scene.number(key.key).has_value();
+  if (key.type == Key::Type::kText) return scene.word(key.key).has_value();
+  return key.type == Key::Type::kPair && !scene.numbers(key.key).empty();
+}
+
 std::vector<Control> controls_without_films() {
   const auto key = [](const char* name) { return &described(name); };
   constexpr const char* kDiffuse = "f_d = (k_d/π)(cos θi cos θr)^c, eq. (14)";
+  constexpr const char* kNeedsDiffuse = "a diffuse part, k_d > 0";
+  constexpr const char* kNeedsIndex = "n and k instead of measured reflectances";
+  constexpr const char* kNeedsAir = "the sky clear-sky or overcast";
+  constexpr const char* kNeedsBistatic = "the mode bistatic";
   constexpr const char* kAir = "Idso (1981): radiance of the sky from vapour and temperature of the air at the ground";
   return {
       {key("surface.distribution"), "distribution", "D(α): eq. (8) cauchy, eq. (1) gaussian"},
       {key("surface.masking"), "masking", "G: eqs. (9)–(13) for integral"},
       {key("surface.scattering"), "scattering", "only the first facet, or all bounces in V-grooves"},
-      {key("surface.diffuse_polarisation"), "diffuse light", "1 − R on the way out", {}, is_diffuse},
-      {key("surface.n"), "n", "N = n + ik", {1.0, 40.0, true}, has_index},
-      {key("surface.k"), "k", "N = n + ik, k ≥ 0 absorbs", {0.0, 100.0}, has_index},
-      {key("surface.sigma"), "σ", "m² = 2σ²; D(α) of eq. (8) or (1)", {0.01, 2.0, true}, has_no_wind},
+      {key("surface.diffuse_polarisation"), "diffuse light", "1 − R on the way out", {}, is_diffuse, kNeedsDiffuse},
+      {key("surface.n"), "n", "N = n + ik", {1.0, 40.0, true}, has_index, kNeedsIndex},
+      {key("surface.k"), "k", "N = n + ik, k ≥ 0 absorbs", {0.0, 100.0}, has_index, kNeedsIndex},
+      {key("surface.sigma"), "σ", "m² = 2σ²; D(α) of eq. (8) or (1)", {0.01, 2.0, true}, has_no_wind, "no wind"},
       {key("surface.wind_m_s"), "U", "m² = 0.003 + 0.00512 U (Cox and Munk 1954), D(α) of eq. (1)", {0.0, 30.0}},
-      {key("surface.q"), "q", "D = (q−1)/(π m² cos⁴α) · (1 + tan²α/m²)^(−q), eq. (8)", {1.1, 20.0, true}, is_cauchy},
+      {key("surface.q"),
+       "q",
+       "D = (q−1)/(π m² cos⁴α) · (1 + tan²α/m²)^(−q), eq. (8)",
+       {1.1, 20.0, true},
+       is_cauchy,
+       "the distribution cauchy"},
       {key("surface.specular"), "k_s", "f_s = k_s D G M / (4 cos θi cos θr), eqs. (7), (15)", {0.0, 1.0}},
       {key("surface.diffuse"), "k_d", kDiffuse, {0.0, 1.0}},
-      {key("surface.diffuse_exponent"), "c", kDiffuse, {-0.95, 0.0}, is_diffuse},
+      {key("surface.diffuse_exponent"), "c", kDiffuse, {-0.95, 0.0}, is_diffuse, kNeedsDiffuse},
       {key("emission.model"), "emissivity",
        "1 − ρ of the rough surface, 1 − R(θ) of the smooth one, or (1 − R) G of the facets in view"},
       {key("emission.bracket"), "bracket", "ε_I between the direct emission and 1 − ρ_I"},
@@ -98,16 +104,31 @@ std::vector<Control> controls_without_films() {
       {key("source.relative_irradiance"), "e", "e = E0/(π B(T)), eq. (18)", {0.001, 10.0, true}},
       {key("source.scale"), "scale", "E0 → scale · E0", {0.01, 100.0, true}},
       {key("surroundings.temperature_K"), "T_surr", "reflects B(λ, T_surr) ρ", {0.0, 400.0}},
-      {key("surroundings.vapour_cm"), "water", kAir, {0.0, 2.7}, has_air, 1.27},
-      {key("surroundings.air_temperature_K"), "T_air", kAir, {230.0, 320.0}, has_air, 288.15},
+      {key("surroundings.vapour_cm"), "water", kAir, {0.0, 2.7}, has_air, kNeedsAir, 1.27},
+      {key("surroundings.air_temperature_K"), "T_air", kAir, {230.0, 320.0}, has_air, kNeedsAir, 288.15},
       {key("path.transmittance"), "τ", "I → τ I + L_path", {0.0, 1.0}},
       {key("path.temperature_K"), "T_path", "L_path = (1 − τ) B(λ, T_path)", {0.0, 400.0}},
       {key("path.radiance"), "L_path", "I → τ I + L_path", {0.001, 100.0, true}},
       {key("spectrum.wavelength_um"), "λ", "B(λ, T), N(λ)", {1.0, 20.0}},
-      {key("spectrum.response_per"), "response", "weight R, or R λ/λ0 if R is per photon", {}, has_response},
+      {key("spectrum.response_per"),
+       "response",
+       "weight R, or R λ/λ0 if R is per photon",
+       {},
+       has_response,
+       "a response of the camera"},
       {key("geometry.mode"), "mode", "eq. (18) all around, or f of eq. (7) for one source and view"},
-      {key("geometry.view_zenith_deg"), "θv", "direction of the view, eq. (2)", {0.0, 90.0}, is_bistatic},
-      {key("geometry.relative_azimuth_deg"), "Δφ", "cos 2β = ωi · ωr, eq. (2)", {0.0, 360.0}, is_bistatic},
+      {key("geometry.view_zenith_deg"),
+       "θv",
+       "direction of the view, eq. (2)",
+       {0.0, 90.0},
+       is_bistatic,
+       kNeedsBistatic},
+      {key("geometry.relative_azimuth_deg"),
+       "Δφ",
+       "cos 2β = ωi · ωr, eq. (2)",
+       {0.0, 360.0},
+       is_bistatic,
+       kNeedsBistatic},
       {key("accuracy.tolerance"), "tolerance", "|δDOLP|, |δρ|/ρ_I ≤ tolerance", {1e-9, 1e-2, true}},
       {key("accuracy.precision"), "precision", "arithmetic of the device"},
   };
@@ -159,13 +180,13 @@ const Key& described(const std::string& key) {
 }
 
 std::optional<double> Control::value(const Scene& scene) const {
-  if (!is_number() || !is_shown(scene)) return std::nullopt;
+  if (!is_number() || !may_apply(scene)) return std::nullopt;
   const std::optional<double> number = scene.number(key->key);
   return number ? number : standard;
 }
 
 std::optional<std::size_t> Control::word(const Scene& scene) const {
-  const std::optional<std::string> word = is_number() || !is_shown(scene) ? std::nullopt : scene.word(key->key);
+  const std::optional<std::string> word = is_number() || !may_apply(scene) ? std::nullopt : scene.word(key->key);
   if (!word) return std::nullopt;
   return static_cast<std::size_t>(std::ranges::find(key->words, *word) - key->words.begin());
 }
@@ -198,6 +219,32 @@ Scale range_in(const Scene& scene, const Control& control) {
   return is_smith && control.key->key == "surface.q" ? kSmithQ : control.slider;
 }
 
+void ControlRows::follow(const Scene& opened) {
+  std::string content = opened.name() + '\n' + opened.text();
+  if (content == opened_) return;
+  opened_ = std::move(content);
+  shown_.clear();
+}
+
+bool ControlRows::stays(const Scene& scene, const Control& control) const {
+  if (control.applies(scene) || !has(control.key->key)) return false;
+  // Of alternatives, such as sigma and wind, only one has a row: the one that applies, otherwise the first.
+  return std::ranges::none_of(controls(), [&](const Control& other) {
+    const bool share_a_row = control.is_number() && other.is_number() && !control.standard && !other.standard;
+    const bool is_rival = share_a_row && std::ranges::count(control.key->rivals, other.key->key) > 0;
+    const bool is_earlier = &other < &control && has(other.key->key);
+    return is_rival && (other.applies(scene) || is_earlier);
+  });
+}
+
+std::string unused_text(const Scene& scene, const Control& control) {
+  if (!control.may_apply(scene)) return fmt::format("{}: needs {}", control.key->key, control.needs);
+  for (const std::string& rival : control.key->rivals) {
+    if (has_value(scene, described(rival))) return fmt::format("{}: the scene has {} instead", control.key->key, rival);
+  }
+  return control.key->key + ": not in this scene";
+}
+
 std::string parent_table(const std::string& key) { return key.substr(0, key.rfind('.')); }
 
 std::string unit_text(const Key& key) {
@@ -211,6 +258,15 @@ std::string unit_text(const Key& key) {
 }
 
 bool is_bistatic(const Scene& scene) { return scene.word("geometry.mode") == "bistatic"; }
+
+std::string material_name(const Scene& scene) {
+  std::string name = medium_name(scene, "surface");
+  for (std::size_t layer = 1; layer <= scene_films(scene).size(); ++layer) {
+    const std::string film = fmt::format("surface.coating.{}", layer);
+    name += fmt::format(", film {} {:.4g} µm", medium_name(scene, film), scene.number(film + ".thickness_um").value());
+  }
+  return name;
+}
 
 std::string surface_name(const Scene& scene, const Scene* other) {
   std::vector<std::string> common, parts;
@@ -289,6 +345,41 @@ Setting coating_setting(const std::vector<Film>& films) {
     texts.push_back("{ " + join(parts) + " }");
   }
   return {kCoating, TomlText{'[' + join(texts) + ']'}};
+}
+
+std::vector<Setting> medium_change(const Scene& scene, const std::string& table, const std::vector<Setting>& medium) {
+  if (table == "surface") {
+    std::vector<Setting> changes = medium;
+    for (Setting& change : changes) change.key = table + '.' + change.key;
+    return changes;
+  }
+  std::vector<Film> films = scene_films(scene);
+  for (std::size_t layer = 1; layer <= films.size(); ++layer) {
+    if (table != fmt::format("{}.{}", kCoating, layer)) continue;
+    const Film& old = films[layer - 1];  // keeps the thickness and its spread, which are last in a Film
+    Film changed = medium;
+    changed.insert(changed.end(), std::ranges::find(old, "thickness_um", &Setting::key), old.end());
+    films[layer - 1] = std::move(changed);
+  }
+  return {coating_setting(films)};
+}
+
+std::vector<BuiltInMaterial> sorted_materials() {
+  std::vector<BuiltInMaterial> all = materials();
+  std::vector<std::string> kinds;  // in the order of the list
+  for (const BuiltInMaterial& material : all) {
+    if (std::ranges::count(kinds, material.kind) == 0) kinds.push_back(material.kind);
+  }
+  std::ranges::sort(all, {}, [&](const BuiltInMaterial& material) {
+    return std::pair(std::ranges::find(kinds, material.kind) - kinds.begin(), lower_case(material.name));
+  });
+  return all;
+}
+
+bool has_words(const std::string& text, const std::string& search) {
+  const std::string known = lower_case(text);
+  return std::ranges::all_of(split(lower_case(search), ' '),
+                             [&](std::string_view word) { return known.find(word) != std::string::npos; });
 }
 
 std::string plain_text(const Value& value) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,16 +19,18 @@ struct Control {
   std::string label;     ///< symbol of a number, or name of a choice, in UTF-8
   const char* equation;  ///< formula or explanation for a tooltip, in UTF-8
   Scale slider = {};     ///< range of the slider; the user can also type other values
-  /// True if the scene uses the key; otherwise the window hides the control. Null: the window always shows the control.
+  /// True if the scene uses the key. Null: every scene that has the key uses it.
   bool (*is_used)(const Scene& scene) = nullptr;
+  const char* needs = "";               ///< what a scene needs to use the key, if `is_used` is not null
   std::optional<double> standard = {};  ///< default value of a number that a scene may omit
 
-  /// The scene's number; empty for words, and if the window hides the control.
+  /// The scene's number; empty for words, and if the scene does not use the key.
   std::optional<double> value(const Scene& scene) const;
-  /// The position of the scene's word in Key::words; empty for numbers, and if the window hides the control.
+  /// The position of the scene's word in Key::words; empty for numbers, and if the scene does not use the key.
   std::optional<std::size_t> word(const Scene& scene) const;
   std::string label_with_unit() const;  ///< for a number with a unit: "λ [µm]"
-  bool is_shown(const Scene& scene) const { return !is_used || is_used(scene); }
+  bool may_apply(const Scene& scene) const { return !is_used || is_used(scene); }
+  bool applies(const Scene& scene) const { return value(scene) || word(scene); }
   bool is_number() const { return key->type == Key::Type::kNumber; }
 };
 
@@ -42,9 +45,28 @@ std::string parent_table(const std::string& key);            ///< "surface.coati
 std::string unit_text(const Key& key);                       ///< unit for display: "°" for "degree", "" for "1"
 bool is_bistatic(const Scene& scene);
 
+/// The rows of controls in the panel of the scene. A row that was once shown stays in its place, greyed, until another
+/// scene is opened. So a choice never moves the controls below it by removing rows.
+class ControlRows {
+ public:
+  void follow(const Scene& opened);  ///< forgets all rows if `opened` is another scene file
+  bool has(const std::string& row) const { return shown_.contains(row); }
+  void note(const std::string& row) { shown_.insert(row); }
+  /// True if the scene does not use the control but its row was shown before, and no alternative to it has a row.
+  bool stays(const Scene& scene, const Control& control) const;
+
+ private:
+  std::string opened_;
+  std::set<std::string> shown_;
+};
+
+std::string unused_text(const Scene& scene, const Control& control);  ///< why the scene does not use the control
+
 /// The surface of a scene in few words: "cauchy σ 0.15 q 3, smith, n 1.5 k 0.1". If `other` is given, omits each word
 /// before the material that is the same for `other`. If the surfaces are equal, adds what else differs: "T 300 K".
 std::string surface_name(const Scene& scene, const Scene* other = nullptr);
+
+std::string material_name(const Scene& scene);  ///< the material of the surface, and its films
 
 /// A scene file with changes. `dolp eval` computes the same results from the file if --set makes the same changes.
 class SceneEdits {
@@ -85,7 +107,13 @@ class SceneEdits {
 using Film = std::vector<Setting>;
 std::vector<Film> scene_films(const Scene& scene);        ///< the outermost film first
 Setting coating_setting(const std::vector<Film>& films);  ///< setting that gives a scene these films
-std::string plain_text(const Value& value);               ///< text of a value, without quotes
+/// The settings that give the surface, or the film whose keys are in `table`, another medium, such as {{"material",
+/// "iron"}}.
+std::vector<Setting> medium_change(const Scene& scene, const std::string& table, const std::vector<Setting>& medium);
+std::vector<BuiltInMaterial> sorted_materials();  ///< the materials of one kind after the other, each kind by name
+/// True if `text` contains each word of `search`. Ignores case.
+bool has_words(const std::string& text, const std::string& search);
+std::string plain_text(const Value& value);  ///< text of a value, without quotes
 
 /// Applies `change`. If it conflicts with earlier choices in the scene, also replaces those that must be replaced, and
 /// returns their new values. Errors: InputError if the scene refuses `change` all the same; `edits` is then unchanged.

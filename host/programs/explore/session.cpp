@@ -262,7 +262,9 @@ const Point* Session::at_cursor() const {
 
 std::string content_key(const Scene& scene, const std::vector<Setting>& changes, bool keep_all) {
   std::string key = (keep_all ? "all " : "plan ") + scene.name() + '\n' + scene.text();
-  for (const Setting& change : changes) key += '\n' + change.text();
+  for (const Setting& change : changes) {
+    if (change.key != "title") key += '\n' + change.text();
+  }
   return key;
 }
 

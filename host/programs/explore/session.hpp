@@ -181,7 +181,9 @@ class Session {
   void follow_overlay(const std::string& content);
   void follow_map();
   void follow_peak() {
-    if (curve_.is_finished()) peak_.follow(curve_, state_.edits, state_.view.theta_max_deg);
+    if (!curve_.is_finished()) return;
+    peak_.set_cursor(*at_cursor());
+    peak_.follow(curve_, state_.edits, state_.view.theta_max_deg);
   }
   std::vector<Job> wanted_in_drag() const;
   void follow_sweeps(const std::string& content);

@@ -181,4 +181,5 @@ def materials() -> dict[str, dict[str, Any]]:
     >>> dolp.materials()["gold (Ordal)"]["from_um"] <= 8
     True
     """
-    return {name: {"from_um": low, "to_um": high, "source": source} for name, low, high, source in _native.materials()}
+    facts = ("from_um", "to_um", "source", "kind")
+    return {name: dict(zip(facts, values)) for name, *values in _native.materials()}

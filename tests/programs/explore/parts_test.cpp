@@ -37,7 +37,7 @@ TEST(Controls, EndsOfEverySlider_AreAccepted) {
     for (const double end : {control.slider.from, control.slider.to}) {
       const Scene scene = paint({needed_by(*control.key), key + "=" + format_number(end)}).scene();
       EXPECT_EQ(scene.number(key), end) << key;
-      EXPECT_TRUE(control.value(scene) || !control.is_shown(scene)) << key;
+      EXPECT_TRUE(control.value(scene) || !control.may_apply(scene)) << key;
     }
     EXPECT_TRUE(!control.slider.is_log || control.slider.from > 0.0) << key;
   }
@@ -55,6 +55,48 @@ TEST(Controls, OfDiffuseLightAndOfTheAir_AreShownWhereTheSceneUsesThem) {
     EXPECT_EQ(water.value(scene.with("surroundings.vapour_cm", 0.3)), 0.3);
   }
   EXPECT_FALSE(water.value(paint().scene()) || air.value(paint().scene()));
+}
+
+TEST(Materials, AreSortedWithinTheirKinds_AndFoundByWords) {
+  const std::vector<BuiltInMaterial> all = sorted_materials();
+  EXPECT_EQ(all.size(), materials().size());
+  EXPECT_EQ(all.front().name, "aluminium (Ordal)");
+  std::vector<std::string> kinds;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool is_same_kind = !kinds.empty() && kinds.back() == all[i].kind;
+    EXPECT_TRUE(!is_same_kind || lower_case(all[i - 1].name) < lower_case(all[i].name)) << all[i].name;
+    EXPECT_TRUE(is_same_kind || std::ranges::count(kinds, all[i].kind) == 0) << all[i].name;
+    kinds.push_back(all[i].kind);
+  }
+  EXPECT_EQ(std::ranges::count(kinds, "metal"), 13);
+  EXPECT_EQ(std::ranges::count(kinds, ""), 0);
+  EXPECT_TRUE(has_words("metal gold (Ordal), 2 to 20 µm", "Ord GOLD"));
+  EXPECT_FALSE(has_words("metal gold (Ordal), 2 to 20 µm", "gold olmon"));
+  EXPECT_TRUE(has_words("iron", " "));
+}
+
+TEST(ControlRows, RowsOnceShown_StayUntilAnotherSceneIsOpened_AndAlternativesShareOne) {
+  SceneEdits edits = paint();
+  ControlRows rows;
+  rows.follow(edits.opened());
+  const auto stays = [&](const char* key) { return rows.stays(edits.scene(), control(key)); };
+  EXPECT_FALSE(stays("geometry.view_zenith_deg"));
+  for (const Control& shown : controls()) {
+    if (shown.applies(edits.scene())) rows.note(shown.key->key);
+  }
+  EXPECT_FALSE(stays("surface.q"));
+  edits.set({{"surface.distribution", "gaussian"}, {"surface.wind_m_s", 8.0}, {"surface.material", "gold (Ordal)"}});
+  edits.set({{"surface.diffuse", 0.0}, {"surroundings", Value()}});
+  for (const char* key : {"surface.q", "surface.n", "surface.diffuse_exponent", "surroundings.temperature_K"})
+    EXPECT_TRUE(stays(key)) << key;
+  EXPECT_FALSE(stays("surface.sigma"));  // the wind has its row
+  EXPECT_FALSE(stays("surface.specular"));
+  EXPECT_EQ(unused_text(edits.scene(), control("surface.q")), "surface.q: needs the distribution cauchy");
+  EXPECT_EQ(unused_text(edits.scene(), control("surface.n")), "surface.n: the scene has surface.material instead");
+  rows.follow(edits.opened());
+  EXPECT_TRUE(stays("surface.q"));
+  rows.follow(Scene::from_text(kPaint, {}, "other.toml"));
+  EXPECT_FALSE(stays("surface.q"));
 }
 
 using Changes = std::vector<Setting>;

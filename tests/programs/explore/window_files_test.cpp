@@ -131,6 +131,28 @@ TEST_F(WindowFiles, Plots_SavedByShortcut_AreLinesAndTextOfWhatIsShown) {
   EXPECT_TRUE(save("missing/plot.svg").is_error);
 }
 
+TEST_F(WindowFiles, ExportMenu_HasTwoEntries_WhoseFormatGivesTheName) {
+  click_control("menu Export");
+  EXPECT_NO_THROW(app_->control_area("Figure…"));
+  click_control("Data…");
+  frames();
+  click_control("format the table of the scene's grid, CSV");
+  keys("Return");
+  for (int i = 0; i < 2000 && !std::filesystem::exists(at("scene_table.csv")); ++i) app_->frame();
+  EXPECT_TRUE(content("scene_table.csv").starts_with("theta_deg"));
+}
+
+TEST_F(WindowFiles, TitleClicked_TakesATypedOne_WhichUndoTakesBack) {
+  click_control("title");
+  keys("ctrl+a");
+  type("Mine");
+  keys("Return");
+  frames();
+  EXPECT_EQ(title(), "Mine");
+  keys("ctrl+z");
+  EXPECT_EQ(title(), "Painted");
+}
+
 TEST_F(WindowFiles, Snapshot_Clicked_RestoresTheState_AndTakesATypedName) {
   keys("ctrl+p");
   keys("ctrl+b");

@@ -98,7 +98,7 @@ TEST_F(WindowLook, LeastSize_ShowsOneThingAtATime) {
   EXPECT_NE(pixels(plot()), curve);
   click_control("panel curve");
   resize("1280", "800");
-  EXPECT_GT(plot().width(), 400.0F);
+  EXPECT_GT(plot().width(), 380.0F);
   EXPECT_LT(plot().max.x, app_->control_area("panel map").min.x);
   resize("200", "150");
 }

@@ -1,6 +1,7 @@
 // The window on a virtual display, with events of mouse and keyboard from outside the program.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <imgui_internal.h>
 
 #include <cmath>
 #include <functional>
@@ -98,6 +99,26 @@ TEST_F(Window, Legend_PinClicked_HidesIt) {
       click({x, y});
   }
   EXPECT_FALSE(is_visible());
+}
+
+TEST_F(Window, LegendOfFiveCurves_HasNoScrollbar) {
+  session().set_view(&View::panel, Panel::kSlopes);
+  for (const char* sigma : {"0.2", "0.3", "0.4"}) {
+    session().set({{"surface.sigma", TomlText{sigma}}, {"surface.material", "carbon"}});
+    settle();
+    keys("ctrl+p");
+    session().pins().back().name =
+        std::string("a pin with quite a long name, so that each needs a line of its own, ") + sigma;
+  }
+  frames();
+  const ImGuiWindow* legend = nullptr;
+  for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
+    if (std::string(window->Name).find("legend") != std::string::npos) legend = window;
+  }
+  ASSERT_TRUE(legend);
+  EXPECT_EQ(legend->ScrollMax.y, 0.0F);
+  EXPECT_FALSE(legend->ScrollbarY);
+  EXPECT_GT(legend->Size.y, 4.0F * ImGui::GetTextLineHeight());
 }
 
 TEST_F(Window, CurveAndMapClicked_MoveTheCursor_AndTheCurveFollowsTheMap) {

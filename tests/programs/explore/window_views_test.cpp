@@ -7,6 +7,7 @@
 #include "explore/panels.hpp"
 #include "explore/readout.hpp"
 #include "explore_support.hpp"
+#include "temporary_file.hpp"
 #include "window_support.hpp"
 
 namespace {
@@ -182,6 +183,44 @@ TEST(ExplorePanels, Camera_IsTheCurveOverTheViewZenith_WithTheSourceAtTheCursor)
   EXPECT_FALSE(session.camera().is_finished());
 }
 
+TEST(ExplorePanels, EveryViewOfEveryScene_IsWanted_OrRefusedWithAReason) {
+  const auto refused = [](const std::vector<std::string>& settings) {
+    Session session(paint(settings));
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < kPanelNames.size(); ++i) {
+      const auto panel = static_cast<Panel>(i);
+      session.set_view(&View::panel, panel);
+      if (!view_refusal(session, panel).empty()) names.push_back(kPanelNames[i]);
+    }
+    return names;
+  };
+  using Names = std::vector<std::string>;
+  const TemporaryFile reflectances(".csv", "beta_deg,r_s,r_p\n0,0.04,0.04\n45,0.09,0.01\n90,1,1\n");
+  EXPECT_EQ(refused({}), (Names{"sky", "camera", "fit"}));
+  EXPECT_EQ(refused({"geometry.mode=bistatic"}), (Names{"sphere", "fit"}));
+  EXPECT_EQ(refused({"surface.sigma=0"}), (Names{"slopes", "sky", "camera", "fit"}));
+  EXPECT_EQ(refused({"surface.reflectance_file=" + reflectances.path(), "spectrum.band_um=[8,14]"}),
+            (Names{"material", "pBRDF", "sky", "camera", "fit"}));
+  EXPECT_EQ(refused({"surface.distribution=gaussian", "surface.wind_m_s=8", "surroundings.profile=clear-sky",
+                     "surface.coating=[{n=1.3,thickness_um=2}]"}),
+            (Names{"sky", "camera", "fit"}));
+}
+
+TEST_F(Window, Choices_ThatRemoveRows_MoveNoControl) {
+  const auto place = [&](const char* control) { return app_->control_area(control).min.y; };
+  const float factor = place("surface.specular"), mode = place("geometry.mode"), sky = place("sky");
+  session().set({{"surface.distribution", "gaussian"}, {"surface.material", "gold (Ordal)"}, {"surface.diffuse", 0.0}});
+  session().set("spectrum.wavelength_um", 10.0);
+  frames();
+  EXPECT_EQ(place("surface.specular"), factor);
+  EXPECT_EQ(place("geometry.mode"), mode);
+  session().set("surroundings", Value());
+  frames();
+  EXPECT_EQ(place("sky"), sky);
+  EXPECT_EQ(place("geometry.mode"), mode);
+  EXPECT_NO_THROW(app_->control_area("unused surface.q"));
+}
+
 TEST_F(Window, Panels_ClickedOneByOne_AreDrawn_AndTheMapIsComputedWhileItIsShown) {
   const Area map = app_->control_area("panel map");
   const auto below = [&] {
@@ -189,9 +228,13 @@ TEST_F(Window, Panels_ClickedOneByOne_AreDrawn_AndTheMapIsComputedWhileItIsShown
   };
   std::vector<std::string> seen = {below()};
   for (std::size_t i = 1; i < kPanelNames.size(); ++i) {
+    const Panel before = session().view().panel, panel = static_cast<Panel>(i);
+    const bool is_refused = !view_refusal(session(), panel).empty();
+    EXPECT_EQ(app_->control_area(std::string("panel ") + kPanelNames[i]).min.y, map.min.y);  // all are in one line
     click_control(std::string("panel ") + kPanelNames[i]);
-    EXPECT_EQ(session().view().panel, static_cast<Panel>(i));
+    EXPECT_EQ(session().view().panel, is_refused ? before : panel);
     settle();
+    if (is_refused) continue;
     EXPECT_EQ(std::ranges::count(seen, below()), 0) << kPanelNames[i];
     seen.push_back(below());
   }
@@ -219,9 +262,19 @@ TEST_F(Window, Films_AreAddedOutside_ChangedAndRemoved) {
   EXPECT_NEAR(std::log10(*number("surface.coating.1.thickness_um") / expected), 0.0, 5.0 * kGrab / 2.0);
   const Scene before = session().scene();
   click_control("surface.coating.1.material");
-  click(app_->control_area("surface.coating.1.material").at(0.5F, 2.6F));  // the first material of the list
-  EXPECT_TRUE(word("surface.coating.1.material"));
+  type("met gold ord");
+  keys("Return");
+  EXPECT_EQ(word("surface.coating.1.material"), "gold (Ordal)");
   EXPECT_EQ(number("surface.coating.1.thickness_um"), before.number("surface.coating.1.thickness_um"));
+  keys("ctrl+z");
+  EXPECT_EQ(session().scene().toml(), before.toml());
+  put("own.csv", "wavelength_um,n,k\n5,1.4,0.01\n20,1.4,0.01\n");
+  click_control("surface.coating.1.material");
+  click_control("surface.coating.1.material own file…");
+  frames();
+  type("own.csv");
+  keys("Return");
+  EXPECT_EQ(word("surface.coating.1.material_file"), at("own.csv").string());
   keys("ctrl+z");
   EXPECT_EQ(session().scene().toml(), before.toml());
   click_control("remove surface.coating.2");

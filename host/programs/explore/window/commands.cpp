@@ -1,6 +1,7 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include "base/atomic_file.hpp"
 #include "base/python_picture.hpp"
@@ -144,6 +145,49 @@ void save_as(Ui& ui, const char* title, const char* ending, const char* suffix,
                [&ui, save](Path path) { ui.actions.attempt("saved " + path, [&] { save(ui.session, path); }); });
 }
 
+/// Opens a dialog that saves a file in one of `formats`.
+void export_as(Ui& ui, const char* title, std::vector<PathDialog::Format> formats, std::size_t format) {
+  for (PathDialog::Format& one : formats) {
+    one.accept = [&ui, accept = one.accept](Path path) {
+      ui.saved = {ui.session.scene().name(), std::filesystem::path(path).parent_path()};
+      accept(path);
+    };
+  }
+  std::vector<std::string> suffixes;
+  for (const PathDialog::Format& one : formats) suffixes.push_back(one.ending.substr(one.ending.find('.')));
+  ui.dialog.open({.title = title,
+                  .path = suggested_path(ui, formats[format].ending),
+                  .suffixes = suffixes,
+                  .formats = formats,
+                  .format = format});
+}
+
+enum FigureFormat : std::size_t { kSvg, kPdf, kPng, kWindow };
+template <FigureFormat format>
+void export_figure(Ui& ui) {
+  const auto plot = [&ui](Path path) { ui.actions.save_plot(path, ui.curves.x(), ui.curves.y()); };
+  const auto window = [&ui](Path path) { ui.actions.attempt("saved " + path, [&] { ui.actions.save_picture(path); }); };
+  export_as(ui, "Save a figure",
+            {{"curves and map, SVG", "_plot.svg", plot},
+             {"curves and map, PDF", "_plot.pdf", plot},
+             {"curves and map, PNG", "_plot.png", plot},
+             {"the window, PNG", "_window.png", window}},
+            format);
+}
+
+enum DataFormat : std::size_t { kCurve, kTable };
+template <DataFormat format>
+void export_data(Ui& ui) {
+  const auto curve = [&ui](Path path) { ui.actions.attempt("saved " + path, [&] { save_curve(ui.session, path); }); };
+  const auto table = [&ui](Path path) { ui.actions.export_table(path); };
+  export_as(ui, "Save data",
+            {{"the curve, CSV", "_curve.csv", curve},
+             {"the table of the scene's grid, NetCDF", "_table.nc", table},
+             {"the table of the scene's grid, CSV", "_table.csv", table},
+             {"the table of the scene's grid, NumPy", "_table.npy", table}},
+            format);
+}
+
 void ask_what_to_open(Ui& ui) {
   const std::filesystem::path folder = std::filesystem::path(ui.session.scene().name()).parent_path();
   ui.dialog.open({.title = "Open a scene, a session (.toml) or measured points (.csv)",
@@ -196,34 +240,21 @@ struct Command {
   }
 };
 
+constexpr const char* kNoMenu = "";  // a command that has only a shortcut
+
 constexpr Command kCommands[] = {
     {"File", "Open", "Ctrl+O", ask_what_to_open},
     {"File", "Save the scene", "Ctrl+S",
-     [](Ui& ui) { save_as(ui, "Save the scene as TOML", "_scene.toml", ".toml", save_scene); }},
+     [](Ui& ui) { save_as(ui, "Save the scene", "_scene.toml", ".toml", save_scene); }},
     {"File", "Save the session", "Ctrl+Shift+S",
-     [](Ui& ui) {
-       save_as(ui, "Save scene, pins, snapshots and view as TOML", "_session.toml", ".toml", save_session);
-     }},
-    {"File", "Export the table", "Ctrl+T",
-     [](Ui& ui) {
-       ask_for_path(ui, "Compute the table of the scene's grid: .nc, .csv, .npy", "_table.nc", {".nc", ".csv", ".npy"},
-                    [&ui](Path path) { ui.actions.export_table(path); });
-     }},
-    {"File", "Save the curve as CSV", "Ctrl+E",
-     [](Ui& ui) { save_as(ui, "Save the curve as CSV", "_curve.csv", ".csv", save_curve); }},
-    {"File", "Save the plots", "Ctrl+Shift+E",
-     [](Ui& ui) {
-       ask_for_path(ui, "Draw curves and map: .svg, .pdf, .png", "_plot.svg", {".svg", ".pdf", ".png"},
-                    [&ui](Path path) { ui.actions.save_plot(path, ui.curves.x(), ui.curves.y()); });
-     }},
-    {"File", "Save a picture", "Ctrl+I",
-     [](Ui& ui) {
-       save_as(ui, "Save a picture of the window as PNG", "_window.png", ".png",
-               [&ui](Session&, Path path) { ui.actions.save_picture(path); });
-     }},
+     [](Ui& ui) { save_as(ui, "Save scene, pins, snapshots and view", "_session.toml", ".toml", save_session); }},
     {"File", "Remove measured points", "", [](Ui& ui) { ui.session.clear_measured(); }, nullptr,
      [](const Ui& ui) { return ui.session.residuals().data().has_value(); }},
     {"File", "Quit", "Ctrl+Q", [](Ui& ui) { ui.actions.is_quitting = true; }},
+    {"Export", "Figure…", "Ctrl+Shift+E", export_figure<kSvg>},
+    {"Export", "Data…", "Ctrl+E", export_data<kCurve>},
+    {kNoMenu, "Export a picture of the window", "Ctrl+I", export_figure<kWindow>},
+    {kNoMenu, "Export the table", "Ctrl+T", export_data<kTable>},
     {"View", "Logarithmic axis", "Ctrl+L", flip<&View::is_log>, is_set<&View::is_log>},
     {"View", "Overlay the other slope distribution", "Ctrl+D", flip<&View::has_overlay>, is_set<&View::has_overlay>},
     {"View", "Keep all effects", "Ctrl+G", flip<&View::keeps_all>, is_set<&View::keeps_all>},
@@ -241,6 +272,7 @@ constexpr Command kCommands[] = {
     {"Scene", "Fit to the measured points", "Ctrl+F", [](Ui& ui) { ui.actions.fit(); }},
     {"Scene", "Undo all changes", "Ctrl+R", [](Ui& ui) { ui.session.reset_all(); }},
     {"Help", "Shortcuts and hints", "Ctrl+H", [](Ui& ui) { ui.shows_help = true; }},
+    {"Help", "About dolp", "", [](Ui& ui) { ui.shows_about = true; }},
 };
 
 /// Names the area of the menu or entry drawn next. After BeginMenu() opens a menu, name_item() names a wrong item.
@@ -260,7 +292,39 @@ void draw_recent(Actions& actions) {
   ImGui::EndMenu();
 }
 
+/// Draws the title of the scene as a menu with a field for another title. The scene gets it when the menu closes.
+void draw_title(Ui& ui) {
+  constexpr float kWidth = 30.0F;
+  Session& session = ui.session;
+  const std::string title = figure_title(session.edits());
+  name_next("title", title.c_str());
+  if (ImGui::BeginMenu((shown(title) + "###title").c_str())) {
+    if (!ui.typed_title) {
+      ui.typed_title = title;
+      ImGui::SetKeyboardFocusHere();
+    }
+    ImGui::TextDisabled("title of the scene and of its figures");
+    ImGui::SetNextItemWidth(kWidth * ImGui::GetFontSize());
+    if (ImGui::InputText("##title", &*ui.typed_title, ImGuiInputTextFlags_EnterReturnsTrue)) ImGui::CloseCurrentPopup();
+    ImGui::EndMenu();
+  } else if (const auto typed = std::exchange(ui.typed_title, std::nullopt); typed && *typed != title) {
+    session.set("title", *typed);
+  }
+}
+
 }  // namespace
+
+void ask_for_material(Ui& ui, const std::string& table) {
+  const std::filesystem::path folder = std::filesystem::path(ui.session.scene().name()).parent_path();
+  ui.dialog.open({.title = "Open a file of n and k",
+                  .path = folder.empty() ? "" : folder.string() + '/',
+                  .suffixes = {".csv", ".yml", ".yaml", ".txt", ".dat", ".nk", ".lnk"},
+                  .must_exist = true,
+                  .accept = [&ui, table](Path path) {
+                    const std::string file = std::filesystem::absolute(path).lexically_normal().string();
+                    ui.session.set(medium_change(ui.session.scene(), table, {{"material_file", file}}));
+                  }});
+}
 
 void run_shortcuts(Ui& ui) {
   const ImGuiIO& io = ImGui::GetIO();
@@ -272,7 +336,7 @@ void run_shortcuts(Ui& ui) {
 
 void draw_menus(Ui& ui) {
   if (!ImGui::BeginMainMenuBar()) return;
-  for (const char* menu : {"File", "View", "Scene", "Help"}) {
+  for (const char* menu : {"File", "Export", "View", "Scene", "Help"}) {
     name_next(std::string("menu ") + menu, menu);
     if (!ImGui::BeginMenu(menu)) continue;
     for (const Command& command : kCommands) {
@@ -280,15 +344,24 @@ void draw_menus(Ui& ui) {
       name_next(command.text, command.text);
       const bool is_checked = command.is_checked && command.is_checked(ui);
       const bool is_enabled = !command.is_enabled || command.is_enabled(ui);
-      if (ImGui::MenuItem(command.text, command.shortcut, is_checked, is_enabled)) command.run(ui);
+      if (ImGui::MenuItem(shown(command.text).c_str(), command.shortcut, is_checked, is_enabled)) command.run(ui);
       if (&command == kCommands) draw_recent(ui.actions);  // the list of recent files follows "Open"
     }
     ImGui::EndMenu();
   }
   ImGui::TextDisabled("|");
-  ImGui::TextUnformatted(shown(ui.session.scene().title()).c_str());
+  draw_title(ui);
   if (ui.session.edits().is_changed()) ImGui::TextDisabled("(changed)");
   ImGui::EndMainMenuBar();
+}
+
+void draw_about(Ui& ui) {
+  constexpr const char* kAbout = "About dolp";
+  if (std::exchange(ui.shows_about, false)) ImGui::OpenPopup(kAbout);
+  if (!ImGui::BeginPopupModal(kAbout, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+  for (const std::string& line : about_lines(ui.session)) ImGui::TextUnformatted(shown(line).c_str());
+  if (ImGui::Button("Close") || is_pressed(GLFW_KEY_ESCAPE)) ImGui::CloseCurrentPopup();
+  ImGui::EndPopup();
 }
 
 void draw_help(Ui& ui) {
@@ -298,7 +371,7 @@ void draw_help(Ui& ui) {
   if (is_pressed(GLFW_KEY_ESCAPE) && !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopup)) ui.shows_help = false;
   if (ImGui::Begin("Shortcuts and hints", &ui.shows_help, ImGuiWindowFlags_NoCollapse)) {
     for (const Command& command : kCommands) {
-      if (*command.shortcut) ImGui::BulletText("%s: %s", command.shortcut, command.text);
+      if (*command.shortcut) ImGui::BulletText("%s: %s", command.shortcut, shown(command.text).c_str());
     }
     ImGui::Separator();
     for (const char* hint :

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include <algorithm>
 
@@ -75,7 +76,9 @@ Value parse_value(const std::string& text) {
 
 struct Controls {
   Session& session;
-  NumberFields& fields;
+  ControlState& state;
+  NumberFields& fields = state.fields;
+  ControlRows& rows = state.rows;
 
   struct Slider {  // with a text field beside it
     std::string id, label;
@@ -142,11 +145,16 @@ struct Controls {
     const auto change = [&](const std::string& text) { return Setting{key, parse_value(text)}; };
     draw_slider({key, control.label_with_unit(), note_on(control, session), key, control.slider, change}, value,
                 &control);
-    if (!session.residuals().data() || !session.varies(key)) return;
+    if (!session.residuals().data()) return;
+    const std::string fit_row = "fit " + key;
+    if (session.varies(key)) rows.note(fit_row);
+    if (!rows.has(fit_row)) return;
+    ImGui::BeginDisabled(!session.varies(key));
     const FitRange range = fit_range(session.marked(), session.scene(), control, value);
     row_label("  fit from, to");
-    draw_ends("fit " + key, {range.low, range.high},
+    draw_ends(fit_row, {range.low, range.high},
               [&](const std::string& low, const std::string& high) { return session.set_fit_range(key, low, high); });
+    ImGui::EndDisabled();
   }
 
   void draw_choice(const Control& control, std::size_t position) {
@@ -159,54 +167,94 @@ struct Controls {
       name_item(key);
       tooltip(note);
     } else if (const auto clicked =
-                   draw_list(key, -1.0F, words[position], note, position, {words.begin(), words.end()})) {
+                   draw_list({key, -1.0F, words[position], note, position, {words.begin(), words.end()}})) {
       session.set(key, TomlText{words[*clicked]});
     }
+  }
+
+  /// The value of a control that the scene does not use: n or k of the surface's material, otherwise "".
+  std::string unused_value(const Control& control) const {
+    const bool is_n = control.key->key == "surface.n", is_k = control.key->key == "surface.k";
+    if ((!is_n && !is_k) || !control.may_apply(session.scene())) return "";
+    try {
+      const double at_um = spectrum_um(session.scene()).first;
+      const auto [n, k] = session.scene().refractive_index(at_um);
+      return fmt::format("{:.4g} at {:.4g} µm", is_n ? n : k, at_um);
+    } catch (const InputError&) {
+      return "";  // the file of the material has no value at this wavelength
+    }
+  }
+
+  /// Draws a greyed row in the place of a control that the scene no longer uses.
+  void draw_unused(const Control& control) {
+    ImGui::BeginDisabled();
+    row_label(control.label_with_unit());
+    ImGui::SetNextItemWidth(-1.0F);
+    std::string text = shown(unused_value(control));
+    ImGui::InputText(("##unused " + control.key->key).c_str(), &text, ImGuiInputTextFlags_ReadOnly);
+    ImGui::EndDisabled();
+    name_item("unused " + control.key->key);
+    tooltip(unused_text(session.scene(), control));
+  }
+
+  /// True if the control applies. Otherwise draws its greyed row, if the row stays.
+  bool may_draw(const Control& control) {
+    if (control.applies(session.scene())) {
+      rows.note(control.key->key);
+      return true;
+    }
+    if (rows.stays(session.scene(), control)) draw_unused(control);
+    return false;
   }
 
   // The next two functions read each value when its control is drawn: an earlier control may have changed the scene.
   void draw_choices(const std::string& table) {
     for (const Control& control : controls()) {
-      if (parent_table(control.key->key) != table) continue;
-      if (const auto position = control.word(session.scene())) draw_choice(control, *position);
+      if (control.is_number() || parent_table(control.key->key) != table || !may_draw(control)) continue;
+      draw_choice(control, *control.word(session.scene()));
     }
   }
   void draw_numbers(const std::string& table) {
     for (const Control& control : controls()) {
-      if (parent_table(control.key->key) != table) continue;
-      if (const auto value = control.value(session.scene())) draw_number(control, *value);
+      if (!control.is_number() || parent_table(control.key->key) != table || !may_draw(control)) continue;
+      draw_number(control, *control.value(session.scene()));
     }
   }
 
-  /// Draws the list of materials for the surface or a film. Returns the settings of the material that the user chooses.
+  /// Draws the list of materials for the surface or a film. Returns the settings that give it the material that the
+  /// user chooses.
   std::vector<Setting> draw_material(const std::string& table) {
-    static const std::vector<BuiltInMaterial> known = materials();
+    static const std::vector<BuiltInMaterial> known = sorted_materials();
+    constexpr std::size_t kTyped = 0, kFile = 1, kBuiltIn = 2;  // positions in the list
     const Scene& scene = session.scene();
     const bool is_typed = control(table + ".n").value(scene).has_value();
-    const std::string current = is_typed ? "n and k as below" : scene.word(table + ".material").value_or("file");
-    // Entry 0 is "n and k as below". Then come the built-in materials. A material from a file has no entry.
+    const std::string file = file_name(scene.word(table + ".material_file").value_or("own file"));
+    const std::string current = is_typed ? "n and k as below" : scene.word(table + ".material").value_or(file);
     const auto now = std::ranges::find(known, current, &BuiltInMaterial::name);
     std::optional<std::size_t> chosen;
-    if (is_typed || now != known.end()) chosen = is_typed ? 0 : static_cast<std::size_t>(now - known.begin()) + 1;
+    if (is_typed) chosen = kTyped;
+    if (now != known.end()) chosen = static_cast<std::size_t>(now - known.begin()) + kBuiltIn;
     const auto [from_um, to_um] = spectrum_um(scene);
-    std::vector<ListEntry> entries = {{"n and k as below"}};
+    std::vector<ListEntry> entries = {{"n and k as below"}, {"own file…", "a file of n and k over the wavelength"}};
     for (const BuiltInMaterial& material : known) {
       const bool is_known = material.from_um <= from_um && to_um <= material.to_um;
       entries.push_back({fmt::format("{}, {:g} to {:g} µm", material.name, material.from_um, material.to_um),
-                         material.source + (is_known ? "" : "\nnot known over the spectrum of this scene"), is_known});
+                         material.source + (is_known ? "" : "\nnot known over the spectrum of this scene"), is_known,
+                         material.kind});
     }
     row_label("material");
     const std::string note = is_typed ? "a built-in material, or your n and k" : "N = n + ik of " + surface_name(scene);
-    const auto clicked = draw_list(table + ".material", -1.0F, current, note, chosen, entries);
+    const auto clicked = draw_list({table + ".material", -1.0F, current, note, chosen, entries}, &state.search);
     if (!clicked) return {};
-    if (*clicked > 0) return {{"material", known[*clicked - 1].name}};
+    if (*clicked == kFile) state.wanted_file = table;
+    if (*clicked == kFile) return {};
+    if (*clicked >= kBuiltIn) return medium_change(scene, table, {{"material", known[*clicked - kBuiltIn].name}});
     const auto [n, k] = material_index(scene, table);
-    return {{"n", n}, {"k", k}};
+    return medium_change(scene, table, {{"n", n}, {"k", k}});
   }
 
   void draw_surface() {
-    std::vector<Setting> chosen = draw_material("surface");
-    for (Setting& setting : chosen) setting.key = "surface." + setting.key;
+    const std::vector<Setting> chosen = draw_material("surface");
     if (!chosen.empty()) session.set(chosen);
     draw_choices("surface");
     draw_numbers("surface");
@@ -225,14 +273,10 @@ struct Controls {
       name_item("remove " + film);
       ImGui::SameLine();
       coloured_text(kTextColour, fmt::format("film {}", layer));
-      Film chosen = draw_material(film);
+      const std::vector<Setting> chosen = draw_material(film);
       if (is_removed) films.erase(films.begin() + static_cast<std::ptrdiff_t>(layer) - 1);
-      if (!chosen.empty()) {
-        const Film& old = films[layer - 1];  // keeps the thickness and its spread, which are last in a Film
-        chosen.insert(chosen.end(), std::ranges::find(old, "thickness_um", &Setting::key), old.end());
-        films[layer - 1] = chosen;
-      }
-      if (is_removed || !chosen.empty()) return session.set({coating_setting(films)});
+      if (is_removed) return session.set({coating_setting(films)});
+      if (!chosen.empty()) return session.set(chosen);
       draw_numbers(film);
     }
   }
@@ -244,7 +288,7 @@ struct Controls {
     const std::array<Setting, 3> changes = {
         {{"source.irradiance", 1.0}, {"source.relative_irradiance", 0.6}, {"source.preset", "sun"}}};
     row_label("kind");
-    if (const auto clicked = draw_list("source kind", -1.0F, kinds[now].text, "", now, kinds)) set(changes[*clicked]);
+    if (const auto clicked = draw_list({"source kind", -1.0F, kinds[now].text, "", now, kinds})) set(changes[*clicked]);
   }
 
   /// Draws a check box that removes an effect, or restores it from the opened scene or with default values.
@@ -261,10 +305,16 @@ struct Controls {
   }
 
   void draw_sky() {
+    constexpr const char* kPair = "sky of two temperatures";
     draw_sky_list();
+    if (read_sky_pair(sky_file(session.scene()))) rows.note(kPair);
+    if (!rows.has(kPair)) return;
     for (const auto& [name, temperature_K] :
          {std::pair{"zenith", &SkyPair::zenith_K}, {"horizon", &SkyPair::horizon_K}}) {
-      if (const auto sky = read_sky_pair(sky_file(session.scene()))) draw_sky_temperature(name, *sky, temperature_K);
+      const auto sky = read_sky_pair(sky_file(session.scene()));
+      ImGui::BeginDisabled(!sky);
+      draw_sky_temperature(name, sky.value_or(SkyPair()), temperature_K);
+      ImGui::EndDisabled();
     }
   }
 
@@ -280,8 +330,8 @@ struct Controls {
     const auto position = static_cast<std::size_t>(now - skies.begin());
     row_label("sky");
     const auto clicked =
-        draw_list("sky", -1.0F, name, fmt::format("{} {}: {}", kSkyProfile, current, described(kSkyProfile).meaning),
-                  position, skies);
+        draw_list({"sky", -1.0F, name, fmt::format("{} {}: {}", kSkyProfile, current, described(kSkyProfile).meaning),
+                   position, skies});
     if (!clicked) return;
     if (*clicked == 0) {
       session.set(kUniformSky, session.edits().opened().number(kUniformSky).value_or(kUniformSky_K));
@@ -315,16 +365,23 @@ struct Controls {
     if (ImGui::Checkbox("band", &is_band))
       set(is_band ? Setting{kKey, {8.0, 14.0}} : Setting{"spectrum.wavelength_um", 10.6});
     const std::vector<double> ends = session.scene().numbers(kKey);
-    if (ends.empty()) return;
-    if (const auto file = session.scene().word("spectrum.response_file"))
-      coloured_text(kDimColour, "response of the camera: " + *file + "; a change of λ1 or λ2 makes it a band");
+    if (ends.empty()) return draw_numbers("spectrum");
     row_label("λ1, λ2 [µm]");
     draw_ends(kKey, {ends[0], ends[1]}, [&](const std::string& low, const std::string& high) {
       return set({kKey, TomlText{fmt::format("[{}, {}]", low, high)}});
     });
   }
 
+  void draw_response() {
+    const std::string file = session.scene().word("spectrum.response_file").value_or("");
+    draw_choices("spectrum");
+    if (!rows.has("spectrum.response_per")) return;
+    coloured_text(kDimColour, file.empty() ? "no response of the camera"
+                                           : file_name(file) + "; a change of λ1 or λ2 makes it a band");
+  }
+
   void draw_all() {
+    rows.follow(session.edits().opened());
     heading("Surface");
     draw_surface();
     draw_coating();
@@ -332,15 +389,18 @@ struct Controls {
     for (const char* effect : {"emission", "source", "surroundings", "path"}) {
       draw_effect_box(effect);
       draw_choices(effect);
-      if (!has_effect(session.scene(), effect)) continue;
+      const bool is_there = has_effect(session.scene(), effect);
+      if (is_there) rows.note(effect);
+      if (!rows.has(effect)) continue;
+      ImGui::BeginDisabled(!is_there);
       if (effect == std::string_view("source")) draw_source_kind();
       if (effect == std::string_view("surroundings")) draw_sky();
+      ImGui::EndDisabled();
       draw_numbers(effect);
     }
     heading("Spectrum and geometry");
     draw_spectrum();
-    draw_choices("spectrum");
-    draw_numbers("spectrum");
+    draw_response();
     draw_choices("geometry");
     draw_numbers("geometry");
   }
@@ -353,7 +413,7 @@ struct Controls {
 
 }  // namespace
 
-void draw_controls(Session& session, NumberFields& fields) { Controls{session, fields}.draw_all(); }
-void draw_accuracy_controls(Session& session, NumberFields& fields) { Controls{session, fields}.draw_accuracy(); }
+void draw_controls(Session& session, ControlState& state) { Controls{session, state}.draw_all(); }
+void draw_accuracy_controls(Session& session, ControlState& state) { Controls{session, state}.draw_accuracy(); }
 
 }  // namespace dolp::explore

@@ -11,14 +11,10 @@ namespace dolp::explore {
 namespace {
 
 constexpr float kCurveWidth = 2.0F;
-constexpr float kRoomForTwo = 18.0F;        // height in lines of text; in a taller view, the legend has two lines
+constexpr float kRoomForTwo = 18.0F;    // height in lines of text; in a taller view, the legend has at least two lines
+constexpr float kMostOfLegend = 0.75F;  // share of the height in which the names of five curves have room
 constexpr float kRoomForResiduals = 17.0F;  // height in lines of text; a taller view also has a plot of residuals
 constexpr float kLeastResiduals = 7.0F;     // least height of the plot of residuals, in lines of text
-
-struct Shown {
-  const Curve* curve;
-  CurveStyle style;
-};
 
 bool is_dim(const Session& session, const Curve& curve) {  // the curve is old, or belongs to another scene file
   return session.is_outdated(curve) || session.is_foreign(curve.scene());
@@ -26,8 +22,8 @@ bool is_dim(const Session& session, const Curve& curve) {  // the curve is old, 
 
 CurveStyle bad_style() { return {kBadColour, 4.0F, 4.0F}; }  // for the parts of a curve in which the model fails
 
-std::vector<Shown> shown_curves(const Session& session) {
-  std::vector<Shown> curves;
+std::vector<ShownCurve> shown_curves(const Session& session) {
+  std::vector<ShownCurve> curves;
   const auto add = [&](const Curve& curve, const CurveStyle& style) {
     curves.push_back({&curve, is_dim(session, curve) ? stale(style) : style});
   };
@@ -46,10 +42,10 @@ const PeakAnswer* shown_peak(const Session& session) {  // null if the plot mark
   return is_marked && peak && session.curve().is_finished() ? &*peak : nullptr;
 }
 
-std::vector<double> values_to_show(const Session& session, const std::vector<Shown>& curves) {
+std::vector<double> values_to_show(const Session& session, const std::vector<ShownCurve>& curves) {
   const Plotted quantity = session.view().quantity;
   std::vector<double> values;
-  for (const Shown& shown : curves) {
+  for (const ShownCurve& shown : curves) {
     for (const Point& point : shown.curve->drawn()) {
       if (point.theta_deg > session.view().theta_max_deg) break;
       if (!point.is_good()) continue;
@@ -65,7 +61,7 @@ std::vector<double> values_to_show(const Session& session, const std::vector<Sho
 }
 
 /// Fills the area between dolp_low and dolp_high. Only the current curve gets it: overlapping areas are unreadable.
-void draw_bracket(const Plot& plot, const Shown& shown) {
+void draw_bracket(const Plot& plot, const ShownCurve& shown) {
   const std::vector<Point> points = shown.curve->drawn();
   const ImU32 colour = band_colour(shown.style);
   const auto at = [&](const Point& point, Quantity limit) {
@@ -85,7 +81,7 @@ void draw_bracket(const Plot& plot, const Shown& shown) {
 }
 
 /// Draws the curve in its style. On both sides of a point at which the model fails, the line is thin, grey and dashed.
-void draw_curve(const Plot& plot, const Shown& shown, Plotted quantity) {
+void draw_curve(const Plot& plot, const ShownCurve& shown, Plotted quantity) {
   const std::vector<Point> points = shown.curve->drawn();
   std::vector<ImVec2> good, bad;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -101,15 +97,20 @@ void draw_curve(const Plot& plot, const Shown& shown, Plotted quantity) {
   draw_line(plot.list(), good, shown.style, kCurveWidth);
 }
 
-/// Adds a name to the legend, in a new line if needed. Returns the area left of the name, for a sample of the curve.
+/// Adds a name to the legend, in a new line if needed. A name wider than the legend is broken at its spaces. Returns
+/// the area left of the name, for a sample of the curve.
 Area add_entry(const char* id, const std::string& name, ImU32 colour = kTextColour) {
   const float line = ImGui::GetTextLineHeight();
-  const float width = 2.3F * line + ImGui::CalcTextSize(shown(name).c_str()).x;
+  const float room = ImGui::GetWindowContentRegionMax().x - ImGui::GetCursorStartPos().x;
+  const std::string text = in_lines(shown(name), room - 2.3F * line);
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+  const float width = 2.3F * line + size.x;
   if (ImGui::GetCursorPosX() > ImGui::GetCursorStartPos().x && ImGui::GetContentRegionAvail().x < width)
     ImGui::NewLine();
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  ImGui::InvisibleButton(id, {width, line});
-  draw_text(ImGui::GetWindowDrawList(), {at.x + 2.3F * line, at.y}, {0.0F, 0.0F}, colour, name);
+  ImGui::InvisibleButton(id, {width, size.y});
+  draw_text(ImGui::GetWindowDrawList(), {at.x + 2.3F * line, at.y}, {0.0F, 0.0F}, colour, text);
+  ImGui::SameLine(0.0F, 1.2F * line);
   return {at, {at.x + 2.0F * line, at.y + line}};
 }
 
@@ -117,11 +118,10 @@ bool add_curve(const char* id, const std::string& name, const CurveStyle& style,
   const Area sample = add_entry(id, name, colour);
   const bool is_clicked = ImGui::IsItemClicked();
   draw_line(ImGui::GetWindowDrawList(), {sample.at(0.0F, 0.5F), sample.at(1.0F, 0.5F)}, style, kCurveWidth);
-  ImGui::SameLine(0.0F, 1.2F * ImGui::GetTextLineHeight());
   return is_clicked;
 }
 
-void draw_legend(const std::vector<Shown>& curves, Session& session) {
+void draw_legend(const std::vector<ShownCurve>& curves, Session& session) {
   const auto curve_colour = [&](const Curve& curve) { return is_dim(session, curve) ? kDimColour : kTextColour; };
   add_curve("curve", curve_name(session), curves.back().style, curve_colour(session.curve()));
   if (session.overlay() &&
@@ -141,23 +141,11 @@ void draw_legend(const std::vector<Shown>& curves, Session& session) {
     const Area sample = add_entry("band", "all bounces lie between");
     ImGui::GetWindowDrawList()->AddRectFilled(sample.at(0.0F, 0.1F), sample.at(1.0F, 0.9F),
                                               band_colour(curves.back().style));
-    ImGui::SameLine(0.0F, 1.2F * ImGui::GetTextLineHeight());
   }
   if (std::ranges::any_of(points, [](const Point& point) { return !point.is_good(); }))
     add_curve("bad", "the model fails here (status)", bad_style());
   if (session.residuals().data() && session.is_foreign(session.residuals().loaded_for()))
     add_entry("measured", "o  points measured for another scene", kDimColour);
-}
-
-/// Draws the legend and returns its height, which does not depend on the entries, so that the plot below stays still.
-float draw_legend_above(const std::vector<Shown>& curves, Session& session, ImVec2 size) {
-  const float lines = size.y > kRoomForTwo * ImGui::GetTextLineHeight() ? 2.0F : 1.0F;
-  const float height = lines * ImGui::GetTextLineHeightWithSpacing();
-  ImGui::BeginChild("legend", {size.x, height}, false,
-                    session.is_dragged() ? ImGuiWindowFlags_NoScrollbar : ImGuiWindowFlags_None);
-  draw_legend(curves, session);
-  ImGui::EndChild();
-  return height + ImGui::GetStyle().ItemSpacing.y;
 }
 
 void draw_cursor(const Plot& plot, const Session& session, const CurveStyle& style) {
@@ -238,6 +226,26 @@ void draw_residuals(const Session& session, const Scale& theta, ImVec2 size) {
 
 }  // namespace
 
+/// Draws the legend and returns its height. While the mouse is down, the height only grows, so that the plot below
+/// stays.
+float CurveView::draw_legend_above(const std::vector<ShownCurve>& curves, Session& session, ImVec2 size) {
+  const float line = ImGui::GetTextLineHeightWithSpacing();
+  const float least = (size.y > kRoomForTwo * ImGui::GetTextLineHeight() ? 2.0F : 1.0F) * line;
+  const float height = std::min(std::max(legend_height_, least), kMostOfLegend * size.y);
+  const bool scrolls = legend_height_ > height && !session.is_dragged();
+  ImGui::BeginChild(
+      "legend", {size.x, height}, false,
+      scrolls ? ImGuiWindowFlags_None : ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  const float top = ImGui::GetCursorPosY();
+  draw_legend(curves, session);
+  ImGui::NewLine();
+  const float needed = ImGui::GetCursorPosY() - top;
+  const bool may_shrink = !ImGui::IsMouseDown(ImGuiMouseButton_Left);
+  legend_height_ = may_shrink ? needed : std::max(legend_height_, needed);
+  ImGui::EndChild();
+  return height + ImGui::GetStyle().ItemSpacing.y;
+}
+
 void CurveView::edit_axes(View& view, AxisEditor& editor, const Plot& plot, const std::string& values) {
   const auto check_zeniths = [&](const Scale& range) {
     const Scale all = Scale{0.0, view.theta_max_deg}.with_log(range.is_log);
@@ -271,7 +279,7 @@ void CurveView::choose_axes(const Session& session, Zoom& zoom, const Scale& zen
 }
 
 void CurveView::draw(Session& session, AxisEditor& editor, ImVec2 size) {
-  const std::vector<Shown> curves = shown_curves(session);
+  const std::vector<ShownCurve> curves = shown_curves(session);
   size.y -= draw_legend_above(curves, session, size);
   const Plotted quantity = session.view().quantity;
   const std::vector<Measurement> measured = session.residuals().measured(quantity);
@@ -294,7 +302,7 @@ void CurveView::draw(Session& session, AxisEditor& editor, ImVec2 size) {
   plot.clip();
   if (!plot.y().is_log) plot.list()->AddLine(plot.at(x_.from, 0.0), plot.at(x_.to, 0.0), kDimColour);
   if (quantity == Plotted::kDolp) draw_bracket(plot, curves.back());
-  for (const Shown& shown : curves) draw_curve(plot, shown, quantity);
+  for (const ShownCurve& shown : curves) draw_curve(plot, shown, quantity);
   draw_points(plot, measured, described(quantity).scale(), false, colour_of_points(session));
   draw_cursor(plot, session, curves.back().style);
   if (plot.is_hovered() && !plot.is_dragged()) {

@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::size_t kCutCount = 181;
 constexpr float kLobeWidth = 2.0F;
-constexpr int kCells = 56;  // number of cells across the sphere; each has a few pixels
+constexpr std::size_t kRings = 45;     // cells of the sphere from the middle to the rim; each has a few pixels
+constexpr std::size_t kSectors = 120;  // cells around the sphere
 
 struct Disc {
   ImVec2 middle;
@@ -89,22 +90,35 @@ Scale dolp_range(const std::vector<Point>& points, double theta_max_deg, bool fr
   return {range.from, std::max(range.to, range.from + kLeastRange)};
 }
 
-void draw_sphere(const Session& session, ImVec2 middle, float radius, const Colours& colours) {
+/// Draws a disc of cells. Ring number i lies between the shares i and i + 1 of the radius, and has `sectors` cells.
+/// `colour` gets the number of the ring and the azimuth of the middle of the cell.
+void draw_cells(const Disc& disc, const std::vector<double>& shares, std::size_t sectors,
+                const std::function<ImU32(std::size_t, double)>& colour) {
   ImDrawList* const list = ImGui::GetWindowDrawList();
-  const float cell = 2.0F * radius / kCells;
-  for (int row = 0; row < kCells; ++row) {
-    for (int column = 0; column < kCells; ++column) {
-      const float x = (static_cast<float>(column) + 0.5F) * cell - radius;
-      const float y = radius - (static_cast<float>(row) + 0.5F) * cell;
-      const double sine = static_cast<double>(std::hypot(x, y) / radius);
-      if (sine >= 1.0) continue;
-      const double azimuth_deg = std::atan2(static_cast<double>(y), static_cast<double>(x)) / kDegree;
-      const ImVec2 corner{middle.x + x - 0.5F * cell, middle.y - y - 0.5F * cell};
-      list->AddRectFilled(
-          corner, {corner.x + cell, corner.y + cell},
-          colours.colour(polarisation_at(session.curve().points(), std::asin(sine) / kDegree, azimuth_deg)));
+  // Turns off anti-aliasing, which would show the edges between the cells.
+  const ImDrawListFlags flags = std::exchange(list->Flags, ImDrawListFlags_None);
+  const double half_deg = 180.0 / static_cast<double>(sectors);
+  for (std::size_t ring = 0; ring + 1 < shares.size(); ++ring) {
+    for (std::size_t sector = 0; sector < sectors; ++sector) {
+      const double azimuth_deg = 2.0 * half_deg * static_cast<double>(sector);
+      const double from = azimuth_deg - half_deg, to = azimuth_deg + half_deg;
+      list->AddQuadFilled(disc.at(shares[ring], from), disc.at(shares[ring + 1], from), disc.at(shares[ring + 1], to),
+                          disc.at(shares[ring], to), colour(ring, azimuth_deg));
     }
   }
+  list->Flags = flags;
+  // A line in the colour of the background, whose edges are anti-aliased, makes the rim smooth.
+  list->AddCircle(disc.middle, disc.radius, kBackground, 128, scaled(3.0F));
+}
+
+void draw_sphere(const Session& session, const Disc& disc, const Colours& colours) {
+  std::vector<double> shares;
+  const std::vector<double> rings_deg = zeniths(0.0, 90.0, kRings + 1);
+  for (const double zenith_deg : rings_deg) shares.push_back(std::sin(zenith_deg * kDegree));
+  draw_cells(disc, shares, kSectors, [&](std::size_t ring, double azimuth_deg) {
+    const double zenith_deg = 0.5 * (rings_deg[ring] + rings_deg[ring + 1]);
+    return colours.colour(polarisation_at(session.curve().points(), zenith_deg, azimuth_deg));
+  });
 }
 
 /// Draws a tilted square plate as seen from far away, with a line along the electric field of its light.
@@ -148,23 +162,15 @@ void draw_bar(ImVec2 corner, float width, const Colours& colours) {
 }
 
 void draw_rings(const SourceSky& sky, const Disc& disc, const Colours& colours) {
-  ImDrawList* const list = ImGui::GetWindowDrawList();
-  // Turns off anti-aliasing, which would show the edges between the cells.
-  const ImDrawListFlags flags = std::exchange(list->Flags, ImDrawListFlags_None);
-  const double half_deg = 0.5 * SourceSky::azimuth_deg(1);
-  for (std::size_t i = 0; i < SourceSky::kAzimuths; ++i) {
-    const std::vector<Point>& ring = sky.at(i);
-    for (std::size_t j = 0; j + 1 < ring.size(); ++j) {
-      const ImU32 colour = ring[j].is_good() ? viridis(colours.dolp.position(ring[j][Quantity::kDolp])) : kBadColour;
-      const double inner = ring[j].theta_deg / 90.0, outer = ring[j + 1].theta_deg / 90.0;
-      for (const double side : {1.0, -1.0}) {
-        const double from = side * (SourceSky::azimuth_deg(i) - half_deg);
-        const double to = side * (SourceSky::azimuth_deg(i) + half_deg);
-        list->AddQuadFilled(disc.at(inner, from), disc.at(outer, from), disc.at(outer, to), disc.at(inner, to), colour);
-      }
-    }
-  }
-  list->Flags = flags;
+  std::vector<double> shares;
+  for (const double zenith_deg : zeniths(0.0, 90.0, SourceSky::kZeniths)) shares.push_back(zenith_deg / 90.0);
+  draw_cells(disc, shares, 2 * (SourceSky::kAzimuths - 1), [&](std::size_t ring, double azimuth_deg) -> ImU32 {
+    const double side_deg = std::min(azimuth_deg, 360.0 - azimuth_deg);
+    const auto nearest = static_cast<std::size_t>(std::lround(side_deg / SourceSky::azimuth_deg(1)));
+    const std::vector<Point>& points = sky.at(nearest);
+    if (ring >= points.size()) return kBackground;  // not computed yet
+    return points[ring].is_good() ? viridis(colours.dolp.position(points[ring][Quantity::kDolp])) : kBadColour;
+  });
 }
 
 /// Draws circles at three zeniths, a ring at the direction of the source, and a square at the direction of the view.
@@ -241,14 +247,19 @@ void ScatteringView::draw(Session& session, ImVec2 size) {
 }
 
 void ShapeView::draw(Session& session, ImVec2 size) {
-  if (is_bistatic(session.scene())) {
-    return coloured_text(kDimColour, "Bistatic mode has only one direction of view: see the view sky.");
+  const float line = ImGui::GetTextLineHeight(), top = ImGui::GetCursorPosY();
+  coloured_text(kTextColour, fmt::format("sphere, and a plate tilted by {:.1f}° (drag){}", session.theta_deg(),
+                                         remark(session, session.curve())));
+  if (session.scene().word("surroundings.profile")) {
+    coloured_text(kDimColour,
+                  "The sky turns with each element: its zenith is the element's normal, not that of the world. So the "
+                  "colours are right only for horizontal surfaces.");
   }
-  const float line = ImGui::GetTextLineHeight();
+  size.y -= ImGui::GetCursorPosY() - top;
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   ImGui::InvisibleButton("shapes", {std::max(size.x, 1.0F), std::max(size.y, 1.0F)});
-  const float radius = std::max(line, std::min(0.25F * size.x - 0.8F * line, 0.25F * (size.y - 4.5F * line)));
-  const float high = corner.y + 1.4F * line + radius;
+  const float radius = std::max(line, std::min(0.25F * size.x - 0.8F * line, 0.25F * (size.y - 3.5F * line)));
+  const float high = corner.y + 0.4F * line + radius;
   const float low = high + 2.0F * radius + 0.3F * line;
   const ImVec2 plate{corner.x + 0.25F * size.x, low};
   if (ImGui::IsItemActive()) {
@@ -259,25 +270,16 @@ void ShapeView::draw(Session& session, ImVec2 size) {
     azimuth_deg_ = std::atan2(y, x) / kDegree;
     session.set_theta(std::asin(std::min(1.0, std::hypot(x, y) / static_cast<double>(radius))) / kDegree);
   }
-  ImDrawList* const list = ImGui::GetWindowDrawList();
-  const bool has_profile = session.scene().word("surroundings.profile").has_value();
-  draw_text(list, corner, {0.0F, 0.0F}, kTextColour,
-            fmt::format("sphere, and a plate tilted by {:.1f}° (drag){}{}", session.theta_deg(),
-                        has_profile ? "; a sky profile is right only for horizontal surfaces" : "",
-                        remark(session, session.curve())));
   for (const bool is_angle : {false, true}) {
     const Colours colours{dolp_range(session.curve().points(), session.view().theta_max_deg, false), is_angle};
     const float x = plate.x + (is_angle ? 0.5F * size.x : 0.0F);
-    draw_sphere(session, {x, high}, radius, colours);
+    draw_sphere(session, {{x, high}, radius}, colours);
     draw_plate(session, {x, low}, radius, azimuth_deg_, colours);
     draw_bar({x - radius, low + radius + 0.3F * line}, 2.0F * radius, colours);
   }
 }
 
 void draw_sky(const Session& session, ImVec2 size) {
-  if (!is_bistatic(session.scene())) {
-    return coloured_text(kDimColour, "This sky shows directions of a source: choose the mode bistatic.");
-  }
   const SourceSky& sky = session.source_sky();
   const Colours colours{dolp_range(all_points(sky), 90.0, true)};
   const float line = ImGui::GetTextLineHeight();

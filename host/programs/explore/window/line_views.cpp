@@ -103,8 +103,6 @@ void draw_wavelengths(const char* id, Session& session, AxisEditor& editor, ImVe
 
 void draw_slopes(const Session& session, ImVec2 size) {
   const Scene& scene = session.scene();
-  if (!(scene.number("surface.sigma") > 0.0))
-    return coloured_text(kDimColour, "A mirror: all facets lie in the mean plane.");
   const std::optional<Scene> other = with_other_distribution(scene);
   const std::vector<double> all_deg = zeniths(0.0, 89.5, kSlopeCount);
   const auto densities = [&](const Scene& shape) {
@@ -141,8 +139,6 @@ void draw_spectrum(Session& session, AxisEditor& editor, ImVec2 size) {
 
 void draw_camera(Session& session, ImVec2 size) {
   constexpr const char* kZenith = "geometry.view_zenith_deg";
-  if (!is_bistatic(session.scene()))
-    return coloured_text(kDimColour, "A camera beside a source: choose the mode bistatic.");
   const PlottedDescription& quantity = described(session.view().quantity);
   const NamedLine line = sweep_line(session.camera(), quantity.quantity, current_style(),
                                     fmt::format("source at θ = {:.4g}°", session.theta_deg()));

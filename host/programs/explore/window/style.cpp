@@ -68,6 +68,7 @@ bool is_light() { return ImGui::GetStyleColorVec4(ImGuiCol_WindowBg).y > 0.5F; }
 void set_theme(bool light) {
   light ? ImGui::StyleColorsLight() : ImGui::StyleColorsDark();
   ImGui::GetStyle().FrameBorderSize = light ? 1.0F : 0.0F;
+  ImGui::GetStyle().Colors[ImGuiCol_ModalWindowDimBg] = {0.0F, 0.0F, 0.0F, 0.55F};
   for (const ImGuiCol ground : {ImGuiCol_PopupBg, ImGuiCol_WindowBg}) ImGui::GetStyle().Colors[ground].w = 1.0F;
 }
 

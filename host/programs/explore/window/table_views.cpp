@@ -88,9 +88,9 @@ void draw_effects(const Session& session) {
   const std::array<Column, 5> columns = {
       {{is_stale(session) ? "the scene before" : "effect", "a part of the scene", 6.8F},
        {"plan", "kept, dropped, absent, or not needed by what is kept", 4.2F},
-       {"at cursor", "what it adds to DOLP at the cursor: a bound (≤) where it is dropped, else an estimate", 6.0F},
-       {"Q/I → without it",
-        "Q/I at the maximum of the curve with all effects → without this one; their difference is its part", 9.4F},
+       {"at cursor", "what it adds to DOLP at the cursor: a bound (≤) where it is dropped, else an estimate", 6.4F},
+       {"Q/I → without it", "Q/I at the cursor with all effects → without this one; their difference is its part",
+        10.8F},
        {"why", "the reason of the plan", 14.0F}}};
   const float em = ImGui::GetFontSize();
   const bool is_narrow = ImGui::GetContentRegionAvail().x < 36.0F * em;
@@ -120,18 +120,13 @@ void draw_effects(const Session& session) {
 
 void draw_fit_result(Session& session) {
   ImGui::BeginChild("fit result");
-  if (const std::optional<Fit>& fit = session.last_fit()) {
-    const std::optional<std::size_t> current = session.minimum();
-    const std::optional<std::size_t> clicked = draw_minima(*fit, current);
-    coloured_text(kDimColour, current ? "A click moves the sliders to a minimum."
-                                      : "The scene has changed since the fit. A click brings a minimum back.");
-    draw_words(*fit);
-    if (clicked) session.visit_minimum(*clicked);
-  } else {
-    coloured_text(kDimColour,
-                  "No fit yet: load measured points (Ctrl+O), mark the numbers that vary in the boxes beside their "
-                  "sliders, then press Ctrl+F.");
-  }
+  const Fit& fit = session.last_fit().value();
+  const std::optional<std::size_t> current = session.minimum();
+  const std::optional<std::size_t> clicked = draw_minima(fit, current);
+  coloured_text(kDimColour, current ? "A click moves the sliders to a minimum."
+                                    : "The scene has changed since the fit. A click brings a minimum back.");
+  draw_words(fit);
+  if (clicked) session.visit_minimum(*clicked);
   ImGui::EndChild();
 }
 

@@ -71,7 +71,7 @@ void draw_map_axes(const Session& session, View& view) {
   const MapAxis &x = session.map().x(), &y = session.map().y();
   for (const auto& [id, axis, other] : {std::tuple{"map x", &x, &y}, {"map y", &y, &x}}) {
     const auto position = static_cast<std::size_t>(std::ranges::find(axes, axis->name, &MapAxis::name) - axes.begin());
-    if (const auto clicked = draw_list(id, 5.5F * ImGui::GetFontSize(), axis->label, "", position, entries)) {
+    if (const auto clicked = draw_list({id, 5.5F * ImGui::GetFontSize(), axis->label, "", position, entries})) {
       // If the user chose the other axis of the map, the two axes swap.
       const std::string& name = axes[*clicked].name;
       const std::string& left = name == other->name ? axis->name : other->name;
@@ -90,7 +90,7 @@ void draw_view_controls(Session& session, NumberFields& fields) {
   for (const PlottedDescription& quantity : kAllPlotted)
     quantities.push_back({fmt::format("{}: {}", quantity.name, quantity.meaning)});
   const auto position = static_cast<std::size_t>(view.quantity);
-  if (const auto clicked = draw_list("quantity", width, described(view.quantity).name, "", position, quantities))
+  if (const auto clicked = draw_list({"quantity", width, described(view.quantity).name, "", position, quantities}))
     view.quantity = kAllPlotted[*clicked].quantity;
   ImGui::SameLine();
   ImGui::Checkbox("log", &view.is_log);
@@ -158,7 +158,7 @@ void draw_message(const Message& message) {
 }
 
 void draw_accuracy(Ui& ui) {
-  draw_accuracy_controls(ui.session, ui.fields);
+  draw_accuracy_controls(ui.session, ui.controls);
   for (const std::string& line : cost_lines(ui.session)) coloured_text(kTextColour, line);
   BackgroundTask &reference = ui.actions.true_error_task, &table = ui.actions.table_task;
   ImGui::BeginDisabled(!ui.session.curve().is_finished() || reference.is_running());
@@ -173,21 +173,38 @@ void draw_accuracy(Ui& ui) {
   if (!ui.is_narrow) draw_message(ui.session.message());
 }
 
-bool draw_tab(const std::string& name, bool is_shown) {
-  const float width = ImGui::CalcTextSize(name.c_str()).x + 2.0F * ImGui::GetStyle().FramePadding.x;
-  if (ImGui::GetContentRegionAvail().x < width) ImGui::NewLine();
+constexpr float kTabPadding = 3.0F;  // left and right of a button's text, in pixels of the usual text size
+constexpr float kTabGap = 2.0F;
+
+float tab_width(const std::string& name) { return ImGui::CalcTextSize(name.c_str()).x + scaled(2.0F * kTabPadding); }
+
+/// Draws a button. If `refusal` is not empty, the button is grey, and `refusal` is its tooltip.
+bool draw_tab(const std::string& name, bool is_shown, const std::string& refusal = "") {
+  if (ImGui::GetContentRegionAvail().x < tab_width(name)) ImGui::NewLine();
   ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(is_shown ? ImGuiCol_TabActive : ImGuiCol_Tab));
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {scaled(kTabPadding), 0.0F});
+  ImGui::BeginDisabled(!refusal.empty());
   const bool is_clicked = ImGui::SmallButton(name.c_str());
+  ImGui::EndDisabled();
+  ImGui::PopStyleVar();
   ImGui::PopStyleColor();
   name_item("panel " + name);
-  ImGui::SameLine(0.0F, ImGui::GetStyle().ItemInnerSpacing.x);
+  if (!refusal.empty()) tooltip(refusal);
+  ImGui::SameLine(0.0F, scaled(kTabGap));
   return is_clicked;
+}
+
+float panel_tabs_width() {
+  float width = 0.0F;
+  for (const char* name : kPanelNames) width += tab_width(name) + scaled(kTabGap);
+  return width;
 }
 
 void draw_panel_tabs(Ui& ui) {
   for (std::size_t i = 0; i < kPanelNames.size(); ++i) {
     const auto panel = static_cast<Panel>(i);
-    if (!draw_tab(kPanelNames[i], panel == ui.session.view().panel && (!ui.is_narrow || ui.page.empty()))) continue;
+    const bool is_shown = panel == ui.session.view().panel && (!ui.is_narrow || ui.page.empty());
+    if (!draw_tab(kPanelNames[i], is_shown, view_refusal(ui.session, panel))) continue;
     ui.session.set_view(&View::panel, panel);
     ui.page.clear();
   }
@@ -208,12 +225,16 @@ void draw_panel(Ui& ui, ImVec2 size) {
       [](Ui& u, ImVec2 room) { draw_sky(u.session, room); },
       [](Ui& u, ImVec2 room) { draw_camera(u.session, room); },
       [](Ui& u, ImVec2) { draw_fit_result(u.session); }};
-  kDraw.at(static_cast<std::size_t>(ui.session.view().panel))(ui, size);
+  const Panel panel = ui.session.view().panel;
+  const std::string refusal = view_refusal(ui.session, panel);
+  if (!refusal.empty()) return coloured_text(kDimColour, refusal);
+  kDraw.at(static_cast<std::size_t>(panel))(ui, size);
 }
 
 void draw_plots(Ui& ui, ImVec2 size) {
   const float gap = ImGui::GetStyle().ItemSpacing.x;
-  const float curve_width = 0.54F * size.x;
+  // The buttons of the views have one line, unless the curve would have less than half of the width.
+  const float curve_width = std::clamp(size.x - gap - panel_tabs_width(), 0.5F * size.x, 0.54F * size.x);
   constexpr ImGuiWindowFlags kStill = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
   ImGui::BeginChild("curves", {curve_width, size.y}, false, kStill);
   ui.curves.draw(ui.session, ui.axis_editor, ImGui::GetContentRegionAvail());
@@ -237,7 +258,7 @@ void draw_one_page(Ui& ui) {
 }
 
 void draw_right(Ui& ui, float window_height) {  // draws everything right of the controls
-  draw_view_controls(ui.session, ui.fields);
+  draw_view_controls(ui.session, ui.controls.fields);
   const float em = ImGui::GetFontSize();
   const ImVec2 room = ImGui::GetContentRegionAvail();
   const float readout = (room.x < 64.0F * em ? 4.8F : 3.8F) * ImGui::GetTextLineHeightWithSpacing();
@@ -253,7 +274,7 @@ void draw_right(Ui& ui, float window_height) {  // draws everything right of the
   }
   ImGui::BeginChild("readout", {0.0F, readout});
   if (ui.is_narrow) draw_message(ui.session.message());
-  coloured_text(kTextColour, peak_text(ui.session));
+  coloured_text(kTextColour, headline(ui.session));
   coloured_text(kTextColour, cause_text(ui.session));
   coloured_text(kDimColour, cursor_text(ui.session));
   ImGui::EndChild();
@@ -284,7 +305,8 @@ void draw_all(Ui& ui, const std::function<void()>& catch_up) {
   ui.is_narrow = all.x - left < 46.0F * em;
   ImGui::BeginChild("controls", {left, all.y}, true);
   draw_fit(ui.session, ui.actions);
-  draw_controls(ui.session, ui.fields);
+  draw_controls(ui.session, ui.controls);
+  if (!ui.controls.wanted_file.empty()) ask_for_material(ui, std::exchange(ui.controls.wanted_file, ""));
   draw_pins(ui.session);
   draw_snapshots(ui.session);
   ImGui::EndChild();
@@ -296,6 +318,7 @@ void draw_all(Ui& ui, const std::function<void()>& catch_up) {
   ImGui::PopItemFlag();
   ImGui::End();
   draw_help(ui);
+  draw_about(ui);
   ui.dialog.draw();
 }
 

@@ -51,7 +51,7 @@ class Actions {
 struct Ui {
   Session& session;
   Actions& actions;
-  NumberFields fields = {};
+  ControlState controls = {};
   AxisEditor axis_editor = {};
   MapView map = {};
   ScatteringView scattering_view = {};
@@ -60,17 +60,21 @@ struct Ui {
   PathDialog dialog = {};
   /// A scene file, and the folder where the user last saved a file for this scene; suggested_path() uses this folder.
   std::pair<std::string, std::filesystem::path> saved = {};
+  std::optional<std::string> typed_title = {};  ///< while the menu of the title is open
   bool is_narrow = false;
   std::string page = "curve";  ///< page of a narrow window: "curve", "effects", "accuracy"; "": the panel View::panel
   bool shows_help = false;
+  bool shows_about = false;
 };
 
 /// Draws everything. Call this function between ImGui's NewFrame and Render. Calls `catch_up` after drawing the
 /// controls and before drawing the plots, so that the plots show what the user changed by the controls.
 void draw_all(Ui& ui, const std::function<void()>& catch_up);
 
+void ask_for_material(Ui& ui, const std::string& table);  ///< asks for a file of n and k for "surface", or for a film
 void run_shortcuts(Ui& ui);
 void draw_menus(Ui& ui);
 void draw_help(Ui& ui);
+void draw_about(Ui& ui);
 
 }  // namespace dolp::explore

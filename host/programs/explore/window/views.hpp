@@ -9,14 +9,28 @@ namespace dolp::explore {
 
 // Each view fills the current ImGui window, or an area of the given size.
 
-void draw_controls(Session& session, NumberFields& fields);
-void draw_accuracy_controls(Session& session, NumberFields& fields);  ///< draws tolerance and precision
+/// What the controls of the scene remember from frame to frame.
+struct ControlState {
+  NumberFields fields = {};
+  ControlRows rows = {};
+  std::string search = {};  ///< text in the search field of the open list of materials
+  std::string wanted_file =
+      {};  ///< "surface", or the table of a film, whose own file of n and k the user wants to open
+};
+
+void draw_controls(Session& session, ControlState& state);
+void draw_accuracy_controls(Session& session, ControlState& state);  ///< draws tolerance and precision
 
 /// The y values of a line in a plot. All lines of the plot have the same x values.
 struct NamedLine {
   std::string name;
   CurveStyle style;
   std::vector<double> values;
+};
+
+struct ShownCurve {
+  const Curve* curve;
+  CurveStyle style;
 };
 
 /// Draws the current curve, the overlay, pins and measured points. A click or drag in the plot moves the cursor. A
@@ -34,9 +48,12 @@ class CurveView {
   void choose_axes(const Session& session, Zoom& zoom, const Scale& zeniths, Scale& values);
   void edit_axes(View& view, AxisEditor& editor, const Plot& plot, const std::string& values);
 
+  float draw_legend_above(const std::vector<ShownCurve>& curves, Session& session, ImVec2 size);
+
   Area area_;
   Scale x_, y_;
   Plotted quantity_ = Plotted::kDolp;
+  float legend_height_ = 0.0F;  ///< height of the legend's entries in the last frame
 };
 
 void draw_effects(const Session& session);

@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include "base/text.hpp"
+#include "explore/scene_edits.hpp"
 #include "explore/window/style.hpp"
 
 namespace dolp::explore {
@@ -27,6 +28,16 @@ std::string parse_range(const std::string& low, const std::string& high, Scale& 
   range = {*from, *to, range.is_log};
   const std::string why = range.refusal();
   return why.empty() ? why : fmt::format("from {} to {}: {}", one_line(low), one_line(high), why);
+}
+
+/// Draws the search field of a list, which is empty when the list opens. Returns true if the user presses Enter.
+bool draw_search(std::string& text) {
+  if (ImGui::IsWindowAppearing()) {
+    text.clear();
+    ImGui::SetKeyboardFocusHere();
+  }
+  ImGui::SetNextItemWidth(-1.0F);
+  return ImGui::InputTextWithHint("##search", "search", &text, ImGuiInputTextFlags_EnterReturnsTrue);
 }
 
 }  // namespace
@@ -76,23 +87,30 @@ void NumberFields::draw_reason(const std::string& id) const {
   if (const std::string why = reason(id); !why.empty()) coloured_text(kErrorColour, why);
 }
 
-std::optional<std::size_t> draw_list(const std::string& id, float width, const std::string& current,
-                                     const std::string& note, std::optional<std::size_t> chosen,
-                                     const std::vector<ListEntry>& entries) {
-  ImGui::SetNextItemWidth(width);
+std::optional<std::size_t> draw_list(const List& list, std::string* search) {
+  ImGui::SetNextItemWidth(list.width);
   // Stores the area of the closed list. name_item() would store a wrong area while the list is open.
   const ImVec2 corner = ImGui::GetCursorScreenPos();
-  name_area(id, {corner, {corner.x + ImGui::CalcItemWidth(), corner.y + ImGui::GetFrameHeight()}});
+  name_area(list.id, {corner, {corner.x + ImGui::CalcItemWidth(), corner.y + ImGui::GetFrameHeight()}});
+  if (!ImGui::BeginCombo(("##" + list.id).c_str(), shown(list.current).c_str(), ImGuiComboFlags_HeightLarge)) {
+    if (!list.note.empty()) tooltip(list.note);
+    return std::nullopt;
+  }
+  const bool is_entered = search && draw_search(*search);
   std::optional<std::size_t> clicked;
-  if (!ImGui::BeginCombo(("##" + id).c_str(), shown(current).c_str(), ImGuiComboFlags_HeightLarge)) {
-    if (!note.empty()) tooltip(note);
-    return clicked;
+  std::string group;
+  for (std::size_t i = 0; i < list.entries.size(); ++i) {
+    const ListEntry& entry = list.entries[i];
+    if (search && !has_words(entry.group + ' ' + entry.text, *search)) continue;
+    if (std::exchange(group, entry.group) != entry.group) coloured_text(kHeadingColour, entry.group);
+    const auto flags = entry.is_enabled ? ImGuiSelectableFlags_None : ImGuiSelectableFlags_Disabled;
+    const bool is_first = is_entered && !clicked && entry.is_enabled;
+    if ((ImGui::Selectable(shown(entry.text).c_str(), i == list.chosen, flags) || is_first) && i != list.chosen)
+      clicked = i;
+    name_item(list.id + ' ' + entry.text);
+    if (!entry.note.empty()) tooltip(entry.note);
   }
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const auto flags = entries[i].is_enabled ? ImGuiSelectableFlags_None : ImGuiSelectableFlags_Disabled;
-    if (ImGui::Selectable(shown(entries[i].text).c_str(), i == chosen, flags) && i != chosen) clicked = i;
-    if (!entries[i].note.empty()) tooltip(entries[i].note);
-  }
+  if (is_entered && clicked) ImGui::CloseCurrentPopup();
   ImGui::EndCombo();
   return clicked;
 }
@@ -216,12 +234,25 @@ bool PathDialog::draw_list() {
   return is_repeated;
 }
 
+void PathDialog::draw_formats() {
+  for (std::size_t i = 0; i < request_.formats.size(); ++i) {
+    const Format &old = request_.formats[request_.format], &format = request_.formats[i];
+    const bool is_clicked = ImGui::RadioButton(shown(format.text).c_str(), i == request_.format);
+    name_item("format " + format.text);
+    if (!is_clicked) continue;
+    if (name_.ends_with(old.ending)) name_.replace(name_.size() - old.ending.size(), old.ending.size(), format.ending);
+    request_.format = i;
+    wants_focus_ = true;
+  }
+}
+
 void PathDialog::draw() {
   if (is_opening_) ImGui::OpenPopup(kPopup);
   is_opening_ = false;
   const float width = std::min(36.0F * ImGui::GetFontSize(), ImGui::GetMainViewport()->WorkSize.x);
   ImGui::SetNextWindowSize({width, 0.0F});
   if (!ImGui::BeginPopupModal((request_.title + kPopup).c_str(), nullptr, ImGuiWindowFlags_NoResize)) return;
+  draw_formats();
   if (std::exchange(wants_focus_, false)) ImGui::SetKeyboardFocusHere();
   constexpr ImGuiInputTextFlags kFlags = ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll;
   ImGui::SetNextItemWidth(-1.0F);
@@ -238,7 +269,7 @@ void PathDialog::draw() {
                          : is_replaced ? "This file exists and will be replaced."
                                        : " ");
   ImGui::BeginDisabled(is_missing || name_.empty());
-  is_accepted |= ImGui::Button("OK");
+  is_accepted |= ImGui::Button(request_.must_exist ? "Open" : "Save");
   ImGui::EndDisabled();
   ImGui::SameLine();
   const bool is_cancelled = ImGui::Button("Cancel") || is_pressed(GLFW_KEY_ESCAPE);
@@ -251,7 +282,9 @@ void PathDialog::draw() {
   is_accepted = is_accepted && !wants_focus_ && !name_.empty();
   if (is_accepted || is_cancelled) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
-  if (is_accepted) request_.accept(path().string());
+  if (!is_accepted) return;
+  const auto& accept = request_.formats.empty() ? request_.accept : request_.formats[request_.format].accept;
+  accept(path().string());
 }
 
 }  // namespace dolp::explore

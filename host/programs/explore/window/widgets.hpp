@@ -44,13 +44,21 @@ struct ListEntry {
   std::string text;
   std::string note = {};
   bool is_enabled = true;
+  std::string group = {};  ///< heading above the first of the consecutive entries of a group
 };
 
-/// Draws a list that opens on a click. The closed list shows `current`, and has the tooltip `note`. Tests find the list
-/// by the name `id`. Returns the index of the entry that the user clicks, unless this index is `chosen`.
-std::optional<std::size_t> draw_list(const std::string& id, float width, const std::string& current,
-                                     const std::string& note, std::optional<std::size_t> chosen,
-                                     const std::vector<ListEntry>& entries);
+struct List {
+  std::string id;  ///< tests find the list by this name, and an entry by this name, a blank and the entry's text
+  float width;
+  std::string current;  ///< text of the closed list
+  std::string note;     ///< tooltip of the closed list
+  std::optional<std::size_t> chosen;
+  std::vector<ListEntry> entries;
+};
+
+/// Draws a list that opens on a click. With `search`, the open list has a search field, which has the text `*search`.
+/// Returns the index of the entry that the user clicks, unless this index is List::chosen.
+std::optional<std::size_t> draw_list(const List& list, std::string* search = nullptr);
 
 void row_label(const std::string& text);  ///< draws a label; the next control that is drawn stands beside it
 
@@ -81,12 +89,19 @@ class AxisEditor {
 
 class PathDialog {
  public:
+  struct Format {
+    std::string text;
+    std::string ending;  ///< end of the suggested name, with the suffix
+    std::function<void(const std::string& path)> accept;
+  };
   struct Request {
     std::string title;
     std::string path;                   ///< suggested
     std::vector<std::string> suffixes;  ///< suffixes of the files in the list
-    bool must_exist = false;
+    bool must_exist = false;            ///< true: the dialog opens a file, otherwise it saves one
     std::function<void(const std::string& path)> accept;
+    std::vector<Format> formats = {};  ///< formats to choose from; if there are some, they replace `accept`
+    std::size_t format = 0;            ///< the chosen format
   };
 
   void open(Request request);
@@ -94,6 +109,7 @@ class PathDialog {
 
  private:
   void enter(const std::filesystem::path& folder);
+  void draw_formats();
   bool draw_list();  ///< draws the list; true if the user clicks again on the chosen file
   std::filesystem::path path() const { return folder_ / name_; }
 

@@ -21,6 +21,7 @@ struct KernelContext {
   const dolp::Device& description;
   Kernels& kernels;
   CommandStream& stream;
+  double unit_roundoff = 0.0;  ///< for the error bounds of moments_from_kernel()
   bool staged_uploads = false;
   double tile_timeout_s = 0.0;
 };

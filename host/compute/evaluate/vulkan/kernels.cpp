@@ -110,6 +110,7 @@ KernelVariant moments_variant(const KernelData& data, std::uint32_t width) {
 KernelVariant slopes_variant(const KernelData& data) {
   KernelVariant variant = moments_variant(data, 1);
   variant.entry = EntryPoint::kSlopes;
+  variant.distribution = {};  // one pipeline serves all distributions, because the sums at a slope do not contain D
   variant.is_multiple = data.scattering == Scattering::kMultiple;
   return variant;
 }

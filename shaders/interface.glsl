@@ -8,7 +8,7 @@
 #define DOLP_BINDING_TASKS 3          // uvec4[]: positions in THETAS, SHAPES and INDICES, and the task word (see below)
 #define DOLP_BINDING_MASKING_TABLE 4  // real4[]: written by masking_table.comp, one table per ShapeNode
 #define DOLP_BINDING_MOMENTS 5        // MomentsNode[]: the output, DOLP_WIDTH nodes per task
-#define DOLP_BINDING_RULE 6           // RuleNode: one for all tasks
+#define DOLP_BINDING_RULE 6           // RuleNode: one for all tasks; real2[]: the rule nodes if DOLP_SPEC_STORED_NODES
 #define DOLP_BINDING_RULE_NODES 7     // real2[]: nodes of the Gauss rules, see physics/quadrature.glsl
 #define DOLP_BINDING_MASKING_NODES 8  // the masking tables as texels, from which moments.comp reads
 #define DOLP_BINDING_SLOPES DOLP_BINDING_TASKS      // SlopeNode[]: the input, one node per invocation
@@ -24,6 +24,7 @@
 #define DOLP_SPEC_COLUMN_COUNT 6      // number of columns. A column is a sum over the facets, see physics/columns.glsl
 #define DOLP_SPEC_COLUMNS 7           // kind of the columns, DOLP_COLUMNS_*
 #define DOLP_SPEC_CURVES 8            // true if reflectances come from tables, for films and measured reflectances
+#define DOLP_SPEC_STORED_NODES 9      // true if there are more rule nodes than texels in a buffer of the device
 
 #define DOLP_CAUCHY 0u
 #define DOLP_GAUSSIAN 1u
@@ -82,6 +83,7 @@
 #define DOLP_GROUPS_PER_DISTANCE 6 // a group of n > 1 bounces has at least 6 n bounces before it and 5 n after it
 #define DOLP_MOST_DOUBLINGS 12    // a group has at most 2^12 bounces
 #define DOLP_LAST_BOUNCES (DOLP_MOST_BOUNCES << DOLP_MOST_DOUBLINGS)  // a ray with more bounces is absorbed
+#define DOLP_CURVE_ALIGNMENT 64  // tables of reflectances begin at multiples of this; so curve_start is exact in float
 #define DOLP_CURVE_NODES 6       // pairs of numbers per cell of a reflectance table: 3 cubics with 4 coefficients each
 #define DOLP_MAX_ORDER 128       // largest order (number of nodes) of a Gauss rule
 #define DOLP_MASKING_OCTAVES 29  // octaves of v = 1 + tau / table_scale in a masking table, where tau is a slope
@@ -145,7 +147,7 @@ struct IndexNode {
   real branch_re;     // complex cos(beta) at which w = sqrt(N^2 - sin^2(beta)) is 0: i sqrt(N^2 - 1), with re, im >= 0
   real branch_im;
   real critical_cos;  // cos(beta) at which total reflection begins, sqrt(1 - Re N^2), if k is 0 or small; else 0
-  real curve_start;   // position of the table of reflectances in the buffer DOLP_BINDING_RULE_NODES
+  real curve_start;   // position of the table of reflectances among the rule nodes, divided by DOLP_CURVE_ALIGNMENT
   real curve_cells;   // number of cells of the table of reflectances, negative if they are measured; 0 without a table
 };
 

@@ -24,7 +24,6 @@ void store_column(uint position, real value) {
 layout(std430, binding = DOLP_BINDING_THETAS) readonly buffer Thetas { ThetaNode thetas[]; };
 layout(std430, binding = DOLP_BINDING_INDICES) readonly buffer Indices { IndexNode indices[]; };
 layout(std430, binding = DOLP_BINDING_TASKS) readonly buffer Tasks { uvec4 tasks[]; };
-layout(std430, binding = DOLP_BINDING_RULE) readonly buffer Rule { RuleNode rule; };
 layout(std430, binding = DOLP_BINDING_MOMENTS) writeonly buffer MomentsOut { MomentsNode moments[]; };
 void main() {
   uint i = gl_GlobalInvocationID.x;

@@ -23,7 +23,6 @@ void store_column(uint position, real value) {
 layout(std430, binding = DOLP_BINDING_THETAS) readonly buffer Thetas { ThetaNode thetas[]; };
 layout(std430, binding = DOLP_BINDING_INDICES) readonly buffer Indices { IndexNode indices[]; };
 layout(std430, binding = DOLP_BINDING_SLOPES) readonly buffer Slopes { SlopeNode slopes[]; };
-layout(std430, binding = DOLP_BINDING_RULE) readonly buffer Rule { RuleNode rule; };
 layout(std430, binding = DOLP_BINDING_AZIMUTHS) writeonly buffer AzimuthsOut { AzimuthNode azimuths[]; };
 void main() {
   uint i = gl_GlobalInvocationID.x;

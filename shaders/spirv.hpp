@@ -18,7 +18,8 @@ DOLP_ENTRY_POINT(slopes_orders);
 DOLP_ENTRY_POINT(slopes_sky_orders);
 DOLP_ENTRY_POINT(slopes_responses);
 DOLP_ENTRY_POINT(masking_table);
-// Entry points of bench/, which exist only in float.
+// Entry points that exist only in float; the second one belongs to bench/.
+DOLP_ENTRY_POINT(arithmetic);
 DOLP_ENTRY_POINT(product_rule);
 #undef DOLP_ENTRY_POINT
 

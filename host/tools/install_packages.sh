@@ -27,6 +27,7 @@ need bench libcubature-dev libgsl-dev python3-scipy  # methods to compare with
 need bench python3 python3-matplotlib python3-numpy
 need test libgtest-dev libclang-rt-dev clang-format  # test framework, fuzzing, code format
 need test vulkan-validationlayers                    # finds misuse of Vulkan
+need test spirv-cross                                # translates shaders to the languages of Metal and Direct3D
 need test netcdf-bin octave octave-netcdf python3-scipy python3 python3-netcdf4 python3-numpy  # other readers of tables
 need test x11-utils xvfb xauth xdotool               # a display with mouse and keyboard
 need test slurmctld slurmd slurm-client munge        # a cluster of one node

@@ -22,25 +22,32 @@ const uint kColumns = DOLP_COLUMNS_SKY;
 
 layout(push_constant) uniform PushConstants { DOLP_PUSH_CONSTANTS } push;
 
+layout(constant_id = DOLP_SPEC_STORED_NODES) const bool kStoredNodes = false;
+layout(std430, binding = DOLP_BINDING_RULE) readonly buffer Rule { RuleNode rule; real2 stored_nodes[]; };
 layout(std430, binding = DOLP_BINDING_SHAPES) readonly buffer Shapes { ShapeNode shapes[]; };
 layout(std430, binding = DOLP_BINDING_MASKING_TABLE) writeonly buffer MaskingTable { real4 masking_table[]; };
 
 // Texel buffers hold the data that neighbouring invocations read at different positions. From a storage buffer,
-// processors without AVX-512 read such data slowly: one lane after the other.
+// processors without AVX-512 read such data slowly: one lane after the other. Some devices allow only 65,536 texels, so
+// a longer list of rule nodes is in a storage buffer. Masking tables are always texels (RowTiles::blocks()).
 #ifdef DOLP_DOUBLE
 layout(binding = DOLP_BINDING_RULE_NODES) uniform usamplerBuffer rule_nodes;
 layout(binding = DOLP_BINDING_MASKING_NODES) uniform usamplerBuffer masking_nodes;
 real2 to_real2(uvec4 texel) { return real2(packDouble2x32(texel.xy), packDouble2x32(texel.zw)); }
-real2 rule_node(int i) { return to_real2(texelFetch(rule_nodes, i)); }
+real2 texel_node(int i) { return to_real2(texelFetch(rule_nodes, i)); }
 real4 masking_node(uint i) {
   return real4(to_real2(texelFetch(masking_nodes, int(2u * i))), to_real2(texelFetch(masking_nodes, int(2u * i + 1u))));
 }
 #else
 layout(binding = DOLP_BINDING_RULE_NODES) uniform samplerBuffer rule_nodes;
 layout(binding = DOLP_BINDING_MASKING_NODES) uniform samplerBuffer masking_nodes;
-real2 rule_node(int i) { return texelFetch(rule_nodes, i).xy; }
+real2 texel_node(int i) { return texelFetch(rule_nodes, i).xy; }
 real4 masking_node(uint i) { return texelFetch(masking_nodes, int(i)); }
 #endif
+real2 rule_node(int i) {
+  if (kStoredNodes) return stored_nodes[i];
+  return texel_node(i);
+}
 
 int largest_order() { return int(push.largest_order); }
 int sky_cells() { return 1 << int(push.sky & ((1u << DOLP_SKY_CORNERS_SHIFT) - 1u)); }

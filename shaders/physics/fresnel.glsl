@@ -52,7 +52,7 @@ Fresnel reflectance_at(IndexNode index, real cos_beta) {
   real position = sqrt(is_measured ? max(real(1.0) - cos_beta, real(0.0)) : cos_beta) * real(cells);
   int cell = min(int(position), cells - 1);
   real x = position - real(cell);
-  int start = int(index.curve_start);
+  int start = DOLP_CURVE_ALIGNMENT * int(index.curve_start);
   int first = start + DOLP_CURVE_NODES * cell;
   if (is_measured) {
     real2 kink = rule_node(start + DOLP_CURVE_NODES * cells + cell);

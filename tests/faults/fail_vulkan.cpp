@@ -4,11 +4,13 @@
 //                        calls fail, too. If RESULT is the word `never`, the call does not return.
 //   DOLP_VULKAN_MEMORY   bytes: larger pieces of device memory are refused
 //   DOLP_VULKAN_WITHOUT  float64, compute or version: devices lack double precision, compute queues or Vulkan 1.2
+//   DOLP_VULKAN_TEXELS   the devices allow only this number of texels in a buffer; views of larger buffers fail
 //   DOLP_COUNT_SUBMISSIONS a file that receives the number of submissions when the program ends
 #include <dlfcn.h>
 #include <unistd.h>
 #include <vulkan/vulkan.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
@@ -57,6 +59,12 @@ VkResult fault_of(const char* function) {
 bool lacks(const char* what) {
   static const std::string lacking = from_environment("DOLP_VULKAN_WITHOUT");
   return lacking == what;
+}
+
+/// The value of DOLP_VULKAN_TEXELS, or no limit.
+uint32_t most_texels() {
+  static const std::string most = from_environment("DOLP_VULKAN_TEXELS");
+  return most.empty() ? UINT32_MAX : static_cast<uint32_t>(std::stoul(most));
 }
 
 [[gnu::destructor]] void report_count() {
@@ -150,6 +158,18 @@ extern "C" VKAPI_ATTR void VKAPI_CALL vkGetPhysicalDeviceProperties(VkPhysicalDe
                                                                     VkPhysicalDeviceProperties* properties) {
   next<PFN_vkGetPhysicalDeviceProperties>("vkGetPhysicalDeviceProperties")(device, properties);
   if (lacks("version")) properties->apiVersion = VK_API_VERSION_1_1;
+  properties->limits.maxTexelBufferElements = std::min(properties->limits.maxTexelBufferElements, most_texels());
+}
+
+// The program views whole buffers.
+extern "C" VKAPI_ATTR VkResult VKAPI_CALL vkCreateBufferView(VkDevice device, const VkBufferViewCreateInfo* info,
+                                                             const VkAllocationCallbacks* callbacks,
+                                                             VkBufferView* view) {
+  VkMemoryRequirements buffer{};
+  next<PFN_vkGetBufferMemoryRequirements>("vkGetBufferMemoryRequirements")(device, info->buffer, &buffer);
+  const VkDeviceSize texel_bytes = info->format == VK_FORMAT_R32G32_SFLOAT ? 8 : 16;
+  if (buffer.size / texel_bytes > most_texels()) return VK_ERROR_FORMAT_NOT_SUPPORTED;
+  return next<PFN_vkCreateBufferView>("vkCreateBufferView")(device, info, callbacks, view);
 }
 
 extern "C" VKAPI_ATTR void VKAPI_CALL vkGetPhysicalDeviceQueueFamilyProperties(VkPhysicalDevice device, uint32_t* count,

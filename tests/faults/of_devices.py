@@ -68,6 +68,18 @@ def lacking_driver(driver):
         yield driver.try_once("eval", options, (allowed,), environment=fault)
 
 
+def few_texels(driver):
+    """the device allows 65,536 texels in a buffer, as many as Vulkan guarantees: the values stay"""
+    films = ("--tolerance", "1e-6", "--set", "surface.coating=[{n=1.5, k=0.01, thickness_um=20}]",
+             "--set", "spectrum.band_um=[8, 14]", "--set", "grid.theta_deg=[60]", "--set", "grid.sigma=[0.1]")
+    shapes = ("--precision", "double", "--set", "grid.theta_deg=[60]",
+              "--set", "grid.sigma=[0.01, 0.03, 0.1, 0.3, 1, 3]", "--set", "grid.q=[1.2, 1.6, 2, 4]")
+    for options in (films, shapes):
+        driver.expect("table", options)
+        fault = driver.preload("vulkan", DOLP_VULKAN_TEXELS="65536")
+        yield driver.try_once("table", options, (DONE,), environment=fault)
+
+
 def broken_driver_file(driver):
     """the JSON file of a Vulkan driver is missing, empty, cut short or not JSON"""
     driver.expect("eval")
@@ -103,4 +115,5 @@ def endless_compilation(driver):
     yield devices.returncode
 
 
-KINDS = (lost_device, lost_devices, device_memory, vulkan_call, lacking_driver, broken_driver_file, endless_compilation)
+KINDS = (lost_device, lost_devices, device_memory, few_texels, vulkan_call, lacking_driver, broken_driver_file,
+         endless_compilation)

@@ -88,6 +88,10 @@ inline constexpr double kMaskingTableErrorDouble = 1e-12;
 inline constexpr double kDivergingSlope = 0.06;
 /// Relative rounding errors of the moments, in unit roundoffs. roundings() in error_bounds.cpp combines these numbers.
 inline constexpr double kRoundings = 20.0;
+/// The unit roundoff of float grows by these factors for each unit by which the device's errors of divisions and square
+/// roots exceed 0.5 (OperationErrors). Fitted: tests/faults/arithmetic.py prints errors over bounds.
+inline constexpr double kDivisionGrowth = 1.6;
+inline constexpr double kRootGrowth = 0.55;
 inline constexpr double kHeavyTailRoundings = 80.0;
 inline constexpr double kHeavyTailQ = 1.1;
 inline constexpr double kHeavyTailSmithQ = 1.6;

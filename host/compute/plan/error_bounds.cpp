@@ -246,6 +246,12 @@ void take_complement(Moments& moments, double cosine) {
   }
 }
 
+double float_roundoff(const Arithmetic& arithmetic) {
+  constexpr double kCorrect = OperationErrors{}.largest;
+  return kFloatRoundoff * (1.0 + kDivisionGrowth * std::max(arithmetic.division.largest - kCorrect, 0.0) +
+                           kRootGrowth * std::max(arithmetic.root.largest - kCorrect, 0.0));
+}
+
 Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,
                             double unit_roundoff, std::span<const double> columns) {
   const kernel::ThetaNode& theta = data.thetas[entry.theta];

@@ -202,10 +202,12 @@ void add_curves(KernelData& data, const MomentsRequest& request, Tables tables) 
   });
   std::vector<double> starts;
   for (const ReflectanceCurve& curve : curves) {
-    starts.push_back(static_cast<double>(data.rule_nodes.size()));
+    const std::size_t aligned = (data.rule_nodes.size() + DOLP_CURVE_ALIGNMENT - 1) / DOLP_CURVE_ALIGNMENT;
+    starts.push_back(static_cast<double>(aligned));
+    data.rule_nodes.resize(aligned * DOLP_CURVE_ALIGNMENT);
     data.rule_nodes.insert(data.rule_nodes.end(), curve.nodes.begin(), curve.nodes.end());
   }
-  if (is_counted) data.left_out_nodes = (numbers.size() - 1) * curves.front().nodes.size();
+  if (is_counted) data.left_out_nodes = (numbers.size() - 1) * (curves.front().nodes.size() + DOLP_CURVE_ALIGNMENT);
   for (std::size_t i = 0; i < request.optics.size(); ++i) {
     const std::size_t number = is_counted ? 0 : numbers.at(request.optics[i]);
     const ReflectanceCurve& curve = curves[number];

@@ -12,6 +12,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "model/evaluator.hpp"
 #include "model/moments.hpp"
 #include "plan/sky_table.hpp"
 #include "plan/slope_orders.hpp"
@@ -153,6 +154,10 @@ void add_piece(kernel::MomentsNode& sum, const kernel::MomentsNode& piece);
 
 /// Computes the less accurate of r_i and deficit as cos(theta) minus the other moment: their sum is cos(theta).
 void take_complement(Moments& moments, double cosine);
+
+/// The unit roundoff that the error bounds of a device's float kernels need: larger than float's own if divisions and
+/// square roots are not rounded correctly.
+double float_roundoff(const Arithmetic& arithmetic);
 
 /// Moments with error bounds, from the kernel's result `node` and DOLP_COLUMN_PARTS sums per column in `columns`.
 Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& data, const MomentsEntry& entry,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <dolp/errors.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,14 +38,27 @@ struct Work {
   }
 };
 
+/// Relative errors of float operations, in units of 2^-23. This unit is the largest distance of two neighbouring
+/// floats, relative to their size (1 ulp). The largest error of correct rounding is 0.5.
+struct OperationErrors {
+  double largest = 0.5;
+  double mean = 0.0;  ///< far from 0 if most results err in one direction
+};
+
+struct Arithmetic {
+  OperationErrors division;
+  OperationErrors root;  ///< the square root
+};
+
 struct EvaluationReport : Work {
-  std::string evaluator;           ///< vulkan, cpu or reference
-  std::string device;              ///< name of the device, or of the processor
-  std::string driver;              ///< name and version of the driver; empty for cpu and reference
-  std::string precision;           ///< precision of the computations: float, double, or float and double
-  std::uint32_t devices_lost = 0;  ///< devices lost and replaced by a new one
-  double setup_s = 0.0;            ///< time to create pipelines, plus the time to create a device if needed
-  double pipelines_s = 0.0;        ///< the part of setup_s that creates pipelines
+  std::string evaluator;                 ///< vulkan, cpu or reference
+  std::string device;                    ///< name of the device, or of the processor
+  std::string driver;                    ///< name and version of the driver; empty for cpu and reference
+  std::string precision;                 ///< precision of the computations: float, double, or float and double
+  std::optional<Arithmetic> arithmetic;  ///< of the device in float; empty if the errors were not measured
+  std::uint32_t devices_lost = 0;        ///< devices lost and replaced by a new one
+  double setup_s = 0.0;                  ///< time to create pipelines, plus the time to create a device if needed
+  double pipelines_s = 0.0;              ///< the part of setup_s that creates pipelines
 };
 
 /// The part of a call's time that no other time in the reports of the evaluator, before and after the call, covers.

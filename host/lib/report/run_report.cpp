@@ -4,11 +4,15 @@
 #include <utility>
 
 #include <dolp/status.hpp>
+#include "base/numbers.hpp"
+#include "plan/kernel_data.hpp"
 #include "run/scene_remarks.hpp"
 #include "run/scene_table.hpp"
 
 namespace dolp {
 namespace {
+
+double roundoff_growth(const Arithmetic& arithmetic) { return float_roundoff(arithmetic) / kFloatRoundoff; }
 
 constexpr double kFewEvaluations = 1e6;  // number of evaluations that one core computes in about 0.1 s
 
@@ -106,6 +110,24 @@ void add_status(ReportBuilder& report, const RunSummary& summary) {
 
 }  // namespace
 
+std::string arithmetic_text(const Arithmetic& arithmetic) {
+  const auto& [division, root] = arithmetic;
+  const double growth = roundoff_growth(arithmetic);
+  return fmt::format("errors of float: division {:.2f} ulp (mean {:+.2f}), square root {:.2f} ulp (mean {:+.2f}); {}",
+                     division.largest, division.mean, root.largest, root.mean,
+                     growth > 1.0
+                         ? fmt::format("bounds of rounding grow {:.1f} times, so double is needed earlier", growth)
+                         : std::string("rounded correctly"));
+}
+
+ReportBuilder::Json arithmetic_json(const Arithmetic& arithmetic) {
+  return {{"division_ulp", arithmetic.division.largest},
+          {"division_mean_ulp", arithmetic.division.mean},
+          {"root_ulp", arithmetic.root.largest},
+          {"root_mean_ulp", arithmetic.root.mean},
+          {"roundoff_growth", roundoff_growth(arithmetic)}};
+}
+
 void add_title(ReportBuilder& report, const SceneValues& scene) {
   std::string changed;
   for (const Setting& setting : scene.settings) {
@@ -176,6 +198,10 @@ void add_evaluation(ReportBuilder& report, const EvaluationReport& e, double wal
   report.row_if(is_idle, "device", "none: nothing is integrated");
   report.row_if(!is_idle, "device", "{}{}{}, {} precision", key("device", e.device), e.driver.empty() ? "" : ", ",
                 key("driver", e.driver), key("precision", e.precision));
+  if (e.arithmetic) {
+    report.row_if(roundoff_growth(*e.arithmetic) > 1.0, "arithmetic", "{}", arithmetic_text(*e.arithmetic));
+    report.value("arithmetic", arithmetic_json(*e.arithmetic));
+  }
   report.row_if(e.devices_lost > 0, "lost", "{} times a device, and began again on a new one",
                 key("devices_lost", e.devices_lost));
   report.row("time", "{:.3f} s in all, {:.3f} s in kernels, {} dispatches", key("wall_s", wall_s),

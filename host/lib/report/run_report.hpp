@@ -29,6 +29,10 @@ ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, const 
 /// Adds the title of the scene, and the settings that a call gave and that the title may contradict.
 void add_title(ReportBuilder& report, const SceneValues& scene);
 
+/// The errors of a device's float operations, and their effect on error bounds.
+std::string arithmetic_text(const Arithmetic& arithmetic);
+ReportBuilder::Json arithmetic_json(const Arithmetic& arithmetic);
+
 void add_evaluation(ReportBuilder& report, const EvaluationReport& evaluation, double wall_s);
 
 /// The report of `dolp plan` for the scene's grid. `device` is the position of a device or a part of its name. If it is

@@ -147,6 +147,7 @@ struct Quality {
   Precision precision;
   std::string why_not;
   std::vector<CaseOutcome> outcomes = {};
+  std::optional<Arithmetic> arithmetic = {};
 };
 
 Quality quality_in(const Device& device, std::size_t position, Precision precision) {
@@ -160,6 +161,7 @@ Quality quality_in(const Device& device, std::size_t position, Precision precisi
     options.needs_double = in_double;
     VulkanEvaluator evaluator(options);
     quality.outcomes = qualify(ordinary_cases(), evaluator, {tolerance_in(precision), precision}, {});
+    quality.arithmetic = evaluator.report().arithmetic;
   } catch (const DeviceError& error) {
     quality.why_not = error.what();
   }
@@ -189,6 +191,10 @@ ReportBuilder quality_report(const Quality& quality) {
   report.value("worst_case",
                fmt::format("{} {} {}", to_name(stored.distribution), to_name(stored.masking), stored.name));
   report.value("sound", is_sound);
+  if (quality.arithmetic) {
+    report.line("          {}", arithmetic_text(*quality.arithmetic));
+    report.value("arithmetic", arithmetic_json(*quality.arithmetic));
+  }
   return report;
 }
 

@@ -9,6 +9,24 @@
 
 namespace dolp::vulkan {
 
+// Limits of devices on which the program relies, and the values that Vulkan 1.2 guarantees ("Required Limits"):
+//
+// | limit | guaranteed | how the program keeps to it |
+// |---|---|---|
+// | maxPerStageDescriptorStorageBuffers | 4 | kStorageCount are needed; describe() calls other devices not usable |
+// | maxPerStageDescriptorSampledImages, which limits texel buffers | 16 | kTexelCount |
+// | maxPerStageResources | 128 | kStorageCount + kTexelCount |
+// | maxBoundDescriptorSets | 4 | one |
+// | maxPushConstantsSize | 128 bytes | kPushConstantCount words |
+// | maxComputeWorkGroupInvocations, maxComputeWorkGroupSize[0] | 128 | kLocalSize |
+// | maxComputeWorkGroupCount[0] | 65,535 | sizes_on() in vulkan/tiles.cpp |
+// | maxStorageBufferRange | 2^27 bytes | sizes_on(); TiledRun::add_results() for rule nodes |
+// | maxTexelBufferElements | 65,536 | masking tables: sizes_on(); rule nodes: TiledRun::add_results() |
+// | maxMemoryAllocationCount | 4,096 | about ten buffers per request |
+// | maxMemoryAllocationSize | 2^30 bytes | sizes_on(); a larger table of rule nodes is an error of vkAllocateMemory |
+// | timestampValidBits of the queue | 0 | without timestamps the host's clock measures kernels |
+// | texel buffers of R32G32_SFLOAT, R32G32B32A32_SFLOAT and R32G32B32A32_UINT | yes | no other formats are used |
+// | errors of float | 2.5 ulp in a division, 4.5 ulp in a square root | measured (vulkan/arithmetic.cpp) |
 constexpr std::uint32_t kStorageCount = 7;  // storage buffers of each kernel, with binding numbers 0 to 6
 constexpr std::uint32_t kTexelCount = 2;    // texel buffers of each kernel, with binding numbers 7 and 8
 /// Largest number of invocations in a workgroup of dolp. Every Vulkan device allows at least 128.

@@ -150,6 +150,33 @@ TEST(VulkanEvaluator, RequestsInBothPrecisions_AreThoseOfEvaluatorsOfTheirOwn) {
   }
 }
 
+TEST(VulkanEvaluator, FirstRequestInFloat_MeasuresTheErrorsOfTheDevice) {
+  constexpr double kAllowedDivision = 2.5, kAllowedRoot = 4.5;  // by Vulkan
+  constexpr double kLeast = 0.45;  // correct rounding has 0.5 at the worst operands; the random ones come near it
+  VulkanEvaluator evaluator(validated(Precision::kDouble));
+  MomentsRequest request = small_request(Distribution::kCauchy, Masking::kNone);
+  request.precision = Precision::kDouble;
+  evaluator.evaluate(request, {});
+  EXPECT_FALSE(evaluator.report().arithmetic);
+  request.precision = Precision::kFloat;
+  evaluator.evaluate(request, {});
+  const std::optional<Arithmetic> arithmetic = evaluator.report().arithmetic;
+  ASSERT_TRUE(arithmetic);
+  EXPECT_GT(arithmetic->division.largest, kLeast);
+  EXPECT_LE(arithmetic->division.largest, kAllowedDivision);
+  EXPECT_GT(arithmetic->root.largest, kLeast);
+  EXPECT_LE(arithmetic->root.largest, kAllowedRoot);
+  EXPECT_TRUE(evaluator.validation_messages().empty());
+}
+
+TEST(FloatRoundoff, DeviceErrors_EnlargeItFromTheOneOfCorrectRounding) {
+  constexpr double kCorrect = 0x1p-24;
+  EXPECT_EQ(float_roundoff({}), kCorrect);
+  EXPECT_EQ(float_roundoff({.division = {.largest = 0.49}, .root = {.largest = 0.1}}), kCorrect);
+  EXPECT_GT(float_roundoff({.division = {.largest = 0.6}}), kCorrect);
+  EXPECT_GT(float_roundoff({.root = {.largest = 0.6}}), kCorrect);
+}
+
 TEST(VulkanEvaluator, Progress_CountsEveryTileAndTheReportEveryDispatch) {
   VulkanOptions options = validated();
   options.max_tile_invocations = 10;

@@ -55,15 +55,16 @@ UniquePipeline compile(VkDevice device, VkPipelineLayout layout, std::uint32_t l
       created<UniqueShaderModule>(device, vkCreateShaderModule, module_info, "creating a shader module");
 
   // The specialization constants, in the order of DOLP_SPEC_*. The enumerations have the values of interface.glsl.
-  const std::array<std::uint32_t, 9> values{local_size,
-                                            static_cast<std::uint32_t>(variant.distribution),
-                                            static_cast<std::uint32_t>(variant.masking),
-                                            variant.has_total_reflection ? 1U : 0U,
-                                            variant.is_multiple ? 1U : 0U,
-                                            variant.has_direct ? 1U : 0U,
-                                            variant.columns,
-                                            variant.column_kind,
-                                            variant.has_curves ? 1U : 0U};
+  const std::array<std::uint32_t, 10> values{local_size,
+                                             static_cast<std::uint32_t>(variant.distribution),
+                                             static_cast<std::uint32_t>(variant.masking),
+                                             variant.has_total_reflection ? 1U : 0U,
+                                             variant.is_multiple ? 1U : 0U,
+                                             variant.has_direct ? 1U : 0U,
+                                             variant.columns,
+                                             variant.column_kind,
+                                             variant.has_curves ? 1U : 0U,
+                                             variant.has_stored_nodes ? 1U : 0U};
   std::array<VkSpecializationMapEntry, values.size()> entries;
   for (std::uint32_t i = 0; i < entries.size(); ++i) entries[i] = {i, i * kWordBytes, kWordBytes};
   const VkSpecializationInfo constants{.mapEntryCount = static_cast<std::uint32_t>(entries.size()),
@@ -111,6 +112,7 @@ KernelVariant moments_variant(const KernelData& data, std::uint32_t width) {
 KernelVariant slopes_variant(const KernelData& data) {
   KernelVariant variant = moments_variant(data, 1);
   variant.entry = EntryPoint::kSlopes;
+  variant.distribution = {};  // one pipeline serves all distributions, because the sums at a slope do not contain D
   variant.is_multiple = data.scattering == Scattering::kMultiple;
   variant.has_orders = data.orders.highest > 0;
   return variant;

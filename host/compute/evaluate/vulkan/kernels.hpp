@@ -31,7 +31,8 @@ struct KernelVariant {
   std::uint32_t column_kind = DOLP_COLUMNS_SKY;
   bool has_curves = false;
   bool has_orders = false;
-  std::uint32_t width = 1;  ///< largest number of entries per invocation: 1, or kRowWidth of plan/rows.hpp
+  bool has_stored_nodes = false;  ///< the rule nodes are in a storage buffer, not in a texel buffer
+  std::uint32_t width = 1;        ///< largest number of entries per invocation: 1, or kRowWidth of plan/rows.hpp
   auto operator<=>(const KernelVariant&) const = default;
 };
 

@@ -9,7 +9,6 @@
 #include <type_traits>
 #include <vector>
 
-#include "base/numbers.hpp"
 #include "base/parallel_ranges.hpp"
 #include "plan/kernel_data.hpp"
 
@@ -43,7 +42,6 @@ class Packing {
   VkFormat rule_texels() const { return float64_ ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32_SFLOAT; }
   VkFormat masking_texels() const { return float64_ ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32G32B32A32_SFLOAT; }
   std::size_t texels_of_table() const { return masking_nodes() * (float64_ ? 2 : 1); }
-  double unit_roundoff() const { return float64_ ? kDoubleRoundoff : kFloatRoundoff; }
 
   /// Fills `bytes` with make_node(0), ..., make_node(count - 1). All cores call make_node, in any order. Numbers beyond
   /// the range of float become infinite.

@@ -146,7 +146,7 @@ class RowRun final : public TiledRun {
         for (std::uint32_t g = 0; g < chunk.count; ++g) {
           const std::uint32_t shape = rows_.shape_positions[chunk.first + g];
           moments[data_.entry_position(row.direction, row.index, shape)] = moments_from_kernel(
-              results[i * rows_.width + g], data_, {theta, shape, row.index}, packing_.unit_roundoff(),
+              results[i * rows_.width + g], data_, {theta, shape, row.index}, context_.unit_roundoff,
               std::span(column_results_).subspan((i * rows_.width + g) * per_entry, per_entry));
         }
       }

@@ -54,7 +54,7 @@ class SlopeRun final : public TiledRun {
       parallel_ranges(batch.samples.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
           const SlopeSamples& samples = batch.samples[i];
-          tiles_.sampling.integrate(samples, azimuths, batch.first_node[i], packing_.unit_roundoff(), moments);
+          tiles_.sampling.integrate(samples, azimuths, batch.first_node[i], context_.unit_roundoff, moments);
         }
       });
       cost_.sums_s += seconds_since(start);

@@ -21,6 +21,7 @@ struct KernelContext {
   const dolp::Device& description;
   Kernels& kernels;
   CommandStream& stream;
+  double unit_roundoff = 0.0;  ///< for the error bounds of moments_from_kernel()
   bool staged_uploads = false;
   double tile_timeout_s = 0.0;
 };
@@ -64,6 +65,7 @@ class TiledRun {
   Kernels::Bindings bindings_;
   std::array<std::optional<InputBuffer>, kStorageCount + kTexelCount> inputs_;
   std::optional<Buffer> results_;
+  std::size_t texel_nodes_ = 0;  ///< rule nodes in the texel buffer; if some do not fit, a storage buffer has all
   std::vector<std::byte> scratch_;
   Work cost_;
 };

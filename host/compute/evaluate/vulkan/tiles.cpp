@@ -30,8 +30,10 @@ TileSizes sizes_on(const dolp::Device& device, const TileCosts& costs, std::uint
           .shapes = at_least_one(std::min({bytes / costs.shape_bytes, dispatch_invocations, shapes, tables}))};
 }
 
-std::uint64_t rule_bytes(const Packing& packing, const KernelData& data) {
-  return (data.rule_nodes.size() + data.left_out_nodes) * packing.node_bytes<std::array<double, 2>>();
+// Rule nodes that do not fit into the texels of a buffer are in a storage buffer, too.
+std::uint64_t rule_bytes(const dolp::Device& device, const Packing& packing, const KernelData& data) {
+  const std::uint64_t nodes = data.rule_nodes.size() + data.left_out_nodes;
+  return (nodes + (nodes > device.max_texels ? device.max_texels : 0)) * packing.node_bytes<std::array<double, 2>>();
 }
 
 std::uint64_t tiles_in(std::uint64_t invocations, std::uint32_t tile) { return (invocations + tile - 1) / tile; }
@@ -74,7 +76,8 @@ RowTiles::RowTiles(const MomentsRequest& request, const dolp::Device& device, co
                                 rows.width * packing.output_bytes<kernel::MomentsNode>(column_sums(data)),
             .shape_bytes =
                 packing.node_bytes<kernel::ShapeNode>() + packing.masking_nodes() * packing.node_bytes<MaskingNode>(),
-            .shape_texels = packing.texels_of_table()} {
+            .shape_texels = packing.texels_of_table(),
+            .rule_bytes = rule_bytes(device, packing, data)} {
   const std::uint64_t pieces = rows.rows.size() * DOLP_MAX_PIECES;
   // At least rows.width shapes, because a kernel row needs the masking tables of all its shapes.
   const std::uint64_t shapes =
@@ -106,8 +109,7 @@ DispatchCount RowTiles::count() const {
     count.dispatches += tiles_in(row_pieces(rows, data, block.first_row, block.row_count).size(), sizes.invocations);
     if (data.needs_masking_table()) ++count.dispatches;
   }
-  count.device_bytes =
-      sizes.invocations * costs.invocation_bytes + sizes.shapes * costs.shape_bytes + rule_bytes(packing, data);
+  count.device_bytes = sizes.invocations * costs.invocation_bytes + sizes.shapes * costs.shape_bytes + costs.rule_bytes;
   return count;
 }
 
@@ -117,10 +119,10 @@ SlopeTiles::SlopeTiles(const MomentsRequest& moments_request, const dolp::Device
       packing(make_packing(request.precision)),
       data(kernel_data(request, tables)),
       sampling(data),
-      costs{.invocation_bytes =
-                packing.node_bytes<kernel::SlopeNode>() + packing.node_bytes<kernel::ThetaNode>() +
-                packing.node_bytes<kernel::IndexNode>() +
-                orders_at_once(data) * packing.output_bytes<kernel::AzimuthNode>(column_azimuths(data))} {
+      costs{.invocation_bytes = packing.node_bytes<kernel::SlopeNode>() + packing.node_bytes<kernel::ThetaNode>() +
+                                packing.node_bytes<kernel::IndexNode>() +
+                                orders_at_once(data) * packing.output_bytes<kernel::AzimuthNode>(column_azimuths(data)),
+            .rule_bytes = rule_bytes(device, packing, data)} {
   const std::uint64_t pairs = std::uint64_t{data.directions} * (data.is_grid ? data.indices.size() : 1);
   const std::uint64_t most = pairs * DOLP_MAX_PIECES * 2 * static_cast<std::uint64_t>(data.rule_order);
   const std::uint32_t fit =
@@ -167,7 +169,7 @@ DispatchCount SlopeTiles::count() const {
     count.rows += slope_batch.samples.size();
     count.slopes += slope_batch.slopes.size();
   }
-  count.device_bytes = slopes * costs.invocation_bytes + rule_bytes(packing, data);
+  count.device_bytes = slopes * costs.invocation_bytes + costs.rule_bytes;
   return count;
 }
 

@@ -22,6 +22,7 @@ struct TileCosts {
   std::uint64_t invocation_bytes = 0;  ///< bytes in all buffers that grow with the invocations of a tile
   std::uint64_t shape_bytes = 1;   ///< bytes of a shape's node and masking table; 1 without tables, as it is a divisor
   std::uint64_t shape_texels = 0;  ///< texels of a shape's masking table
+  std::uint64_t rule_bytes = 0;    ///< bytes of the rule nodes, which all tiles share
 };
 
 /// Invocations per dispatch, and shapes whose masking tables are bound at a time; at least one each.

@@ -6,11 +6,13 @@
 #include <utility>
 
 #include "base/interrupt.hpp"
+#include "base/numbers.hpp"
 #include "base/stopwatch.hpp"
 #include "beams/scattering.hpp"
 #include "device/context.hpp"
 #include "device/result.hpp"
 #include "evaluate/kernel/slope_samples.hpp"
+#include "evaluate/vulkan/arithmetic.hpp"
 #include "evaluate/vulkan/tiled_run.hpp"
 
 namespace dolp {
@@ -66,6 +68,7 @@ class VulkanEvaluator::Impl {
   /// Computes the request, and adds the cost to `report`. After a DeviceTimeout this object must not be destroyed.
   std::vector<Moments> compute(const MomentsRequest& request, const Progress& progress, EvaluationReport& report) {
     run_.reset();
+    if (request.precision != Precision::kDouble) measure_arithmetic(report);
     const auto make_run = has_slope_samples(request) ? vulkan::slope_run : vulkan::row_run;
     run_ = make_run(context_for(request.precision), request, options_for(request.precision));
     const Clock::time_point start = Clock::now();
@@ -83,11 +86,26 @@ class VulkanEvaluator::Impl {
   }
 
  private:
+  /// Measures the errors of float operations once. Errors: DeviceError if Vulkan does not allow errors of this size.
+  void measure_arithmetic(EvaluationReport& report) {
+    const Clock::time_point start = Clock::now();
+    if (!arithmetic_) {
+      probe_.emplace(context_.device(), kernels_for(Precision::kFloat));
+      const Arithmetic measured = probe_->measure(stream_, options_.tile_timeout_s);
+      probe_.reset();
+      vulkan::require_allowed(measured, description().name);
+      arithmetic_ = measured;
+    }
+    report.arithmetic = arithmetic_;
+    report.setup_s += seconds_since(start);
+  }
+
   vulkan::KernelContext context_for(Precision requested) {
     return {.device = context_.device(),
             .description = description(),
             .kernels = kernels_for(requested),
             .stream = stream_,
+            .unit_roundoff = requested == Precision::kDouble ? kDoubleRoundoff : float_roundoff(*arithmetic_),
             .staged_uploads = options_.staged_uploads,
             .tile_timeout_s = options_.tile_timeout_s};
   }
@@ -108,7 +126,10 @@ class VulkanEvaluator::Impl {
   vulkan::Context context_;
   std::optional<vulkan::Kernels> float_kernels_, double_kernels_;
   vulkan::CommandStream stream_;
-  std::unique_ptr<vulkan::TiledRun> run_;  ///< a member, because its buffers must still exist after a timeout
+  std::optional<Arithmetic> arithmetic_;
+  // The next two are members, because their buffers must still exist after a timeout.
+  std::optional<vulkan::ArithmeticProbe> probe_;
+  std::unique_ptr<vulkan::TiledRun> run_;
 };
 
 VulkanEvaluator::VulkanEvaluator(const VulkanOptions& options) {

@@ -20,11 +20,11 @@ constexpr double kLeastLevel = 1e-3;  // replaces a smaller reflectance_level(),
 constexpr double kSafety = 2.0;       // error bound divided by the largest error at the tested positions
 
 /// R_s, 1 - R_s and the split (R_s - R_p) / sin^2(beta) at one angle.
-using Values = std::array<double, 3>;
+using CurveValues = std::array<double, 3>;
 using Cubics = std::array<std::array<double, 4>, 3>;
 constexpr std::size_t kSplit = 2;
 
-Values curve_values(const SmoothAbsorptance& absorbed) { return {1.0 - absorbed.s, absorbed.s, absorbed.split}; }
+CurveValues curve_values(const SmoothAbsorptance& absorbed) { return {1.0 - absorbed.s, absorbed.s, absorbed.split}; }
 
 /// Coefficients of the cubic through values at 0, 1/3, 2/3 and 1.
 std::array<double, 4> cubic_through(double a, double b, double c, double d) {
@@ -72,8 +72,8 @@ class Sixths {
   std::vector<SmoothAbsorptance> absorptances_;
 };
 
-/// Values at the sixths of a cell.
-using CellValues = std::array<Values, 7>;
+/// CurveValues at the sixths of a cell.
+using CellValues = std::array<CurveValues, 7>;
 
 Cubics cubics_through(const CellValues& values) {
   Cubics cubics;

@@ -15,14 +15,14 @@ namespace {
 constexpr double kFirstOrder = 1.5;
 double order_fall(double eccentricity) { return eccentricity * (0.55 + 0.3 * eccentricity); }
 
-constexpr double kShareOfTolerance = 0.5;  // the neglected orders may take this share of the tolerance
+constexpr double kOrdersShare = 0.5;  // the neglected orders may take this share of the tolerance
 constexpr double kMostOrders = 24.0;
 constexpr double kSectorShare = 1e-3;  // error of the mean over the sectors, as a share of the tolerance
 constexpr double kTailFactor = 3.0;    // safety factor of neglected_orders()
 
 double wanted_order(double eccentricity, double tolerance) {
   const double fall = order_fall(eccentricity);
-  const double neglected = kShareOfTolerance * tolerance * (1.0 - fall) / kFirstOrder;
+  const double neglected = kOrdersShare * tolerance * (1.0 - fall) / kFirstOrder;
   return std::max(std::ceil(std::log(neglected) / std::log(fall)) - 1.0, 1.0);
 }
 

@@ -122,7 +122,7 @@ void add_errors(ReflectanceCurve& curve, const Sixths& sixths, const Cell& cell,
   }
 }
 
-double u_at(double beta_deg) { return std::numbers::sqrt2 * std::sin(beta_deg * std::numbers::pi / 360.0); }
+double curve_u(double beta_deg) { return std::numbers::sqrt2 * std::sin(beta_deg * std::numbers::pi / 360.0); }
 
 /// The cell of measured reflectances, split at its first row.
 Cell measured_cell(const Sixths& sixths, std::size_t number) {
@@ -135,7 +135,8 @@ Cell measured_cell(const Sixths& sixths, std::size_t number) {
   };
   const std::size_t row = measured.row_above(std::acos(sixths.cosine(6 * number)) * 180.0 / std::numbers::pi);
   Cell cell{number, cubics_below(row)};
-  const double place = u_at(measured.beta_deg[row]) * static_cast<double>(sixths.cells()) - static_cast<double>(number);
+  const double place =
+      curve_u(measured.beta_deg[row]) * static_cast<double>(sixths.cells()) - static_cast<double>(number);
   if (row + 1 == measured.beta_deg.size() || place >= 1.0) return cell;
   cell.kink = place;
   cell.after = cubics_below(row + 1);
@@ -147,7 +148,8 @@ std::size_t fewest_cells(const FacetOptics& optics) {
   if (!optics.measured) return kFewestCells;
   double step = 1.0 / static_cast<double>(kFewestCells);
   const std::vector<double>& beta_deg = optics.measured->beta_deg;
-  for (std::size_t i = 1; i < beta_deg.size(); ++i) step = std::min(step, u_at(beta_deg[i]) - u_at(beta_deg[i - 1]));
+  for (std::size_t i = 1; i < beta_deg.size(); ++i)
+    step = std::min(step, curve_u(beta_deg[i]) - curve_u(beta_deg[i - 1]));
   if (step * static_cast<double>(kMostCells) < 1.0) return kMostCells;
   return std::bit_ceil(static_cast<std::size_t>(std::ceil(1.0 / step)));
 }

@@ -142,8 +142,6 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, S
   return sums;
 }
 
-CONST real kNodesOfOrder = real(0.65);  // azimuth nodes per radian and azimuthal order that resolve cos(2 k phi)
-
 // The azimuth at which the zenith theta_r of the reflected ray reaches a corner (kink) of the sky.
 real2 corner_line(ThetaNode theta, Slope slope, int corner) {
   real t = slope.t;
@@ -188,11 +186,12 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
           arc = critical_arc(theta, index, slope.t, slope.digits, arc, !is_second, is_beside);
         }
         real nodes = arc_nodes(rule, theta, row.shape[0], index, slope.has_split_line, slope.t, slope.digits, arc, zone);
-        int order = order_between(nodes, slope.most_azimuths);
+        // The nodes that resolve cos(2 k phi) are in both rules. Without them the coarser rule would say nothing.
+        real highest = real(slope.order + DOLP_ORDER_WIDTH - 1);
+        int resolving = kHasOrders ? int(ceil(real(DOLP_NODES_OF_ORDER) * highest * arc.span)) : 0;
+        int order = order_between(nodes, slope.most_azimuths - resolving);
         if (slope.is_coarse) order = coarse_order(order);
-        // Both rules get the nodes that resolve the highest order, so that they differ by their errors only.
-        real highest = real(slope.order + DOLP_WIDTH - 1);
-        if (kHasOrders) order = min(order + int(kNodesOfOrder * highest * arc.span) + 1, slope.most_azimuths);
+        order += resolving;
         AzimuthSums more = arc_sums(rule, theta, row, index, slope, arc, zone, zone < lines.leaving, order,
                                     sums.columns);
         for (int g = 0; g < DOLP_WIDTH; ++g) {

@@ -6,6 +6,7 @@
 
 #include "model/slopes.hpp"
 #include "plan/constants.hpp"
+#include "plan/kernel_data.hpp"
 
 namespace dolp {
 namespace {
@@ -56,7 +57,8 @@ double largest_width_ratio(double tolerance) {
 }
 
 int nodes_of_orders(const SlopeOrders& orders) {
-  return static_cast<int>(std::ceil(0.65 * std::numbers::pi * static_cast<double>(orders.highest + 3)));
+  const auto highest = static_cast<double>(orders.highest + DOLP_ROW_WIDTH - 1);  // an invocation computes several
+  return static_cast<int>(std::ceil(DOLP_NODES_OF_ORDER * std::numbers::pi * highest));
 }
 
 double neglected_orders(double eccentricity, double before_last, double last) {

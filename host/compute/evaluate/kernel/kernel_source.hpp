@@ -26,6 +26,7 @@ using real2 = glm::vec<2, real>;
 using real4 = glm::vec<4, real>;
 
 using glm::abs;
+using glm::ceil;
 using glm::clamp;
 using glm::floatBitsToUint;
 using glm::floor;

@@ -72,6 +72,16 @@ std::vector<kernel::ShapeNode> corner_shapes(const KernelData& data, std::span<c
   return corners;
 }
 
+// Additional slope nodes on a piece at whose start the first facets turn away from the horizon. With the slope, the
+// azimuth of the horizon turns quickly there, and with it cos(2 k phi).
+// Tuned at a width ratio of 3 and 1e-4, no masking and v-cavity, 60 entries each: a quarter node for each order lowers
+// the share of entries with a larger error than asked for from 62 to 33 % and from 35 to 23 %, for 11 to 15 % more
+// evaluations. Half a node: 23 % and 23 %, for 18 to 26 % more evaluations.
+int nodes_at_root(const SlopeOrders& orders) {
+  constexpr double kNodesAtRoot = 0.25;
+  return static_cast<int>(std::ceil(kNodesAtRoot * static_cast<double>(orders.highest)));
+}
+
 }  // namespace
 
 bool has_slope_samples(const MomentsRequest& request) {
@@ -321,13 +331,15 @@ SlopeSamples SlopeSampling::plan(SampledEntries entries) const {
     requests.push_back({.all = impl_->source.weight_of_shape(theta, std::bit_cast<KernelSource::ShapeNode>(corner))});
   }
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-    const KernelSource::Piece piece =
-        impl_->hardest_piece(theta, index, corners, impl_->piece_task(entries.theta, ends, i), requests);
-    const int coarse = std::min(impl_->source.coarse_order(piece.order), impl_->data.rule_order);
-    samples.pieces.push_back(
-        {ends[i].slope, std::min(ends[i + 1].slope, samples.cut), static_cast<std::uint32_t>(samples.slopes.size()),
-         static_cast<std::uint32_t>(piece.order), static_cast<std::uint32_t>(coarse), ends[i].direction_piece});
-    impl_->add_rule(samples, theta, corners, piece, requests, piece.order);
+    const KernelSource::Task task = impl_->piece_task(entries.theta, ends, i);
+    const KernelSource::Piece piece = impl_->hardest_piece(theta, index, corners, task, requests);
+    const int resolving = task.root_at_start ? nodes_at_root(impl_->data.orders) : 0;
+    const int fine = std::min(piece.order + resolving, impl_->data.rule_order);
+    const int coarse = std::min(impl_->source.coarse_order(piece.order) + resolving, impl_->data.rule_order);
+    samples.pieces.push_back({ends[i].slope, std::min(ends[i + 1].slope, samples.cut),
+                              static_cast<std::uint32_t>(samples.slopes.size()), static_cast<std::uint32_t>(fine),
+                              static_cast<std::uint32_t>(coarse), ends[i].direction_piece});
+    impl_->add_rule(samples, theta, corners, piece, requests, fine);
     impl_->add_rule(samples, theta, corners, piece, requests, coarse);
   }
   samples.entries = std::move(entries);

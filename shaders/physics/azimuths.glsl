@@ -189,9 +189,9 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
         // The nodes that resolve cos(2 k phi) are in both rules. Without them the coarser rule would say nothing.
         real highest = real(slope.order + DOLP_ORDER_WIDTH - 1);
         int resolving = kHasOrders ? int(ceil(real(DOLP_NODES_OF_ORDER) * highest * arc.span)) : 0;
-        int order = order_between(nodes, slope.most_azimuths - resolving);
+        int order = order_between(nodes, max(slope.most_azimuths - resolving, 1));
         if (slope.is_coarse) order = coarse_order(order);
-        order += resolving;
+        if (kHasOrders) order = min(order + resolving, slope.most_azimuths - (slope.is_coarse ? 1 : 0));
         AzimuthSums more = arc_sums(rule, theta, row, index, slope, arc, zone, zone < lines.leaving, order,
                                     sums.columns);
         for (int g = 0; g < DOLP_WIDTH; ++g) {

@@ -26,6 +26,7 @@ struct Source {
   static constexpr bool kHasCurves = false;
   static constexpr bool kIsMultiple = false;
   static constexpr bool kHasDirect = false;
+  static constexpr bool kHasOrders = false;
   static constexpr uint kColumns = DOLP_COLUMNS_SKY;
   int order_of_nodes = 1;
   std::vector<real2> rule_nodes;

@@ -124,7 +124,7 @@ def keys() -> dict[str, dict[str, str]]:
 
 
 class Material:
-    """A built-in material. `n(wavelength_um)` and `k(wavelength_um)` take numbers and arrays."""
+    """A built-in material. `n(wavelength_um)` and `k(wavelength_um)` take numbers and arrays. `kind`: as in `materials()`."""
 
     def __init__(self, name: str) -> None:
         known = materials()
@@ -133,7 +133,7 @@ class Material:
         near = same or [one for one in known if one.casefold().startswith(f"{wanted} ")]
         self.name: str = near[0] if len(near) == 1 else name
         check_names("material", [self.name], list(known))
-        self.from_um, self.to_um, self.source = known[self.name].values()
+        self.from_um, self.to_um, self.source, self.kind = known[self.name].values()
         self._native = _native.Scene.from_text("surface.sigma = 0\nemission.temperature_K = 300\n", [
             ("surface.material", self.name), ("spectrum.wavelength_um", self.from_um)], "material")
 

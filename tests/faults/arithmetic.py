@@ -87,7 +87,8 @@ def log_uniform(draw, low, high):
 
 def random_entry(draw, masking):
     least_q = 1.55 if masking == "smith" else 1.05
-    return {"theta_deg": draw.choice([draw.uniform(0, 89), draw.uniform(0, 89), 90 - log_uniform(draw, 0.001, 10)]),
+    grazing = 90 - log_uniform(draw, *draw.choice([(1e-3, 10), (1e-10, 1e-3)]))
+    return {"theta_deg": draw.choice([draw.uniform(0, 89), draw.uniform(0, 89), grazing]),
             "sigma": log_uniform(draw, 0.003, 5), "q": least_q + log_uniform(draw, 0.03, 10),
             "n": log_uniform(draw, 0.5, 20),
             "k": draw.choice([0.0, log_uniform(draw, 0.001, 60), log_uniform(draw, 0.1, 60)])}

@@ -88,10 +88,6 @@ inline constexpr double kMaskingTableErrorDouble = 1e-12;
 inline constexpr double kDivergingSlope = 0.06;
 /// Relative rounding errors of the moments, in unit roundoffs. roundings() in error_bounds.cpp combines these numbers.
 inline constexpr double kRoundings = 20.0;
-/// The unit roundoff of float grows by these factors for each unit by which the device's errors of divisions and square
-/// roots exceed 0.5 (OperationErrors). Fitted: tests/faults/arithmetic.py prints errors over bounds.
-inline constexpr double kDivisionGrowth = 1.6;
-inline constexpr double kRootGrowth = 0.55;
 inline constexpr double kHeavyTailRoundings = 80.0;
 inline constexpr double kHeavyTailQ = 1.1;
 inline constexpr double kHeavyTailSmithQ = 1.6;
@@ -100,6 +96,14 @@ inline constexpr double kExtremeTailQ = 1.01;
 inline constexpr double kCriticalRoundings = 300.0;
 inline constexpr double kMostCriticalRoundings = 3000.0;
 inline constexpr double kSmoothM = 0.05;
+/// The unit roundoff of float grows by these factors for each unit by which the device's errors of divisions and square
+/// roots exceed 0.5 (OperationErrors). Fitted: tests/faults/arithmetic.py prints errors over bounds.
+inline constexpr double kDivisionGrowth = 1.6;
+inline constexpr double kRootGrowth = 0.55;
+/// Error of the azimuth of a split line, divided by the excess of the unit roundoff over the one of correct rounding.
+/// Fitted: at zeniths of 89.999 to 90 degrees, 17 is needed if only square roots are inexact, and 10 if quotients are,
+/// too.
+inline constexpr double kLineRoundings = 30.0;
 /// The error bound of a sum is one of these factors times the difference between the finer and the coarser rule.
 inline constexpr double kPairFactor = 4.0;
 inline constexpr double kTablePairFactor = 8.0;    // with a masking table

@@ -66,10 +66,19 @@ double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const k
   return masking_bound(data.distribution, data.masking, theta, shape) * (theta.c * tail + theta.s * slopes);
 }
 
+// Error of v-cavity masking, as a share of the albedo. G has other formulas on the two sides of a split line. Next to
+// the line the products e G of both formulas differ by about the distance, and the sum of e G is about cos(theta). If
+// quotients and roots are inexact, the azimuth of the line is wrong by `distance` even if cos(theta) is far smaller.
+double split_line_error(const KernelData& data, const kernel::ThetaNode& theta, double unit_roundoff) {
+  const double distance = kLineRoundings * (unit_roundoff - kFloatRoundoff);
+  const bool is_split = data.masking == Masking::kVCavity && data.scattering == Scattering::kSingle;
+  return is_split && distance > 0.0 ? distance * distance / theta.c : 0.0;
+}
+
 // Error of the masking G, as a share of the albedo. With smith it is infinite where the mean slope is: at q = 3/2.
 double masking_error(const KernelData& data, const MomentsEntry& entry, double unit_roundoff) {
-  if (!data.needs_masking_table()) return 0.0;
   const kernel::ThetaNode& theta = data.thetas[entry.theta];
+  if (!data.needs_masking_table()) return split_line_error(data, theta, unit_roundoff);
   const kernel::ShapeNode& shape = data.shapes[entry.shape];
   if (!table_resolves(shape, theta.c, theta.s)) return 1.0;
   const bool may_diverge = data.masking == Masking::kSmith && data.distribution == Distribution::kCauchy;

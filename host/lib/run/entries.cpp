@@ -128,6 +128,16 @@ void check_films(const SceneValues& scene, const Points& points) {
   }
 }
 
+void check_cross_slopes(const SceneValues& scene, const SlopeShape& shape, const std::string& where) {
+  if (!is_elliptic(shape)) return;
+  const double most = largest_width_ratio(scene.accuracy.tolerance);
+  if (widest_sigma(shape) <= most * narrowest_sigma(shape)) return;
+  throw InputError(fmt::format(
+      "{}: sigma = {} and sigma_cross = {}: the quotient of the widths along and across is at most {:.3g} at "
+      "accuracy.tolerance = {:g}",
+      where, format_number(shape.sigma), format_number(shape.sigma_cross), most, scene.accuracy.tolerance));
+}
+
 }  // namespace
 
 void check_surface(const SceneValues& scene, const Points& points) {
@@ -146,16 +156,6 @@ void check_labels_chosen(const SceneValues& scene, const Points& points) {
         points.name.empty() ? ""
                             : fmt::format(", or add the column \"{}\" to {}", describe(axis).column, points.name)));
   }
-}
-
-void check_cross_slopes(const SceneValues& scene, const SlopeShape& shape, const std::string& where) {
-  if (!is_elliptic(shape)) return;
-  const double most = largest_width_ratio(scene.accuracy.tolerance);
-  if (widest_sigma(shape) <= most * narrowest_sigma(shape)) return;
-  throw InputError(fmt::format(
-      "{}: sigma = {} and sigma_cross = {}: the quotient of the widths along and across is at most {:.3g} at "
-      "accuracy.tolerance = {:g}",
-      where, format_number(shape.sigma), format_number(shape.sigma_cross), most, scene.accuracy.tolerance));
 }
 
 SceneEntries grid_entries(const SceneValues& scene) {

@@ -331,6 +331,7 @@ TEST_F(CommandLine, Materials_List_HasNameRangeAndSource) {
   EXPECT_EQ(materials.at(0), json({{"name", "iron"},
                                    {"from_um", 2.0},
                                    {"to_um", 20.0},
+                                   {"kind", "metal"},
                                    {"source", "Ordal et al. 1988, Appl. Opt. 27, 1203 (Al,Fe,Ti,Ta,W,Mo)"}}));
   const auto mirror = std::ranges::find(materials, "oxidised Al mirror", [](const json& m) { return m["name"]; });
   ASSERT_NE(mirror, materials.end());

@@ -51,8 +51,9 @@ void add_moments_sample(Stokes& sum, const SpectralSample& sample, const Reflect
   sum.i += intensity.value;
   sum.q += net * r.rho_q;
   sum.i_error += intensity.error + rounding * intensity.terms;
-  sum.u += net * r.rho_u;
   sum.q_error += std::abs(net) * r.rho_q_error + rounding * net_terms * polarised_terms(r);
+  if (r.rho_u == 0.0) return;  // by symmetry; times a radiance that overflows it would be NaN
+  sum.u += net * r.rho_u;
   sum.u_error += std::abs(net) * r.rho_u_error + rounding * net_terms * std::abs(r.rho_u);
 }
 
@@ -61,13 +62,14 @@ void add_emitting_sample(Stokes& sum, const SpectralSample& sample, const Reflec
   const double incident = direct + sample.surroundings;
   sum.i += sample.emitted * e.i + incident * r.rho_i;
   sum.q += sample.emitted * e.q + incident * r.rho_q;
-  sum.u += sample.emitted * e.u + incident * r.rho_u;
   const double emitted_terms = std::abs(sample.emitted) * e.terms;
   const double emitted = std::abs(sample.emitted);
   sum.i_error += emitted * e.i_error + std::abs(incident) * r.rho_i_error +
                  rounding * (emitted_terms + std::abs(incident * r.rho_i));
   sum.q_error += emitted * e.q_error + std::abs(incident) * r.rho_q_error +
                  rounding * (emitted_terms + std::abs(incident) * polarised_terms(r));
+  if (r.rho_u == 0.0 && e.u == 0.0) return;
+  sum.u += sample.emitted * e.u + incident * r.rho_u;
   sum.u_error += emitted * e.u_error + std::abs(incident) * r.rho_u_error +
                  rounding * (std::abs(sample.emitted * e.u) + std::abs(incident * r.rho_u));
 }
@@ -108,17 +110,18 @@ Stokes stokes_sum(const SpectralRule& rule, std::span<const Reflectance> reflect
   };
   sum.i_error += spectral_error(&Reflectance::rho_i, &Emissivity::i);
   sum.q_error += spectral_error(&Reflectance::rho_q, &Emissivity::q);
-  sum.u_error += spectral_error(&Reflectance::rho_u, &Emissivity::u);
+  if (sum.u_error > 0.0) sum.u_error += spectral_error(&Reflectance::rho_u, &Emissivity::u);
   return sum;
 }
 
 void add_specular(Stokes& sum, double net, const Moments& moments) {
   sum.i += net * moments.r_i;
   sum.q += net * moments.r_q;
-  sum.u += net * moments.r_u;
   sum.i_error += std::abs(net) * (moments.r_i_error + kRadianceRounding * std::abs(moments.r_i));
   sum.q_error += std::abs(net) * (moments.r_q_error + kRadianceRounding * std::abs(moments.r_q));
-  if (moments.r_u != 0.0) sum.u_error += std::abs(net) * moments.r_q_error;
+  if (moments.r_u == 0.0) return;
+  sum.u += net * moments.r_u;
+  sum.u_error += std::abs(net) * moments.r_q_error;
 }
 
 void add_specular_sky(Stokes& sum, double specular, double rounding, const SkyWeights& weights,
@@ -132,7 +135,7 @@ void add_specular_sky(Stokes& sum, double specular, double rounding, const SkyWe
     const double weight = weights.of[static_cast<Eigen::Index>(k)];
     sum.i += specular * weight * with.i;
     sum.q += specular * weight * with.q;
-    u += specular * weight * with.u;
+    if (with.u != 0.0) u += specular * weight * with.u;
     error += std::abs(weight) * (with.error + rounding * std::abs(moments.r_i));
   }
   sum.i_error += std::abs(specular) * error;
@@ -165,7 +168,7 @@ void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std:
   };
   sum.i_error += spectral_error(&ColumnMoments::i);
   sum.q_error += spectral_error(&ColumnMoments::q);
-  sum.u_error += spectral_error(&ColumnMoments::u);
+  if (sum.u_error > 0.0) sum.u_error += spectral_error(&ColumnMoments::u);
 }
 
 void add_beam(Stokes& sum, double k_s, const SpectralRule& rule, std::span<const Scattered> scattered,

@@ -267,16 +267,6 @@ void check_cross_slopes(const SceneValues& scene, const SceneDocument& document)
     check_needs(
         document, key,
         {{has_orders, "surface.masking = \"none\" or \"v-cavity\""}, {!has_bracket, "emission.bracket = false"}});
-    if (is_directional)
-      check_needs(document, key,
-                  {{surface.wind_m_s || !scene.wind_m_s.empty(), "surface.wind_m_s or grid.wind_m_s"},
-                   {!document.find("surface.sigma_cross") && !document.find("grid.sigma_cross"),
-                    "no sigma_cross beside surface.wind_model = \"directional\""}});
-  }
-  for (const char* key : {"geometry.surface_azimuth_deg", "grid.surface_azimuth_deg"}) {
-    if (document.find(key))
-      check_needs(document, key,
-                  {{scene.has_cross_slopes(), "surface.sigma_cross or surface.wind_model = \"directional\""}});
   }
 }
 

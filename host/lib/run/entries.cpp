@@ -82,11 +82,6 @@ void check_shapes(const SceneValues& scene, const Points& points) {
   if (points[Axis::kSigmaCross] && !has_orders) {
     throw InputError(points.where() + ": column \"sigma_cross\" needs surface.masking = \"none\" or \"v-cavity\"");
   }
-  if (points[Axis::kSurfaceAzimuth] && !points[Axis::kSigmaCross] && !scene.has_cross_slopes()) {
-    throw InputError(points.where() +
-                     ": column \"surface_azimuth_deg\" needs surface.sigma_cross or surface.wind_model = "
-                     "\"directional\" in the scene, or a column \"sigma_cross\"");
-  }
   if (points[Axis::kSigmaCross] && surface.wind_model == WindModel::kDirectional) {
     throw InputError(points.where() +
                      ": column \"sigma_cross\" cannot be combined with surface.wind_model = \"directional\"");

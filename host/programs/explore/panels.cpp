@@ -86,7 +86,6 @@ Scene at_one_wavelength(const Scene& scene) {
 Scene smooth_scene(const Scene& scene) {
   return scene.with({{"surface.wind_m_s", Value()},
                      {"grid.wind_m_s", Value()},
-                     {"surface.wind_model", "isotropic"},
                      {"surface.sigma_cross", Value()},
                      {"grid.sigma_cross", Value()},
                      {"geometry.surface_azimuth_deg", Value()},

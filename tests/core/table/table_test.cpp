@@ -242,8 +242,8 @@ TEST_F(TableFiles, Csv_Rows_ReadBackAsTheSameDoubles) {
   EXPECT_NE(comments.find("# scene: a = 1\n#   b = 2\n# driver: \n"), std::string::npos) << comments;
   EXPECT_NE(comments.find("# tolerance: 1e-04\n"), std::string::npos) << comments;
   EXPECT_EQ(names,
-            "theta_deg,sigma,q,dolp,q_over_i,aolp_deg,stokes_i,stokes_q,stokes_u,stokes_v,rho_i,rho_q,albedo,"
-            "emissivity_s,emissivity_p,dolp_low,dolp_high,error_estimate,rho_error_estimate,status");
+            "theta_deg,sigma,q,dolp,q_over_i,aolp_deg,stokes_i,stokes_q,stokes_u,stokes_v,rho_i,rho_q,rho_u,"
+            "albedo,emissivity_s,emissivity_p,dolp_low,dolp_high,error_estimate,rho_error_estimate,status");
   for (std::size_t i = 0; i < table.size(); ++i) {
     ASSERT_TRUE(std::getline(lines, line));
     std::istringstream cells(line);

@@ -114,8 +114,6 @@ TEST(CrossSlopes, ImpossibleScenes_AreRefusedWithTheirKeys) {
   EXPECT_TRUE(contains(refusal({{"surface.sigma_cross", 2.0}}), "quotient of the widths"));
   EXPECT_TRUE(contains(refusal({{"surface.sigma", 0.0}}), "quotient of the widths"));
   EXPECT_TRUE(contains(refusal({{"surface.wind_model", "directional"}}), "surface.wind_m_s"));
-  EXPECT_TRUE(contains(refusal({{"surface.sigma_cross", Value()}, {"geometry.surface_azimuth_deg", 3.0}}),
-                       "surface.sigma_cross"));
 }
 
 }  // namespace

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "bench_program.hpp"
 
@@ -15,6 +17,7 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 
 const std::string kAccuracy = "accuracy --quick --entries 16 ";
+constexpr double kMostSeconds = 1.0;  // after this time the study accuracy repeats no call
 
 TEST_F(BenchProgram, Accuracy_Json_Context_SaysWhereAndHowToRunAgain) {
   const json study = study_of(kAccuracy + "--case easy --method gauss --method vulkan-float");
@@ -46,7 +49,9 @@ TEST_F(BenchProgram, Accuracy_Json_Results_HaveErrorAndTimesForEverySetting) {
     const bool on_device = row["method"] == "vulkan-float";
     EXPECT_EQ(row["entries"], on_device ? 16 : 1);
     EXPECT_EQ(row.contains("kernel_time_s"), on_device);
-    EXPECT_GE(row["raw_times_s"].size(), 3U);
+    const auto raw_s = row["raw_times_s"].get<std::vector<double>>();
+    const double total_s = row["entries"].get<double>() * std::accumulate(raw_s.begin(), raw_s.end(), 0.0);
+    EXPECT_TRUE(raw_s.size() >= 3 || total_s >= kMostSeconds);  // a busy machine may take this long for one call
     EXPECT_GT(row["time_min_s"], 0.0);
     EXPECT_LE(row["time_min_s"], row["time_s"]);
     EXPECT_LT(row["error"], 1e-3);

@@ -101,7 +101,7 @@ TEST_F(FitTest, EachNumberOfAScene_VariesAsASettingOfItWould) {
       {"source.scale", {2, bistatic}},
       {"geometry.view_zenith_deg", {50, bistatic}},
       {"geometry.relative_azimuth_deg", {170, bistatic}},
-      {"geometry.surface_azimuth_deg", {40, {"surface.masking=none", "surface.sigma_cross=0.2"}}},
+      {"geometry.surface_azimuth_deg", {40, {"surface.masking=none", "surface.sigma_cross=0.4"}}},
       {"surroundings.temperature_K", {210}},
       {"surroundings.vapour_cm", {0.5, sky}},
       {"surroundings.air_temperature_K", {280, sky}},

@@ -42,9 +42,9 @@ def lost_devices(driver):
 def device_memory(driver):
     """the device refuses pieces of memory above a size: tiles shrink, the values stay"""
     driver.expect("table", LARGE)
-    for kilobytes in ((1, 150, 1000) if driver.is_quick else (1, 10, 50, 100, 120, 150, 200, 300, 500, 1000, 5000)):
+    for kilobytes in ((1, 200, 1000) if driver.is_quick else (1, 10, 50, 100, 120, 150, 200, 300, 500, 1000, 5000)):
         fault = driver.preload("vulkan", DOLP_VULKAN_MEMORY=str(kilobytes * 1000))
-        allowed = (MEMORY,) if kilobytes <= 1 else (DONE,) if kilobytes >= 150 else (DONE, MEMORY)
+        allowed = (MEMORY,) if kilobytes <= 1 else (DONE,) if kilobytes >= 200 else (DONE, MEMORY)
         yield driver.try_once("table", LARGE, allowed, environment=fault)
 
 

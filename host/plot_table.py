@@ -65,7 +65,8 @@ NAMED = ("material", "band")  # axes whose values are names; the picture shows o
 DEFAULTS = {"material": "one curve for each", "band": "the first"}
 UNITS = {"wavelength": " µm", "temperature": " K", "band": " µm", "theta": "°", "view_zenith_deg": "°", "relative_azimuth_deg": "°",
          "surface_azimuth_deg": "°"}
-KEYS = {"temperature": ("emission", "temperature_K"), "q": ("surface", "q"), "wavelength": ("spectrum", "wavelength_um"), "n": ("surface", "n"), "k": ("surface", "k"),
+KEYS = {"temperature": ("emission", "temperature_K"), "q": ("surface", "q"), "n": ("surface", "n"), "k": ("surface", "k"),
+        "wavelength": ("spectrum", "wavelength_um"),
         "sigma": ("surface", "sigma"), "wind_m_s": ("surface", "wind_m_s"), "view_zenith_deg": ("geometry", "view_zenith_deg"),
         "relative_azimuth_deg": ("geometry", "relative_azimuth_deg"), "sigma_cross": ("surface", "sigma_cross"),
         "surface_azimuth_deg": ("geometry", "surface_azimuth_deg")}  # the scene's key for each axis

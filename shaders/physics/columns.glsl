@@ -40,7 +40,7 @@ real sky_function(SkyPlace table, int k, real cos_r) {
   int cells = table.cells;
   real position = sqrt(max(real(1.0) - cos_r, real(0.0))) * real(cells);
   int cell = min(int(position), cells - 1);
-  real2 node = rule_node(table.start + k * cells + cell);
+  real2 node = table_node(table.start + k * cells + cell);
   return node.x + (position - real(cell)) * node.y;
 }
 
@@ -123,7 +123,7 @@ void store_columns(int member, bool is_coarse, Columns sums) {
 SkyPlace sky_place() { return SkyPlace(sky_cells(), sky_start(), pushed_corners()); }
 
 // cos(theta_r) at corner i of the sky. Corners are in ascending order of the zenith.
-real cos_of_corner(SkyPlace table, int i) { return rule_node(table.start + sky_functions() * table.cells + i).x; }
+real cos_of_corner(SkyPlace table, int i) { return table_node(table.start + sky_functions() * table.cells + i).x; }
 #else
 struct ColumnValues {
   real none;

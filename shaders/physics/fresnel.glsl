@@ -55,13 +55,13 @@ Fresnel reflectance_at(IndexNode index, real cos_beta) {
   int start = DOLP_CURVE_ALIGNMENT * int(index.curve_start);
   int first = start + DOLP_CURVE_NODES * cell;
   if (is_measured) {
-    real2 kink = rule_node(start + DOLP_CURVE_NODES * cells + cell);
+    real2 kink = table_node(start + DOLP_CURVE_NODES * cells + cell);
     if (x > kink.x) first = start + int(kink.y);
   }
   real value[3];
   for (int i = 0; i < 3; ++i) {
-    real2 low = rule_node(first + 2 * i);
-    real2 high = rule_node(first + 2 * i + 1);
+    real2 low = table_node(first + 2 * i);
+    real2 high = table_node(first + 2 * i + 1);
     value[i] = low.x + x * (low.y + x * (high.x + x * high.y));
   }
   return Fresnel(max(value[0], real(0.0)), max(value[1], real(0.0)), value[2]);

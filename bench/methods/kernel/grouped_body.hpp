@@ -34,6 +34,7 @@ struct Source {
 
   int largest_order() const { return order_of_nodes; }
   real2 rule_node(int i) const { return rule_nodes[static_cast<std::size_t>(i)]; }
+  real2 table_node(int i) const { return rule_node(i); }
   real4 masking_node(uint i) const { return masking_table[i]; }
   void store_masking_node(uint i, real4 node) { masking_table[i] = node; }
 };

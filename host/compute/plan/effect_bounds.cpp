@@ -71,7 +71,8 @@ Range slope_density(Distribution distribution, const EntriesExtent& extent, doub
   const auto density = [&](double m2, double q) {
     return (is_gaussian ? std::exp(-t2 / m2) : std::exp(-q * std::log1p(t2 / m2))) / (std::numbers::pi * m2);
   };
-  // At each azimuth an elliptic density is that of a width between its two widths, times at most their quotient.
+  // At each azimuth an elliptic density equals the density of a width between its two widths, times at most their
+  // quotient.
   const double ratio = extent.width_ratio;
   const double peak = is_gaussian ? t2 : (q_low - 1.0) * t2;
   return {(is_gaussian ? 1.0 : q_low - 1.0) / ratio * std::min(density(m2_low, q_high), density(m2_high, q_high)),

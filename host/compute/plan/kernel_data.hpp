@@ -81,7 +81,7 @@ struct KernelData {
   std::vector<kernel::ThetaNode> thetas;
   std::vector<Pieces> pieces;  ///< one for each of `thetas`
   std::vector<kernel::ShapeNode> shapes;
-  SlopeOrders orders;              ///< of the elliptic slope distributions; none if all are isotropic
+  SlopeOrders orders;              ///< azimuthal orders for elliptic slope distributions; none if all are isotropic
   std::vector<SlopeShape> slopes;  ///< for each of `shapes`, whose m and scale are the widest and the narrowest
   std::vector<char> needs_line;    ///< for each shape: 1 if pieces must be split at the kink of its masking
   std::vector<kernel::IndexNode> indices;

@@ -27,6 +27,10 @@ double narrowest_sigma(const SlopeShape& shape) {
   return is_elliptic(shape) ? std::min(shape.sigma, shape.sigma_cross) : shape.sigma;
 }
 
+SlopeShape mean_isotropic(const SlopeShape& shape) {
+  return {is_elliptic(shape) ? std::sqrt(shape.sigma * shape.sigma_cross) : shape.sigma, shape.q};
+}
+
 double eccentricity(const SlopeShape& shape) {
   return is_elliptic(shape) ? std::abs(shape.sigma - shape.sigma_cross) / (shape.sigma + shape.sigma_cross) : 0.0;
 }

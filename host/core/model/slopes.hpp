@@ -22,7 +22,8 @@ double slope_width(const SlopeShape& shape);  ///< m = sqrt(2) sigma, the unit o
 bool is_elliptic(const SlopeShape& shape);     ///< true if the widths along and across differ
 double widest_sigma(const SlopeShape& shape);  ///< larger one of the widths along and across
 double narrowest_sigma(const SlopeShape& shape);
-double eccentricity(const SlopeShape& shape);  ///< |sigma - sigma_cross| / (sigma + sigma_cross)
+SlopeShape mean_isotropic(const SlopeShape& shape);  ///< with as many facets near the mean normal
+double eccentricity(const SlopeShape& shape);        ///< |sigma - sigma_cross| / (sigma + sigma_cross)
 
 /// The facets of an elliptic distribution whose slopes point to one azimuth. They are distributed like the facets of an
 /// isotropic distribution of the width `sigma`.
@@ -55,7 +56,7 @@ double sigma_in_wind(double wind_m_s, WindModel model);
 struct CrossSlopes {
   double sigma_cross = 0.0;                      ///< SlopeShape::sigma_cross
   double azimuth_deg = 0.0;                      ///< SlopeShape::azimuth_deg
-  WindModel wind_model = WindModel::kIsotropic;  ///< directional: sigma_cross is that of the wind that gives sigma
+  WindModel wind_model = WindModel::kIsotropic;  ///< directional: the wind that gives sigma also gives sigma_cross
   SlopeShape shape(double sigma, double q) const;
 };
 

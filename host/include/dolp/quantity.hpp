@@ -17,8 +17,9 @@ namespace dolp {
 /// Units: Stokes parameters are exitances, in W m-2 um-1 at one wavelength and W m-2 over a band; in bistatic mode they
 /// are radiances, in W m-2 sr-1 um-1 and W m-2 sr-1. The angle of polarisation is in degrees. The other quantities
 /// have unit 1.
-/// Q = I_s - I_p; in hemispherical mode V = 0, and U = 0 unless slopes differ along and across. Over a band, the reflectance rho is a weighted mean. The weight is
-/// the emission pi B(T) or, in a scene without emission, the incident radiation. Without both, the weight is constant.
+/// Q = I_s - I_p; in hemispherical mode V = 0, and U = 0 unless slopes differ along and across. Over a band, the
+/// reflectance rho is a weighted mean. The weight is the emission pi B(T) or, in a scene without emission, the incident
+/// radiation. Without both, the weight is constant.
 enum class Quantity : std::uint8_t {
   kDolp,    ///< sqrt(Q^2 + U^2) / I; negative if I is negative, NaN if I is 0
   kQOverI,  ///< Q / I, signed: positive if s-polarised radiation prevails

@@ -50,6 +50,11 @@ void add_sky(Moments& moments, const SkyBasis& sky, double zenith_deg, double sp
 
 Moments closed_form(const Surface& surface, const Direction& direction, const SlopeShape& shape,
                     const FacetOptics& index, const SkyBasis* sky) {
+  if (direction.treatment == Treatment::kDivergentLimit && is_elliptic(shape)) {
+    Moments unknown;  // the limit of slopes that differ along and across is not implemented
+    unknown.r_i = unknown.r_q = unknown.deficit = std::numeric_limits<double>::quiet_NaN();
+    return unknown;
+  }
   if (direction.treatment == Treatment::kDivergentLimit) {
     Moments moments = grazing_limit_moments(index, shape.q);
     if (sky) add_sky(moments, *sky, kHorizon_deg, 0.0);  // at 90 degrees vertical facets reflect light from the horizon

@@ -104,9 +104,7 @@ class MemberResults {
                                         std::span<const FacetOptics> facets) {
     if (grooves_) return grooves_->at(selection_.position(member));
     further_.clear();
-    // An estimate: isotropic slopes with the same density of facets near the mean normal are enough for it.
-    SlopeShape isotropic{std::sqrt(widest_sigma(entry.shape) * narrowest_sigma(entry.shape)), entry.shape.q};
-    if (!is_elliptic(entry.shape)) isotropic = entry.shape;
+    const SlopeShape isotropic = mean_isotropic(entry.shape);       // enough for an estimate
     const bool is_equal = entry.index && facets.front().is_bare();  // at all wavelengths
     for (const std::size_t j : middle_samples(is_equal ? 1 : facets.size()))
       further_.push_back(further_light(context_.scene.surface.distribution, direction.theta_deg, isotropic, facets[j]));
@@ -462,9 +460,9 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
   const auto start = std::chrono::steady_clock::now();
   const std::shared_ptr<const ResponseBasis> basis = evaluator ? run_basis(scene, entries, plan) : nullptr;
   summary.response_basis_s += seconds_since(start);
-  const bool is_judged = entries.is_grid() && plan.kept.moments && scene.surface.scattering == Scattering::kSingle;
-  const bool has_table = is_judged && !scene.has_cross_slopes();
-  const auto grooves = has_table ? std::make_shared<const GrooveTable>(scene, entries, *plan.rules) : nullptr;
+  const bool is_judged = entries.is_grid() && plan.kept.moments && scene.surface.scattering == Scattering::kSingle &&
+                         !scene.has_cross_slopes();
+  const auto grooves = is_judged ? std::make_shared<const GrooveTable>(scene, entries, *plan.rules) : nullptr;
   const auto with_evaluation = [&] {
     RunSummary all = summary;
     if (evaluator) all.work += evaluator->report();

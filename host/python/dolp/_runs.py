@@ -89,9 +89,10 @@ def evaluate(scene: Scene, *, evaluator: str | None = None, device: str = "", ke
              derivatives: Iterable[str] = (), **points: Array) -> xr.Dataset:
     """The quantities of a table at points: a Dataset with the shape to which the arrays of `points` broadcast.
 
-    `points` (theta_deg, sigma or wind_m_s, q, sigma_cross, surface_azimuth_deg, wavelength_um, n, k, view_zenith_deg, relative_azimuth_deg): arrays of the same shape are combined value by
-    value, unlike the axes of `table`. Numbers that you do not give come from the scene. A complex n gives n and k. Any
-    other number of the scene can be given too, with its key as the name; each of its values is a separate run.
+    `points` (theta_deg, sigma or wind_m_s, q, sigma_cross, surface_azimuth_deg, wavelength_um, n, k, view_zenith_deg,
+    relative_azimuth_deg): arrays of the same shape are combined value by value, unlike the axes of `table`. Numbers that
+    you do not give come from the scene. A complex n gives n and k. Any other number of the scene can be given too, with
+    its key as the name; each of its values is a separate run.
     DataArrays keep their dimensions and coordinates. Without DataArrays, a dimension along which only one array varies
     gets the name (theta, sigma, q, n, k or wavelength, as in tables) and the values of this array.
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <dolp/errors.hpp>
+#include <dolp/status.hpp>
 #include "error_text.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "run/scene_run.hpp"
@@ -106,6 +107,18 @@ TEST(CrossSlopes, GridAndPoints_AgreeWithSingleScenes) {
     EXPECT_NEAR(table[i][kQOverI], alone[kQOverI], table[i][kErrorEstimate] + alone[kErrorEstimate]);
     EXPECT_NEAR(table[i][kRhoU], alone[kRhoU], 1e-4 * alone[kRhoI]);
   }
+}
+
+// Without masking, reflectances of heavy tails diverge at 90 degrees, and the limit of elliptic slopes is not known.
+TEST(CrossSlopes, DivergentLimit_IsOutsideTheModel) {
+  const PointResult limit = results(brushed({{"surface.distribution", "cauchy"},
+                                             {"surface.q", 1.3},
+                                             {"surface.masking", "none"},
+                                             {"surface.scattering", "single"},
+                                             {"grid.theta_deg", std::vector{90.0}}}))
+                                .front();
+  EXPECT_TRUE(std::isnan(limit[kDolp]));
+  EXPECT_EQ(limit.status & kOutsideModelDomain, std::uint32_t{kOutsideModelDomain});
 }
 
 TEST(CrossSlopes, ImpossibleScenes_AreRefusedWithTheirKeys) {

@@ -90,6 +90,7 @@ struct KernelSource {
   int sky_functions() const { return kColumns == DOLP_COLUMNS_SKY ? static_cast<int>(kColumnCount) : 1; }
   int sky_start() const { return first_sky_cell; }
   real2 rule_node(int i) const { return rule_nodes[static_cast<std::size_t>(i)]; }
+  real2 table_node(int i) const { return rule_node(i); }
   real4 masking_node(uint i) const { return masking_table[i]; }
   void store_masking_node(uint i, real4 node) { masking_table[i] = node; }
   void store_column(uint position, real value) { columns_out()[position] = value; }

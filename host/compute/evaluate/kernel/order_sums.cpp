@@ -106,12 +106,12 @@ OrderSums order_sums(const SlopeSamples& samples, const OrderWeights& weights,
   for (Index k = 0; k < orders; ++k) {
     const Eigen::Map<const Eigen::MatrixXd> members(&azimuths[static_cast<std::size_t>(k * slopes)].r_i, kMembers,
                                                     slopes);
-    const Eigen::Map<const Eigen::MatrixXd> of_columns(columns.data() + k * slopes * per_slope, per_slope, slopes);
+    const Eigen::Map<const Eigen::MatrixXd> column_samples(columns.data() + k * slopes * per_slope, per_slope, slopes);
     sums.evaluations += members.row(row(&kernel::AzimuthNode::evaluations)).sum();
     const auto sum_of_rule = [&](std::uint32_t first, std::uint32_t count) -> Eigen::VectorXd {
-      const auto of_rule = weights.of.row(k).segment(first, count).transpose();
+      const auto rule_weights = weights.of.row(k).segment(first, count).transpose();
       Eigen::VectorXd sum(kMembers + per_slope);
-      sum << members.middleCols(first, count) * of_rule, of_columns.middleCols(first, count) * of_rule;
+      sum << members.middleCols(first, count) * rule_weights, column_samples.middleCols(first, count) * rule_weights;
       return sum;
     };
     for (const SampledPiece& piece : samples.pieces) {

@@ -281,16 +281,17 @@ struct SlopeSampling::Impl {
 
   // Weights of the slopes in the sums of each order: the mean over the sectors, for an elliptic distribution, with the
   // Fourier coefficient of the sector's azimuth.
-  OrderWeights order_weights(const SlopeSamples& samples, std::uint32_t shape, std::vector<SlopeWeights>& of_sectors) {
+  OrderWeights order_weights(const SlopeSamples& samples, std::uint32_t shape,
+                             std::vector<SlopeWeights>& sector_weights) {
     auto node = std::bit_cast<KernelSource::ShapeNode>(data.shapes[shape]);
     const std::vector<SlopeSector> sectors = slope_sectors(data.slopes[shape], data.orders.sectors);
     OrderWeights weights(is_elliptic(data.slopes[shape]) ? samples.orders : 1, samples.slopes.size());
-    of_sectors.resize(sectors.size());
+    sector_weights.resize(sectors.size());
     for (std::size_t i = 0; i < sectors.size(); ++i) {
       node.m = slope_width({.sigma = sectors[i].sigma});
-      if (of_sectors[i].m != node.m) of_sectors[i] = slope_weights(samples, node);
+      if (sector_weights[i].m != node.m) sector_weights[i] = slope_weights(samples, node);
       const double share = 1.0 / static_cast<double>(sectors.size());
-      weights.add(scaled_weights(samples, node, of_sectors[i]), sectors[i].azimuth, share);
+      weights.add(scaled_weights(samples, node, sector_weights[i]), sectors[i].azimuth, share);
       weights.steeper += share * source.slope_tail(node, samples.cut);
     }
     return weights;
@@ -299,7 +300,7 @@ struct SlopeSampling::Impl {
   void integrate_orders(const SlopeSamples& samples, std::span<const kernel::AzimuthNode> azimuths,
                         std::span<const double> azimuth_columns, double unit_roundoff, std::span<Moments> moments) {
     const auto& [direction, theta, index, shapes] = samples.entries;
-    std::vector<SlopeWeights> of_sectors;
+    std::vector<SlopeWeights> sector_weights;
     OrderSums sums;
     SlopeShape known;
     for (const std::uint32_t shape : shapes) {
@@ -307,7 +308,7 @@ struct SlopeSampling::Impl {
       const double azimuth = slopes.azimuth_deg;
       slopes.azimuth_deg = 0.0;  // all azimuths share the sums
       if (!(slopes == known)) {
-        sums = order_sums(samples, order_weights(samples, shape, of_sectors), azimuths, azimuth_columns, data);
+        sums = order_sums(samples, order_weights(samples, shape, sector_weights), azimuths, azimuth_columns, data);
         known = slopes;
       }
       moments[data.entry_position(direction, index, shape)] =

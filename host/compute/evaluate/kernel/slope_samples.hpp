@@ -49,7 +49,7 @@ struct SlopeSamples {
   double cut = 0.0;  ///< largest slope; steeper facets are left out
   std::vector<SampledPiece> pieces;
   std::vector<SampledSlope> slopes;
-  std::size_t orders = 1;  ///< azimuthal orders: the samples are those of all slopes of order 0, then of order 1, ...
+  std::size_t orders = 1;  ///< azimuthal orders: first all slopes have samples of order 0, then of order 1, ...
 
   std::size_t nodes() const { return orders * slopes.size(); }
 };

@@ -15,7 +15,7 @@ class ArithmeticProbe {
  public:
   /// `kernels` must be for float.
   ArithmeticProbe(const Device& device, Kernels& kernels);
-  /// Compares the results with quotients and square roots in double. Errors: those of CommandStream.
+  /// Compares the results with quotients and square roots in double. Errors: the errors of CommandStream.
   Arithmetic measure(CommandStream& stream, double timeout_s);
 
  private:

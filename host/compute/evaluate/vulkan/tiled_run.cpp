@@ -8,6 +8,8 @@ namespace dolp::vulkan {
 namespace {
 
 using Node = std::array<double, 2>;  // a rule node
+// The five sections of Gauss rules fit in the texels of every device (rule_node() in shaders/physics/buffers.glsl).
+static_assert(5 * DOLP_MAX_ORDER * (DOLP_MAX_ORDER + 1) / 2 <= 65536);
 static_assert(real_count<kernel::RuleNode>() % 2 == 0, "std430 would put a gap between the RuleNode and stored nodes");
 
 }  // namespace

@@ -46,7 +46,8 @@ struct Block {
 /// The slope samples of some directions, and the kernel's input for them. A run computes one batch at a time.
 struct SlopeBatch {
   std::vector<SlopeSamples> samples;
-  /// Where the results of one of `slopes` belong in SampledAzimuths: that of order g of its group at node + g * stride.
+  /// Where the results of one of `slopes` belong in SampledAzimuths: the result of order g of its group at node + g *
+  /// stride.
   struct Output {
     std::size_t node = 0;
     std::size_t stride = 0;

@@ -167,7 +167,8 @@ TEST_F(Library, Keys_NameTheirWordsAndRivals) {
   EXPECT_EQ(named("emission.bracket").words, (std::vector<std::string>{"false", "true"}));
   EXPECT_EQ(named("surface.k").rivals, (std::vector<std::string>{"surface.material", "surface.material_file",
                                                                  "surface.reflectance_file", "grid.material"}));
-  EXPECT_EQ(named("grid.sigma").rivals, (std::vector<std::string>{"surface.wind_m_s", "grid.wind_m_s"}));
+  EXPECT_EQ(named("grid.sigma").rivals,
+            (std::vector<std::string>{"surface.wind_m_s", "grid.wind_m_s", "surface.wind_model"}));
   EXPECT_TRUE(named("surface.q").rivals.empty());
 }
 

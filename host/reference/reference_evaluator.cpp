@@ -12,6 +12,7 @@
 #include "base/parallel_ranges.hpp"
 #include "base/processor.hpp"
 #include "base/stopwatch.hpp"
+#include "model/angles.hpp"
 #include "model/sky_basis.hpp"
 #include "reference/moments.hpp"
 #include "reference/mueller.hpp"
@@ -38,8 +39,8 @@ void check_shape(Distribution distribution, Masking masking, const SlopeShape& s
   require(shape.sigma_cross >= 0.0, "sigma_cross must not be negative", shape.sigma_cross);
   if (!is_elliptic(shape)) return;
   require(shape.sigma > 0.0, "sigma must be above 0 with sigma_cross", shape.sigma);
-  if (masking != Masking::kNone && masking != Masking::kVCavity) {
-    throw InputError("reference: a sigma_cross other than sigma needs masking none or v-cavity");
+  if (masking == Masking::kIntegral) {
+    throw InputError("reference: a sigma_cross other than sigma needs masking none, v-cavity or smith");
   }
 }
 
@@ -78,6 +79,8 @@ void check(const ScatteringRequest& request) {
   for (const SlopeShape& shape : request.shapes) {
     check_shape(request.distribution, request.masking, shape);
     require(shape.sigma > 0.0, "sigma must be above 0", shape.sigma);
+    if (request.masking == Masking::kSmith && is_elliptic(shape))
+      throw InputError("reference: beams with a sigma_cross other than sigma need masking none or v-cavity");
   }
   for (const FacetOptics& index : request.optics) check_index(index);
 }
@@ -119,6 +122,11 @@ Moments point_moments(const MomentsRequest& request, const MomentsPoint& point,
                ? reference::hemisphere_moments(slopes, request.masking, point.theta_deg, point.index, refinement, sky)
                : reference::groove_moments(slopes, point.theta_deg, point.index, refinement, sky);
   };
+  if (request.has_only_direct()) {
+    Moments m = reference::direct_emission(slopes, request.masking, point.theta_deg, point.index, refinement);
+    m.deficit = cos_sin_deg(point.theta_deg).cos;
+    return m;
+  }
   Moments m = request.sky ? Moments{} : integrate(nullptr);
   // Integrates once for each function of the sky. Each integration also computes the moments again.
   for (std::size_t k = 0; request.sky && k < request.sky->size(); ++k) {

@@ -45,6 +45,10 @@ double InPlaneMasking::attenuation(const BeamGeometry& beam) {
   return 1.0 / (1.0 + lambda(beam.cos_i, beam.sin_i, lambda_i_) + lambda(beam.cos_r, beam.sin_r, lambda_r_));
 }
 
+double InPlaneMasking::smith_toward(double cosine, double sine) {
+  return 1.0 / (1.0 + lambda(cosine, sine, lambda_i_));
+}
+
 double InPlaneMasking::density(double slope) const {
   const double u = slope / m_;
   if (distribution_ == Distribution::kGaussian) return norm_ * std::exp(-u * u);

@@ -16,6 +16,8 @@ class InPlaneMasking {
   InPlaneMasking(Distribution distribution, Masking masking, const SlopeShape& shape);
 
   double attenuation(const BeamGeometry& beam);
+  /// G1 of smith: the share of each facet that one direction sees.
+  double smith_toward(double cosine, double sine);
 
  private:
   /// Integrals over slopes tau. p: density of the slopes in the plane of incidence; g: 1 for smith, 1 / sqrt(1 + tau^2)

@@ -81,7 +81,9 @@ void set_needs(EffectPlan& plan, const SceneValues& scene, const std::vector<Eff
                       (scene.emission->has_bracket || (emits_as(scene, EmissionModel::kDirect) && plan.kept.emission));
   plan.needs_beams = is_bistatic(scene) && plan.kept.source && scene.surface.specular > 0.0 &&
                      !add_nothing(bounds, Part::kSource, plan.kept);
-  plan.gives_rho = plan.kept.moments || scene.surface.specular == 0.0;
+  const bool has_only_direct = scene.surface.has_only_direct() && scene.surface.specular > 0.0;
+  plan.gives_rho = (plan.kept.moments || scene.surface.specular == 0.0) && !has_only_direct;
+  plan.gives_albedo = plan.kept.moments && !has_only_direct;
 }
 
 std::string why_no_moments(const SceneValues& scene, const KeptEffects& kept) {
@@ -252,8 +254,8 @@ Effect band_row(const SceneValues& scene, const EffectPlan& plan, const SceneEnt
 
 bool gives_emissivity(const SceneValues& scene, const EffectPlan& plan) {
   if (!scene.emission || is_fresnel(scene)) return scene.emission.has_value();
-  const bool lacks_direct = emits_as(scene, EmissionModel::kDirect) && !plan.kept.emission;
-  return plan.gives_rho && !lacks_direct;
+  if (!emits_as(scene, EmissionModel::kDirect)) return plan.gives_rho;
+  return plan.kept.emission && (plan.kept.moments || scene.surface.specular == 0.0);
 }
 
 EffectPlan plan_effects(const SceneValues& scene, const SceneEntries& entries, bool keep_all) {

@@ -77,6 +77,7 @@ struct EffectPlan {
   bool needs_beams = false;             ///< the run needs the pBRDF from the source to the viewer
   std::shared_ptr<const SkyBasis> sky;  ///< functions of the sky, set by with_spectra; null without a profile
   bool gives_rho = true;                ///< the run gives rho_i, rho_q and rho_error_estimate
+  bool gives_albedo = true;
   std::shared_ptr<const SpectralRules> rules = {};  ///< for the entries of the run, set by with_spectra
 };
 

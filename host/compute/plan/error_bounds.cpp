@@ -213,12 +213,12 @@ void set_errors(Moments& moments, const kernel::MomentsNode& node, const KernelD
                           (is_multiple ? shares.reflected_cut + shares.grooves : shares.cut);
 }
 
-void add_curve_errors(Moments& moments, const kernel::MomentsNode& node, const kernel::ThetaNode& theta,
-                      const CurveError& error, double unit_roundoff) {
+void add_curve_errors(Moments& moments, const kernel::MomentsNode& node, double emitted, const CurveError& error,
+                      double unit_roundoff) {
   const double facet_error = 1.5 * (error.absolute + kCurveRoundings * unit_roundoff * error.per_roundoff);
   for (double* const bound : {&moments.r_i_error, &moments.r_q_error, &moments.deficit_error})
     *bound += facet_error * std::abs(node.albedo);
-  for (double* const bound : {&moments.direct_i_error, &moments.direct_q_error}) *bound += facet_error * theta.c;
+  for (double* const bound : {&moments.direct_i_error, &moments.direct_q_error}) *bound += facet_error * emitted;
 }
 
 /// `sums` has the four numbers of column k that add_columns() gives.
@@ -277,13 +277,15 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
     moments.albedo = theta.c;
     moments.albedo_error = kCosineRounding * theta.c;
   }
+  // Facets that no masking hides yet may emit more than a black surface.
+  const double emitted = data.has_only_direct ? std::max(theta.c, node.direct_i) : theta.c;
   if (data.has_direct) {
     moments.direct_i = node.direct_i;
     moments.direct_q = node.direct_q;
-    moments.direct_i_error = shares.pair * node.direct_difference + shares.masked_error() * theta.c + shares.cut;
+    moments.direct_i_error = shares.pair * node.direct_difference + shares.masked_error() * emitted + shares.cut;
     moments.direct_q_error = moments.direct_i_error;
   }
-  if (data.has_curves) add_curve_errors(moments, node, theta, data.curve_errors[entry.index], unit_roundoff);
+  if (data.has_curves) add_curve_errors(moments, node, emitted, data.curve_errors[entry.index], unit_roundoff);
   for (std::size_t k = 0; k < data.column_count(); ++k) {
     const auto sums = columns.subspan(DOLP_COLUMN_PARTS * k, DOLP_COLUMN_PARTS);
     moments.columns.push_back(column_moments(sums, k, node, data, theta, shares, unit_roundoff));

@@ -327,6 +327,13 @@ void add_piece(kernel::MomentsNode& sum, const kernel::MomentsNode& piece) {
 }
 
 KernelData kernel_data(const MomentsRequest& request, Tables tables) {
+  if (request.has_only_direct()) {  // smith masking is one factor of the emission that leaves the facets
+    MomentsRequest facets = request;
+    facets.masking = Masking::kNone;
+    KernelData data = kernel_data(facets, tables);
+    data.has_only_direct = true;
+    return data;
+  }
   return kernel_data(request, rule_model(request.masking, request.scattering), tables);
 }
 

@@ -69,6 +69,7 @@ struct KernelData {
   Masking masking = Masking::kIntegral;
   Scattering scattering = Scattering::kSingle;
   bool has_direct = false;
+  bool has_only_direct = false;  ///< MomentsRequest::has_only_direct(); then `masking` is none
   double tolerance = 1e-4;
   kernel::RuleNode rule{};
   int rule_order = 1;

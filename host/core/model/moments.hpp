@@ -64,7 +64,7 @@ struct MomentsRequest {
   std::vector<FacetOptics> optics;
   std::vector<double> sigma;
   std::vector<double> q;
-  std::vector<double> sigma_cross = {0.0};  ///< SlopeShape::sigma_cross; needs masking none or v-cavity if above 0
+  std::vector<double> sigma_cross = {0.0};  ///< SlopeShape::sigma_cross; not with masking integral if above 0
   std::vector<double> azimuth_deg = {0.0};
   WindModel wind_model = WindModel::kIsotropic;  ///< see CrossSlopes; directional only in a grid
   std::vector<char> wanted;  ///< a flag per entry of a grid. If empty, all are wanted. Unwanted moments are undefined
@@ -77,6 +77,9 @@ struct MomentsRequest {
   std::size_t shapes() const { return sigma.size() * q.size() * sigma_cross.size() * azimuth_deg.size(); }
   SlopeShape shape(std::size_t number) const;  ///< number `number` of a grid's shapes()
   bool has_elliptic_shapes() const;
+  /// Elliptic slopes with smith masking: only the direct emission is computed; the other moments are those of a surface
+  /// that reflects nothing.
+  bool has_only_direct() const { return masking == Masking::kSmith && has_elliptic_shapes(); }
   MomentsPoint operator[](std::size_t entry) const;
   /// This request for only some directions of a grid, given by their positions in `theta_deg`.
   MomentsRequest select_directions(std::span<const std::size_t> directions) const;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "model/angles.hpp"
+
 namespace dolp {
 namespace {
 
@@ -29,6 +31,12 @@ double narrowest_sigma(const SlopeShape& shape) {
 
 SlopeShape mean_isotropic(const SlopeShape& shape) {
   return {is_elliptic(shape) ? std::sqrt(shape.sigma * shape.sigma_cross) : shape.sigma, shape.q};
+}
+
+SlopeShape in_view_plane(const SlopeShape& shape) {
+  if (!is_elliptic(shape)) return {shape.sigma, shape.q};
+  const CosSin turn = cos_sin_deg(shape.azimuth_deg);
+  return {std::hypot(shape.sigma * turn.cos, shape.sigma_cross * turn.sin), shape.q};
 }
 
 double eccentricity(const SlopeShape& shape) {

@@ -24,6 +24,8 @@ double widest_sigma(const SlopeShape& shape);  ///< larger one of the widths alo
 double narrowest_sigma(const SlopeShape& shape);
 SlopeShape mean_isotropic(const SlopeShape& shape);  ///< with as many facets near the mean normal
 double eccentricity(const SlopeShape& shape);        ///< |sigma - sigma_cross| / (sigma + sigma_cross)
+/// Isotropic, with the same slopes in the vertical plane through the viewer.
+SlopeShape in_view_plane(const SlopeShape& shape);
 
 /// The facets of an elliptic distribution whose slopes point to one azimuth. They are distributed like the facets of an
 /// isotropic distribution of the width `sigma`.

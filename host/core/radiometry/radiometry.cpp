@@ -184,8 +184,9 @@ Radiometry::Radiometry(const SceneModel& scene, SpectralRule rule, const Radiome
     : scene_(scene),
       beam_specular_(scene.surface.specular),
       settings_(settings),
-      knows_rho_(settings.kept.moments || scene.surface.specular == 0.0),
-      knows_emissivity_(knows_rho_ || emission_model(scene) == EmissionModel::kFresnel),
+      knows_rho_(scene.surface.specular == 0.0 || (settings.kept.moments && !scene.surface.has_only_direct())),
+      knows_emissivity_(knows_rho_ || emission_model(scene) == EmissionModel::kFresnel ||
+                        (settings.kept.moments && emission_model(scene) == EmissionModel::kDirect)),
       rule_(std::move(rule)),
       kept_rule_(kept_rule(rule_, settings.kept)) {
   const KeptEffects& kept = settings.kept;
@@ -226,7 +227,7 @@ Radiometry::Optics Radiometry::optics_with(std::vector<FacetOptics> facets) cons
 }
 
 PointResult Radiometry::finished(PointResult result) const {
-  if (!settings_.kept.moments) result[kAlbedo] = kNan;
+  if (!settings_.kept.moments || scene_.surface.has_only_direct()) result[kAlbedo] = kNan;
   if (!knows_emissivity_) result[kEmissivityS] = result[kEmissivityP] = kNan;
   if (!knows_rho_) result[kRhoI] = result[kRhoQ] = result[kRhoU] = result[kRhoErrorEstimate] = kNan;
   result[kErrorEstimate] += settings_.dropped;
@@ -350,8 +351,10 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
     result[kDolpHigh] = between.high;
     result[kErrorEstimate] = std::max(result[kErrorEstimate], between.error);
   }
-  result.model_change =
-      change_by_model(scene_, kept_rule_, moments, reflectances, emissivities, cos_theta) / std::abs(sum.i);
+  if (!scene_.surface.has_only_direct()) {
+    result.model_change =
+        change_by_model(scene_, kept_rule_, moments, reflectances, emissivities, cos_theta) / std::abs(sum.i);
+  }
   if (result.model_change > kLargestModelChange) result.status |= kModelInaccurate;
   if (sum.i <= 0.0) result.status |= kIntensityNotPositive;
   if (std::isnan(result[kDolp])) result.status |= kOutsideModelDomain;

@@ -74,6 +74,10 @@ struct Surface {
   DiffusePolarisation diffuse_polarisation = DiffusePolarisation::kNone;
   /// True if q must be in kSmithCauchyQRange, because smith masking needs a finite mean slope.
   bool needs_mean_slope() const { return masking == Masking::kSmith && distribution == Distribution::kCauchy; }
+  /// True if slopes may differ along and across.
+  bool has_cross_slopes() const { return wind_model == WindModel::kDirectional || sigma_cross > 0.0; }
+  /// True if only the direct emission is computed, see MomentsRequest::has_only_direct().
+  bool has_only_direct() const { return masking == Masking::kSmith && has_cross_slopes(); }
   bool is_bare() const { return coating.empty() && !reflectance; }
   bool has_constant_optics() const;
   FacetOptics optics_at(double wavelength_um) const;
@@ -174,7 +178,6 @@ struct SceneValues : SceneModel {
   std::string title;
   SceneNames names;
   Axes grid;                       ///< values in the user's order; [surface] gives sigma or q if [grid] does not
-  bool has_cross_slopes() const;   ///< true if slopes may differ along and across
   AxisLabels labels;               ///< names of the materials and bands on the grid's axes
   std::vector<double> wind_m_s;    ///< winds from which the grid's sigmas follow; empty if the scene gives sigmas
   std::string path_name;           ///< path of the scene as the user gave it, for messages

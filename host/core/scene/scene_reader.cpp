@@ -260,13 +260,18 @@ void check_scattering(const SceneValues& scene, const SceneDocument& document) {
 void check_cross_slopes(const SceneValues& scene, const SceneDocument& document) {
   const Surface& surface = scene.surface;
   const bool is_directional = surface.wind_model == WindModel::kDirectional;
-  const bool has_orders = surface.masking == Masking::kNone || surface.masking == Masking::kVCavity;
+  const bool has_smith = surface.masking == Masking::kSmith;
+  const bool is_direct = scene.emission && scene.emission->model == EmissionModel::kDirect;
+  const bool reflects = scene.surroundings || scene.source;
   const bool has_bracket = scene.emission && scene.emission->has_bracket;
   for (const char* key : {"surface.sigma_cross", "grid.sigma_cross", "surface.wind_model"}) {
     if (!document.find(key) || (key == std::string_view("surface.wind_model") && !is_directional)) continue;
     check_needs(
         document, key,
-        {{has_orders, "surface.masking = \"none\" or \"v-cavity\""}, {!has_bracket, "emission.bracket = false"}});
+        {{surface.masking != Masking::kIntegral, "surface.masking = \"none\", \"v-cavity\" or \"smith\""},
+         {!has_smith || is_direct, "emission.model = \"direct\" (or surface.masking = \"none\" or \"v-cavity\")"},
+         {!has_smith || !reflects, "no [surroundings] and no [source] (or surface.masking = \"none\" or \"v-cavity\")"},
+         {!has_bracket, "emission.bracket = false"}});
   }
 }
 

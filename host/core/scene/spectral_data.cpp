@@ -288,10 +288,6 @@ void set_films(Surface& surface, const std::vector<FilmValue>& films) {
   }
 }
 
-bool SceneValues::has_cross_slopes() const {
-  return surface.wind_model == WindModel::kDirectional || surface.sigma_cross > 0.0 || !grid[Axis::kSigmaCross].empty();
-}
-
 BeamAngles beam_angles(const SceneModel& scene, const SceneEntry& entry) {
   return {entry.theta_deg, entry.view_zenith_deg.value_or(scene.geometry.view_zenith_deg),
           entry.relative_azimuth_deg.value_or(scene.geometry.relative_azimuth_deg)};

@@ -131,7 +131,8 @@ ReportBuilder effect_report(const Effect& row) {
 }
 
 void add_model_change(ReportBuilder& report, const SceneValues& scene, const ModelChange& change) {
-  report.line("  model: {}{}", model_change_text(change), change.status != 0 ? ": status 32" : "");
+  if (!scene.surface.has_only_direct())
+    report.line("  model: {}{}", model_change_text(change), change.status != 0 ? ": status 32" : "");
   if (change.status != 0) report.line("    {}", model_advice(scene));
   add_direct_emission(report, scene, change);
   report.values({{"model_change", change.i}, {"model_change_dolp", change.dolp_points}});
@@ -165,7 +166,7 @@ std::string output_text(const SceneValues& scene, const EffectPlan& plan) {
   if (scene.emission && scene.emission->has_bracket) text += ", its bracket";
   if (gives_emissivity(scene, plan)) text += ", emissivity";
   if (!plan.gives_rho) return text + "; without rho_i, rho_q and albedo";
-  return text + (plan.kept.moments ? ", rho, albedo" : ", rho; without albedo");
+  return text + (plan.gives_albedo ? ", rho, albedo" : ", rho; without albedo");
 }
 
 std::string how_counted(const RunPrediction& run) {
@@ -290,7 +291,7 @@ ReportBuilder plan_report(const SceneValues& scene, const std::string& device, E
   report.row("output", "{}", output_text(scene, plan.plan));
   report.values({{"tolerance", scene.accuracy.tolerance},
                  {"gives_rho", plan.plan.gives_rho},
-                 {"gives_albedo", plan.plan.kept.moments},
+                 {"gives_albedo", plan.plan.gives_albedo},
                  {"gives_emissivity", gives_emissivity(scene, plan.plan)}});
   add_kernels(report, plan);
   add_cost(report, plan);

@@ -148,9 +148,10 @@ std::string model_change_text(const ModelChange& change) {
 
 void add_direct_emission(ReportBuilder& report, const SceneModel& scene, const ModelChange& change) {
   const bool is_direct = scene.emission && scene.emission->model == EmissionModel::kDirect;
-  report.row_if(is_direct, "emission",
-                "direct: leaves out what one facet emits and another reflects, up to {:.2g} % of I",
-                kPercent * change.i);
+  const bool is_known = !scene.surface.has_only_direct();
+  report.row_if(is_direct, "emission", "direct: leaves out what one facet emits and another reflects{}",
+                is_known ? fmt::format(", up to {:.2g} % of I", kPercent * change.i)
+                         : "; how much is not computed for smith with slopes along and across");
 }
 
 ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, const std::optional<ScatteringGap>& gap,
@@ -184,7 +185,7 @@ ReportBuilder run_report(const SceneValues& scene, const RunOutcome& run, const 
   report.row_if(summary.count(kModelInaccurate) > 0, "", "{}", model_advice(scene));
   report.values({{"model_change", summary.model_change.i}, {"model_change_dolp", summary.model_change.dolp_points}});
   add_direct_emission(report, scene, summary.model_change);
-  add_energy(report, summary, run.plan.kept.moments);
+  add_energy(report, summary, run.plan.gives_albedo);
   const EvaluationReport& evaluation = run.evaluation;
   const bool is_faster_on_cpu =
       evaluation.evaluator == "vulkan" && evaluation.evaluations < kFewEvaluations && evaluation.setup_s > 0.0;

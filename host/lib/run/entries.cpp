@@ -79,8 +79,9 @@ void check_wavelengths(const SceneValues& scene, const Points& points) {
 void check_shapes(const SceneValues& scene, const Points& points) {
   const Surface& surface = scene.surface;
   const bool has_orders = surface.masking == Masking::kNone || surface.masking == Masking::kVCavity;
-  if (points[Axis::kSigmaCross] && !has_orders) {
-    throw InputError(points.where() + ": column \"sigma_cross\" needs surface.masking = \"none\" or \"v-cavity\"");
+  if (points[Axis::kSigmaCross] && !has_orders && !surface.has_only_direct()) {
+    throw InputError(points.where() + ": column \"sigma_cross\" needs surface.masking = \"none\" or \"v-cavity\", or " +
+                     "\"smith\" and surface.sigma_cross in the scene");
   }
   if (points[Axis::kSigmaCross] && surface.wind_model == WindModel::kDirectional) {
     throw InputError(points.where() +
@@ -162,7 +163,7 @@ SceneEntries grid_entries(const SceneValues& scene) {
                                  fmt::join(counts, " x "), kMostTableEntries));
   }
   SceneEntries entries = SceneEntries::grid(scene.grid, scene.surface.material.constant, scene.cross_slopes());
-  for (std::size_t i = 0; scene.has_cross_slopes() && i < entries.entries_per_direction(); ++i)
+  for (std::size_t i = 0; scene.surface.has_cross_slopes() && i < entries.entries_per_direction(); ++i)
     check_cross_slopes(scene, entries[i].shape, scene.path_name);
   return entries;
 }

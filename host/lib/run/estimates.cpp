@@ -177,7 +177,7 @@ std::optional<double> largest_change(const std::vector<PointResult>& a, const st
 }
 
 bool has_gap(const SceneValues& scene, const EffectPlan& plan) {
-  return plan.kept.moments && scene.emission && scene.emission->model != EmissionModel::kFresnel &&
+  return plan.gives_albedo && scene.emission && scene.emission->model != EmissionModel::kFresnel &&
          scene.surface.scattering == Scattering::kSingle && keeps_projected_area(scene.surface.masking) &&
          scene.geometry.mode == Mode::kHemispherical;
 }

@@ -119,6 +119,12 @@ std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points&
                     "give n and k, or a material and a coating",
                     scene.path_name));
   }
+  if (surface.has_only_direct()) {
+    throw InputError(
+        fmt::format("{}: surface.masking = \"smith\": must be \"none\" or \"v-cavity\" for Mueller matrices of slopes "
+                    "that differ along and across",
+                    scene.path_name));
+  }
   Surface coated = surface;
   FacetOptics optics = surface.optics_at(scene.spectrum.min_um);
   std::vector<MuellerPoint> result;

@@ -191,7 +191,7 @@ TableLayout response_layout(const SceneValues& scene) {
         fmt::format("{}: surface.scattering = \"multiple\": must be \"single\" for a response table, because "
                     "the reflectances of several bounces multiply",
                     scene.path_name));
-  if (scene.has_cross_slopes())
+  if (scene.surface.has_cross_slopes())
     throw InputError(
         fmt::format("{}: surface.sigma_cross and surface.wind_model = \"directional\" are not for response "
                     "tables, which hold for every azimuth",

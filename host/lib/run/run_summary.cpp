@@ -95,7 +95,7 @@ void SelfCheck::add(const PointResult& result, const PointResult& again) {
                                               result[Quantity::kErrorEstimate] + again[Quantity::kErrorEstimate]));
   }
   const double rho = rho_bound(result) + rho_bound(again);
-  for (const Quantity quantity : {Quantity::kRhoI, Quantity::kRhoQ})
+  for (const Quantity quantity : {Quantity::kRhoI, Quantity::kRhoQ, Quantity::kRhoU})
     worst_ratio = std::max(worst_ratio, ratio(difference(quantity), rho));
 }
 

@@ -192,7 +192,7 @@ class Remarks {
 
   void add_angles_and_slopes() {
     for (const char* key : {"geometry.surface_azimuth_deg", "grid.surface_azimuth_deg"})
-      if (scene_.document->find(key) && !scene_.has_cross_slopes())
+      if (scene_.document->find(key) && !scene_.surface.has_cross_slopes())
         add(key, "has no effect: slopes are equal along and across; give surface.sigma_cross or surface.wind_model");
     const std::vector<double>& theta_deg = scene_.grid[Axis::kTheta];
     if (theta_deg.size() >= kFewAngles && std::ranges::max(theta_deg) < kLikelyRadians &&

@@ -461,7 +461,7 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
   const std::shared_ptr<const ResponseBasis> basis = evaluator ? run_basis(scene, entries, plan) : nullptr;
   summary.response_basis_s += seconds_since(start);
   const bool is_judged = entries.is_grid() && plan.kept.moments && scene.surface.scattering == Scattering::kSingle &&
-                         !scene.has_cross_slopes();
+                         !scene.surface.has_cross_slopes();
   const auto grooves = is_judged ? std::make_shared<const GrooveTable>(scene, entries, *plan.rules) : nullptr;
   const auto with_evaluation = [&] {
     RunSummary all = summary;

@@ -158,13 +158,13 @@ Quantities output_quantities(const SceneValues& scene, const EffectPlan* plan) {
       case QuantityNeeds::kReflectance:
         return plan == nullptr || plan->gives_rho;
       case QuantityNeeds::kMoments:
-        return plan == nullptr || plan->kept.moments;
+        return plan == nullptr || plan->gives_albedo;
       case QuantityNeeds::kEmission:
         return plan == nullptr ? scene.emission.has_value() : gives_emissivity(scene, *plan);
       case QuantityNeeds::kBracket:
         return scene.emission && scene.emission->has_bracket;
       case QuantityNeeds::kCrossSlopes:
-        return scene.has_cross_slopes() && (plan == nullptr || plan->gives_rho);
+        return scene.surface.has_cross_slopes() && (plan == nullptr || plan->gives_rho);
     }
     return false;
   };

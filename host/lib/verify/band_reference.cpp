@@ -23,7 +23,8 @@ constexpr std::size_t kMostIntervals = 32;  // largest number of intervals per p
 constexpr double kQuadratureShare = 0.01;   // the quadrature stops if its error is below this times the tolerance
 
 constexpr std::array kIntegrated = {kStokesI, kStokesQ, kStokesU, kStokesV};
-constexpr std::array kMeans = {kRhoI, kRhoQ, kEmissivityS, kEmissivityP};
+constexpr std::array kMeans = {kRhoI, kRhoQ, kRhoU, kEmissivityS, kEmissivityP};
+constexpr Eigen::Index kReflectances = 3;  // the first of kMeans
 
 /// Positions in `Integrals`. The order is: radiation, weight, weighted means, error of DOLP, error of rho.
 constexpr std::size_t kWeight = kIntegrated.size();
@@ -123,7 +124,7 @@ Integrals sum_pieces(const std::vector<BandPiece>& intervals, Integrals BandPiec
 
 /// The error of the quadrature: the error of DOLP or the error of the mean rho, whichever is larger.
 double quadrature_error(const Integrals& value, const Integrals& error) {
-  const double mean_error = error.segment(kWeight + 1, 2).sum() / std::abs(value[kWeight + 1]);
+  const double mean_error = error.segment(kWeight + 1, kReflectances).sum() / std::abs(value[kWeight + 1]);
   return std::max(error.head(kWeight).sum() / std::abs(value[0]), mean_error + error[kWeight] / value[kWeight]);
 }
 
@@ -200,8 +201,9 @@ PointResult band_result(const PointIntegral& point) {
   result[kAolp] = polarisation_angle_deg(value[1], value[2]);
   result[kErrorEstimate] =
       (value[kDolpError] + std::hypot(error[1], error[2]) + std::abs(result[kDolp]) * error[0]) / intensity;
-  result[kRhoErrorEstimate] = (value[kRhoError] + error.segment(kWeight + 1, 2).sum()) / std::abs(value[kWeight + 1]) +
-                              error[kWeight] / value[kWeight];
+  result[kRhoErrorEstimate] =
+      (value[kRhoError] + error.segment(kWeight + 1, kReflectances).sum()) / std::abs(value[kWeight + 1]) +
+      error[kWeight] / value[kWeight];
   return result;
 }
 

@@ -39,7 +39,7 @@ struct Compared {
   Quantity quantity;
   Bound bound;
 };
-constexpr std::array<Compared, 14> kCompared{{
+constexpr std::array<Compared, 15> kCompared{{
     {Quantity::kDolp, Bound::kDolp},
     {Quantity::kQOverI, Bound::kDolp},
     {Quantity::kAolp, Bound::kAngle},
@@ -47,6 +47,7 @@ constexpr std::array<Compared, 14> kCompared{{
     {Quantity::kDolpHigh, Bound::kDolp},
     {Quantity::kRhoI, Bound::kReflectance},
     {Quantity::kRhoQ, Bound::kReflectance},
+    {Quantity::kRhoU, Bound::kReflectance},
     {Quantity::kStokesI, Bound::kRadiation},
     {Quantity::kStokesQ, Bound::kPolarisedRadiation},
     {Quantity::kStokesU, Bound::kPolarisedRadiation},

@@ -29,6 +29,7 @@ struct Light {
 constexpr std::array<Light, 3> kLights{{{"none", Masking::kNone, Scattering::kSingle, false},
                                         {"v-cavity", Masking::kVCavity, Scattering::kSingle, true},
                                         {"all bounces", Masking::kVCavity, Scattering::kMultiple, false}}};
+constexpr Light kSmithDirect{"smith", Masking::kSmith, Scattering::kSingle, true};
 constexpr std::array kBothDistributions = {Distribution::kCauchy, Distribution::kGaussian};
 constexpr SlopeShape kBrushed{.sigma = 0.3, .q = 3.0, .sigma_cross = 0.12, .azimuth_deg = 25.0};
 constexpr double kTolerance = 1e-4;
@@ -69,27 +70,31 @@ double expect_all_within_bounds(const Moments& a, const Moments& b, const std::s
 
 class SlopeOrders : public testing::TestWithParam<Kernel> {};
 
-// Gaussian slopes of the sea, clean surface, at 10 m/s: Cox and Munk (1954). N = 1.18 + 0.07i. Values: a sum over 9e6
-// facets on a grid of slopes, by a program that shares nothing with this one.
+// Gaussian slopes of the sea, clean surface, at 10 m/s: Cox and Munk (1954). N = 1.18 + 0.07i. Values of v-cavity: a
+// sum over 9e6 facets on a grid of slopes, by a program that shares nothing with this one. Values of smith: own
+// quadrature in two dimensions, see tests/reference/elliptic_slopes_test.cpp.
 TEST_P(SlopeOrders, Sea_EmitsDifferentlyUpwindAndCrosswind) {
   struct Row {
+    Light light;
     double theta_deg, azimuth_deg, q, u, emissivity;  // Q/I and U/I in %
   };
-  const std::vector<Row> rows = {{75.0, 0.0, -4.963, 0.0, 0.87084},    {75.0, 45.0, -5.090, 0.107, 0.86568},
-                                 {75.0, 90.0, -5.235, 0.0, 0.85992},   {82.0, 0.0, -6.595, 0.0, 0.78685},
-                                 {82.0, 45.0, -6.771, 0.245, 0.77593}, {82.0, 90.0, -6.979, 0.0, 0.76286}};
-  MomentsRequest request = empty_request(Distribution::kGaussian, kLights[1]);
-  request.tolerance = 1e-5;
+  const Light& cavity = kLights[1];
+  const std::vector<Row> rows = {
+      {cavity, 75.0, 0.0, -4.963, 0.0, 0.87084},       {cavity, 75.0, 45.0, -5.090, 0.107, 0.86568},
+      {cavity, 75.0, 90.0, -5.235, 0.0, 0.85992},      {cavity, 82.0, 0.0, -6.595, 0.0, 0.78685},
+      {cavity, 82.0, 45.0, -6.771, 0.245, 0.77593},    {cavity, 82.0, 90.0, -6.979, 0.0, 0.76286},
+      {kSmithDirect, 75.0, 0.0, -4.898, 0.0, 0.87289}, {kSmithDirect, 75.0, 45.0, -5.044, 0.110, 0.86713},
+      {kSmithDirect, 75.0, 90.0, -5.206, 0.0, 0.86085}};
   for (const Row& row : rows) {
+    MomentsRequest request = empty_request(Distribution::kGaussian, row.light);
+    request.tolerance = 1e-5;
     const SlopeShape shape{std::sqrt(0.0316), 2.0, std::sqrt(0.0222), row.azimuth_deg};
     request.append({row.theta_deg, shape, FacetOptics{1.18, 0.07}});
-  }
-  const std::vector<Moments> moments = make_evaluator(GetParam())->evaluate(request, {});
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const Moments& m = moments[i];
-    EXPECT_NEAR(100.0 * m.direct_q / m.direct_i, rows[i].q, 0.6e-3) << i;
-    EXPECT_NEAR(100.0 * m.direct_u / m.direct_i, rows[i].u, 0.6e-3) << i;
-    EXPECT_NEAR(m.direct_i / cos_sin_deg(rows[i].theta_deg).cos, rows[i].emissivity, 1.1e-5) << i;
+    const Moments m = make_evaluator(GetParam())->evaluate(request, {}).front();
+    const std::string where = std::string(row.light.name) + " " + std::to_string(row.theta_deg);
+    EXPECT_NEAR(100.0 * m.direct_q / m.direct_i, row.q, 0.6e-3) << where;
+    EXPECT_NEAR(100.0 * m.direct_u / m.direct_i, row.u, 0.6e-3) << where;
+    EXPECT_NEAR(m.direct_i / cos_sin_deg(row.theta_deg).cos, row.emissivity, 1.1e-5) << where;
   }
 }
 
@@ -113,7 +118,7 @@ TEST_P(SlopeOrders, RandomEntries_AreWithinTheBoundsOfTheReference) {
   const auto evaluator = make_evaluator(GetParam());
   ReferenceEvaluator reference;
   for (const Distribution distribution : kBothDistributions) {
-    for (const Light& light : kLights) {
+    for (const Light& light : {kLights[0], kLights[1], kLights[2], kSmithDirect}) {
       const MomentsRequest request =
           random_entries(distribution, light, light.scattering == Scattering::kMultiple ? 3 : 6);
       const std::vector<Moments> own = evaluator->evaluate(request, {});

@@ -121,9 +121,39 @@ TEST(CrossSlopes, DivergentLimit_IsOutsideTheModel) {
   EXPECT_EQ(limit.status & kOutsideModelDomain, std::uint32_t{kOutsideModelDomain});
 }
 
+const std::vector<Setting> kSmithDirect = {{"surface.masking", "smith"},
+                                           {"surface.scattering", "single"},
+                                           {"emission.model", "direct"},
+                                           {"surroundings", Value()}};
+
+std::vector<Setting> smith_direct(const std::vector<Setting>& more) {
+  std::vector<Setting> settings = kSmithDirect;
+  settings.insert(settings.end(), more.begin(), more.end());
+  return settings;
+}
+
+// Only the direct emission is known: reflected light depends on the slopes in every direction.
+TEST(CrossSlopes, SmithWithDirectEmission_GivesEmissivitiesAndNoReflectances) {
+  const auto one = results(brushed(smith_direct({{"surface.sigma_cross", Value()}})));
+  const auto equal = results(brushed(smith_direct({{"surface.sigma_cross", 0.1}})));
+  const auto along_and_across = results(brushed(smith_direct({{"geometry.surface_azimuth_deg", 45.0}})));
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    for (const Quantity quantity : {kDolp, kStokesI, kStokesQ, kEmissivityS, kErrorEstimate})
+      EXPECT_EQ(one[i][quantity], equal[i][quantity]) << describe(quantity).name;
+    const PointResult& result = along_and_across[i];
+    for (const Quantity quantity : {kRhoI, kRhoQ, kRhoU, kAlbedo}) EXPECT_TRUE(std::isnan(result[quantity]));
+    EXPECT_EQ(result.status, 0U);
+    EXPECT_NE(result[kStokesU], 0.0);
+    EXPECT_GT(result[kEmissivityP] + result[kEmissivityS], 1.0);
+  }
+}
+
 TEST(CrossSlopes, ImpossibleScenes_AreRefusedWithTheirKeys) {
   const auto contains = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
-  EXPECT_TRUE(contains(refusal({{"surface.scattering", "single"}, {"surface.masking", "smith"}}), "surface.masking"));
+  EXPECT_TRUE(
+      contains(refusal({{"surface.scattering", "single"}, {"surface.masking", "integral"}}), "surface.masking"));
+  EXPECT_TRUE(contains(refusal({{"surface.scattering", "single"}, {"surface.masking", "smith"}}), "emission.model"));
+  EXPECT_TRUE(contains(refusal(smith_direct({{"surroundings.temperature_K", 250.0}})), "[surroundings]"));
   EXPECT_TRUE(contains(refusal({{"surface.sigma_cross", 2.0}}), "quotient of the widths"));
   EXPECT_TRUE(contains(refusal({{"surface.sigma", 0.0}}), "quotient of the widths"));
   EXPECT_TRUE(contains(refusal({{"surface.wind_model", "directional"}}), "surface.wind_m_s"));

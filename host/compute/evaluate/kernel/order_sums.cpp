@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "beams/in_plane_masking.hpp"
 #include "model/angles.hpp"
 
 namespace dolp {
@@ -82,6 +83,18 @@ void add_neglected(Moments& moments, const AtAzimuth& at) {
   moments.direct_q_error += std::max(at.neglected(row(&Node::direct_q)), at.neglected(row(&Node::direct_u)));
 }
 
+// The emission of the facets that smith masking lets the viewer see. The masking is one factor for all facets.
+Moments direct_part(const Moments& facets, const KernelData& data, const MomentsEntry& entry) {
+  const kernel::ThetaNode& theta = data.thetas[entry.theta];
+  const SlopeShape shape = in_view_plane(data.slopes[entry.shape]);
+  const double masking = InPlaneMasking(data.distribution, Masking::kSmith, shape).smith_toward(theta.c, theta.s);
+  Moments moments{.deficit = theta.c, .evaluations = facets.evaluations};
+  for (const auto member :
+       {&Moments::direct_i, &Moments::direct_q, &Moments::direct_u, &Moments::direct_i_error, &Moments::direct_q_error})
+    moments.*member = masking * facets.*member;
+  return moments;
+}
+
 }  // namespace
 
 OrderWeights::OrderWeights(std::size_t orders, std::size_t slopes)
@@ -146,7 +159,7 @@ Moments moments_at_azimuth(const OrderSums& sums, const KernelData& data, const 
     moments.columns[i].u = at.odd(first + 2);
     moments.columns[i].error += std::max({at.neglected(first), at.neglected(first + 1), at.neglected(first + 2)});
   }
-  return moments;
+  return data.has_only_direct ? direct_part(moments, data, entry) : moments;
 }
 
 }  // namespace dolp

@@ -85,7 +85,7 @@ int nodes_at_root(const SlopeOrders& orders) {
 }  // namespace
 
 bool has_slope_samples(const MomentsRequest& request) {
-  return request.masking == Masking::kNone || request.masking == Masking::kVCavity;
+  return request.masking == Masking::kNone || request.masking == Masking::kVCavity || request.has_only_direct();
 }
 
 struct SlopeSampling::Impl {

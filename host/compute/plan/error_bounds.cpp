@@ -66,13 +66,13 @@ double cut_bound(const KernelData& data, const kernel::ThetaNode& theta, const k
   return masking_bound(data.distribution, data.masking, theta, shape) * (theta.c * tail + theta.s * slopes);
 }
 
-// Error of v-cavity masking, as a share of the albedo. G has other formulas on the two sides of a split line. Next to
-// the line the products e G of both formulas differ by about the distance, and the sum of e G is about cos(theta). If
-// quotients and roots are inexact, the azimuth of the line is wrong by `distance` even if cos(theta) is far smaller.
+// Error of v-cavity masking, as a share of the albedo. G has other formulas on the two sides of a split line, and in
+// grooves rays bounce once more. Next to the line the products e G of both formulas differ by about the distance, and
+// the sum of e G is about cos(theta). If quotients and roots are inexact, the azimuth of the line is wrong by
+// `distance` even if cos(theta) is far smaller.
 double split_line_error(const KernelData& data, const kernel::ThetaNode& theta, double unit_roundoff) {
   const double distance = kLineRoundings * (unit_roundoff - kFloatRoundoff);
-  const bool is_split = data.masking == Masking::kVCavity && data.scattering == Scattering::kSingle;
-  return is_split && distance > 0.0 ? distance * distance / theta.c : 0.0;
+  return data.masking == Masking::kVCavity && distance > 0.0 ? distance * distance / theta.c : 0.0;
 }
 
 // Error of the masking G, as a share of the albedo. With smith it is infinite where the mean slope is: at q = 3/2.

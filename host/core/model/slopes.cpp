@@ -47,9 +47,10 @@ std::vector<SlopeSector> slope_sectors(const SlopeShape& shape, std::size_t coun
   if (!is_elliptic(shape)) return {{.sigma = shape.sigma}};
   std::vector<SlopeSector> sectors;
   for (std::size_t i = 0; i < count; ++i) {
-    const double w = (static_cast<double>(i) + 0.5) * 0.5 * std::numbers::pi / static_cast<double>(count);
-    const double along = shape.sigma * std::cos(w), across = shape.sigma_cross * std::sin(w);
-    sectors.push_back({std::hypot(along, across), std::atan2(across, along)});
+    const double azimuth = (static_cast<double>(i) + 0.5) * 0.5 * std::numbers::pi / static_cast<double>(count);
+    const double sigma = 1.0 / std::hypot(std::cos(azimuth) / shape.sigma, std::sin(azimuth) / shape.sigma_cross);
+    const double share = sigma / shape.sigma * (sigma / shape.sigma_cross) / static_cast<double>(count);
+    sectors.push_back({sigma, azimuth, share});
   }
   return sectors;
 }
@@ -78,9 +79,9 @@ double steeper_share(Distribution distribution, const SlopeShape& shape, double 
   if (is_elliptic(shape)) {
     double sum = 0.0;
     for (const SlopeSector& sector : slope_sectors(shape, kSectorsOfShare)) {
-      sum += steeper_share(distribution, {.sigma = sector.sigma, .q = shape.q}, slope);
+      sum += sector.share * steeper_share(distribution, {.sigma = sector.sigma, .q = shape.q}, slope);
     }
-    return sum / static_cast<double>(kSectorsOfShare);
+    return sum;
   }
   const double u = slope / slope_width(shape);
   return distribution == Distribution::kGaussian ? std::exp(-u * u) : std::exp((1.0 - shape.q) * std::log1p(u * u));

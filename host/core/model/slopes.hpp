@@ -32,12 +32,14 @@ SlopeShape in_view_plane(const SlopeShape& shape);
 struct SlopeSector {
   double sigma = 0.0;
   double azimuth = 0.0;  ///< from the x axis of the surface, in radians
+  double share = 1.0;    ///< of the facets; all shares add up to 1
 };
 
-/// Sectors of a quarter turn with equal numbers of facets. A mean over all sectors, in all four quarters, replaces an
-/// integral over the azimuths of an elliptic distribution; its error falls exponentially with `count`.
-/// Equation: slopes (sqrt(2) sigma r cos w, sqrt(2) sigma_cross r sin w) have the density of an isotropic distribution
-/// in (r, w), so w is uniform.
+/// Sectors of equal angles in a quarter turn. A sum over all sectors, in all four quarters, replaces an integral over
+/// the azimuths of an elliptic distribution. For an integrand cos(2 k azimuth) times the density, the error is at most
+/// 2 e^(2 count - k) of the facets, with the eccentricity e.
+/// Equation: at the azimuth a, P is sigma_a^2 / (sigma sigma_cross) times the isotropic density of the width sigma_a,
+/// with 1 / sigma_a^2 = cos^2(a) / sigma^2 + sin^2(a) / sigma_cross^2.
 std::vector<SlopeSector> slope_sectors(const SlopeShape& shape, std::size_t count);
 
 /// Slope width sigma of the sea in a wind of U m/s.

@@ -68,6 +68,20 @@ double expect_all_within_bounds(const Moments& a, const Moments& b, const std::s
   return worst;
 }
 
+// The facets of order k are e^k of all, because the azimuths of all facets have the density sigma_a^2 / (2 pi sigma
+// sigma_cross). With too few sectors, the errors of high orders exceed their bounds.
+TEST(SlopeSectors, CosinesOfTheAzimuth_ArePowersOfTheEccentricity) {
+  constexpr std::size_t kCount = 24;
+  const SlopeShape shape{.sigma = 1.5, .sigma_cross = 4.3};
+  const double e = -eccentricity(shape);
+  for (int k = 0; k <= 24; ++k) {
+    double sum = 0.0;
+    for (const SlopeSector& sector : slope_sectors(shape, kCount))
+      sum += sector.share * std::cos(2.0 * k * sector.azimuth);
+    EXPECT_NEAR(sum, std::pow(e, k), 2.0 * std::pow(-e, 2.0 * kCount - k) + 1e-15) << k;
+  }
+}
+
 class SlopeOrders : public testing::TestWithParam<Kernel> {};
 
 // Gaussian slopes of the sea, clean surface, at 10 m/s: Cox and Munk (1954). N = 1.18 + 0.07i. Values of v-cavity: a
@@ -105,7 +119,7 @@ MomentsRequest random_entries(Distribution distribution, const Light& light, std
   MomentsRequest request = empty_request(distribution, light);
   for (std::size_t i = 0; i < count; ++i) {
     MomentsPoint entry = random_entry(draw, Domain::kOrdinary, distribution, light.masking);
-    entry.shape.sigma = draw.log_uniform(0.03, 0.6);
+    entry.shape.sigma = draw.log_uniform(0.03, 1.0);
     entry.shape.q = draw.uniform(1.6, 6.0);
     entry.shape.sigma_cross = entry.shape.sigma * draw.log_uniform(1.0 / 3.0, 3.0);
     entry.shape.azimuth_deg = draw.uniform(-180.0, 180.0);
@@ -189,7 +203,8 @@ TEST_P(SlopeOrders, HalfTurnAndMirrorImage_ChangeNothingButTheSignOfU) {
   }
 }
 
-// The mean over all azimuths has the facets of isotropic distributions, one for each sector (see slope_sectors()).
+// The mean over all azimuths has the facets of isotropic distributions: slopes (sqrt(2) sigma r cos w, sqrt(2)
+// sigma_cross r sin w) have an isotropic density in (r, w), so w is uniform.
 TEST_P(SlopeOrders, MeanOverAzimuths_IsThatOfIsotropicSectors) {
   constexpr std::size_t kAzimuths = 10, kSectors = 16;  // errors of both means: the eccentricity 0.43 to these powers
   std::vector<SlopeShape> turned, sectors;
@@ -197,7 +212,10 @@ TEST_P(SlopeOrders, MeanOverAzimuths_IsThatOfIsotropicSectors) {
     turned.push_back(kBrushed);
     turned.back().azimuth_deg = 180.0 * static_cast<double>(i) / kAzimuths;
   }
-  for (const SlopeSector& sector : slope_sectors(kBrushed, kSectors)) sectors.push_back({sector.sigma, kBrushed.q});
+  for (std::size_t i = 0; i < kSectors; ++i) {
+    const double w = std::numbers::pi * (static_cast<double>(i) + 0.5) / kSectors;
+    sectors.push_back({std::hypot(kBrushed.sigma * std::cos(w), kBrushed.sigma_cross * std::sin(w)), kBrushed.q});
+  }
   for (const Light& light : kLights) {
     const auto mean = [&](const std::vector<SlopeShape>& shapes) {
       const MomentsRequest request = brushed_request(Distribution::kGaussian, light, shapes);

@@ -85,7 +85,10 @@ int nodes_at_roots(const KernelData& data, const KernelSource::Task& task) {
 }  // namespace
 
 bool has_slope_samples(const MomentsRequest& request) {
-  return request.masking == Masking::kNone || request.masking == Masking::kVCavity || request.has_only_direct();
+  if (request.has_elliptic_shapes()) return true;
+  const bool can_share = request.masking == Masking::kNone || request.masking == Masking::kVCavity;
+  // In a list each entry has its own direction and shares nothing. Then the host's part would take most of the time.
+  return can_share && (request.layout == MomentsRequest::Layout::kGrid || request.scattering == Scattering::kMultiple);
 }
 
 struct SlopeSampling::Impl {

@@ -15,6 +15,7 @@
 
 namespace dolp {
 
+/// True if the moments of this request are sums over slope samples, false if the kernel sums over the slopes.
 bool has_slope_samples(const MomentsRequest& request);
 
 /// The wanted entries of one direction and one refractive index. `direction` is the position among the directions of

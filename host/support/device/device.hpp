@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "device/devices.hpp"
 
@@ -31,6 +32,10 @@ constexpr std::uint32_t kStorageCount = 7;  // storage buffers of each kernel, w
 constexpr std::uint32_t kTexelCount = 2;    // texel buffers of each kernel, with binding numbers 7 and 8
 /// Largest number of invocations in a workgroup of dolp. Every Vulkan device allows at least 128.
 constexpr std::uint32_t kLocalSize = 64;
+
+/// Position of the queue family on which the kernels run. Prefers a family without graphics, because kernels on the
+/// queue of the desktop would keep other programs from drawing. Empty if no family has compute queues.
+std::optional<std::uint32_t> choose_queue_family(std::span<const VkQueueFamilyProperties> families);
 
 /// Properties of a device. If dolp cannot run on the device, dolp::Device::why_not has the reason.
 dolp::Device describe(VkPhysicalDevice physical);

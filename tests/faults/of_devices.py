@@ -39,6 +39,16 @@ def lost_devices(driver):
         yield driver.try_once("table", LARGE, (DEVICE,), environment=fault)
 
 
+def large_dispatch(driver):
+    """the device is lost at dispatches of more than 32 workgroups or 1: tiles shrink, the values stay"""
+    # In double, because the dispatch that measures the errors of float always has more workgroups.
+    options = ("--precision", "double", "--set", "grid.theta_deg={from=0, to=89, count=30}")
+    driver.expect("table", options)
+    for workgroups, allowed in ((32, DONE), (1, DEVICE)):
+        fault = driver.preload("vulkan", DOLP_VULKAN_DISPATCH=str(workgroups))
+        yield driver.try_once("table", options, (allowed,), environment=fault)
+
+
 def device_memory(driver):
     """the device refuses pieces of memory above a size: tiles shrink, the values stay"""
     driver.expect("table", LARGE)
@@ -115,5 +125,5 @@ def endless_compilation(driver):
     yield devices.returncode
 
 
-KINDS = (lost_device, lost_devices, device_memory, few_texels, vulkan_call, lacking_driver, broken_driver_file,
+KINDS = (lost_device, lost_devices, large_dispatch, device_memory, few_texels, vulkan_call, lacking_driver, broken_driver_file,
          endless_compilation)

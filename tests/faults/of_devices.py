@@ -31,10 +31,9 @@ def lost_device(driver):
 
 
 def lost_devices(driver):
-    """the device is lost at the n-th submission, and the new one too"""
+    """the device is lost at the n-th submission, and the new ones too"""
     driver.expect("table", LARGE)
-    count = driver.count("vulkan", "DOLP_COUNT_SUBMISSIONS", "table", LARGE)
-    for n in driver.numbers(count, 3):
+    for n in range(1, 4):  # each run has that many submissions; how many more depends on the time that they take
         fault = driver.preload("vulkan", DOLP_FAIL_VULKAN=f"vkQueueSubmit:{n}+:{DEVICE_LOST}")
         yield driver.try_once("table", LARGE, (DEVICE,), environment=fault)
 

@@ -23,7 +23,7 @@ namespace dolp::vulkan {
 // | maxComputeWorkGroupCount[0] | 65,535 | sizes_on() in vulkan/tiles.cpp |
 // | maxStorageBufferRange | 2^27 bytes | sizes_on(); TiledRun::add_results() for rule nodes |
 // | maxTexelBufferElements | 65,536 | masking tables: sizes_on(); rule nodes: TiledRun::add_results() |
-// | maxMemoryAllocationCount | 4,096 | about ten buffers per request |
+// | maxMemoryAllocationCount | 4,096 | at most 40 buffers, which all requests share |
 // | maxMemoryAllocationSize | 2^30 bytes | sizes_on(); a larger table of rule nodes is an error of vkAllocateMemory |
 // | timestampValidBits of the queue | 0 | without timestamps the host's clock measures kernels |
 // | texel buffers of R32G32_SFLOAT, R32G32B32A32_SFLOAT and R32G32B32A32_UINT | yes | no other formats are used |

@@ -33,9 +33,9 @@ class VulkanEvaluator : public ModelEvaluator {
 
   /// Errors:
   /// - InputError if a list of the request has the wrong length.
-  /// - DeviceError if the request needs double precision and the device has none, if the device fails or is lost again
-  ///   and again, if a tile exceeds tile_timeout_s (all later calls fail too), or if the validation layer has a
-  ///   message.
+  /// - DeviceError if the request needs double precision and the device has none, if the device fails or is lost four
+  ///   times in a request, if a tile exceeds tile_timeout_s (all later calls fail too), or if the validation layer has
+  ///   a message.
   /// - MemoryError if the device has too little memory even for small tiles.
   /// - Cancelled if `progress`, called after each tile, returns false.
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;

@@ -5,6 +5,7 @@
 //   DOLP_VULKAN_MEMORY   bytes: larger pieces of device memory are refused
 //   DOLP_VULKAN_WITHOUT  float64, compute or version: devices lack double precision, compute queues or Vulkan 1.2
 //   DOLP_VULKAN_TEXELS   the devices allow only this number of texels in a buffer; views of larger buffers fail
+//   DOLP_VULKAN_DISPATCH a submission with a dispatch of more workgroups than this number loses the device
 //   DOLP_COUNT_SUBMISSIONS a file that receives the number of submissions when the program ends
 #include <dlfcn.h>
 #include <unistd.h>
@@ -44,6 +45,7 @@ struct Fault {
 };
 
 std::atomic<unsigned long> submissions{0};
+std::atomic<bool> has_large_dispatch{false};
 
 /// VK_SUCCESS, or the result with which this call must fail.
 VkResult fault_of(const char* function) {
@@ -125,6 +127,7 @@ DOLP_MAY_FAIL(vkEndCommandBuffer, (VkCommandBuffer c), (c))
 extern "C" VKAPI_ATTR VkResult VKAPI_CALL vkQueueSubmit(VkQueue queue, uint32_t count, const VkSubmitInfo* submits,
                                                         VkFence fence) {
   ++submissions;
+  if (has_large_dispatch.exchange(false)) return VK_ERROR_DEVICE_LOST;
   const VkResult fault = fault_of("vkQueueSubmit");
   return fault == VK_SUCCESS ? next<PFN_vkQueueSubmit>("vkQueueSubmit")(queue, count, submits, fence) : fault;
 }
@@ -146,6 +149,12 @@ extern "C" VKAPI_ATTR VkResult VKAPI_CALL vkAllocateMemory(VkDevice device, cons
   const VkResult fault = fault_of("vkAllocateMemory");
   if (fault != VK_SUCCESS) return fault;
   return next<PFN_vkAllocateMemory>("vkAllocateMemory")(device, info, callbacks, memory);
+}
+
+extern "C" VKAPI_ATTR void VKAPI_CALL vkCmdDispatch(VkCommandBuffer commands, uint32_t x, uint32_t y, uint32_t z) {
+  static const std::string most = from_environment("DOLP_VULKAN_DISPATCH");
+  if (!most.empty() && x > std::stoul(most)) has_large_dispatch = true;
+  next<PFN_vkCmdDispatch>("vkCmdDispatch")(commands, x, y, z);
 }
 
 extern "C" VKAPI_ATTR void VKAPI_CALL vkGetPhysicalDeviceFeatures(VkPhysicalDevice device,

@@ -31,12 +31,21 @@ def lost_device(driver):
 
 
 def lost_devices(driver):
-    """the device is lost at the n-th submission, and the new one too"""
+    """the device is lost at the n-th submission, and the new ones too"""
     driver.expect("table", LARGE)
-    count = driver.count("vulkan", "DOLP_COUNT_SUBMISSIONS", "table", LARGE)
-    for n in driver.numbers(count, 3):
+    for n in range(1, 4):  # each run has that many submissions; how many more depends on the time that they take
         fault = driver.preload("vulkan", DOLP_FAIL_VULKAN=f"vkQueueSubmit:{n}+:{DEVICE_LOST}")
         yield driver.try_once("table", LARGE, (DEVICE,), environment=fault)
+
+
+def large_dispatch(driver):
+    """the device is lost at dispatches of more than 32 workgroups or 1: tiles shrink, the values stay"""
+    # In double, because the dispatch that measures the errors of float always has more workgroups.
+    options = ("--precision", "double", "--set", "grid.theta_deg={from=0, to=89, count=30}")
+    driver.expect("table", options)
+    for workgroups, allowed in ((32, DONE), (1, DEVICE)):
+        fault = driver.preload("vulkan", DOLP_VULKAN_DISPATCH=str(workgroups))
+        yield driver.try_once("table", options, (allowed,), environment=fault)
 
 
 def device_memory(driver):
@@ -115,5 +124,5 @@ def endless_compilation(driver):
     yield devices.returncode
 
 
-KINDS = (lost_device, lost_devices, device_memory, few_texels, vulkan_call, lacking_driver, broken_driver_file,
+KINDS = (lost_device, lost_devices, large_dispatch, device_memory, few_texels, vulkan_call, lacking_driver, broken_driver_file,
          endless_compilation)

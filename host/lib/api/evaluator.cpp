@@ -66,8 +66,7 @@ std::unique_ptr<ModelEvaluator> make_evaluator(const EvaluatorOptions& wanted, b
   VulkanOptions options;
   options.device = wanted.device;
   options.needs_double = needs_double;
-  // Dispatches of a few ms, even if two CPU cores run Vulkan.
-  if (wanted.is_interactive) options.max_tile_invocations = 2'048;
+  if (wanted.is_interactive) options.tile_s = 0.005;
   return std::make_unique<VulkanEvaluator>(options);
 }
 

@@ -207,7 +207,7 @@ void add_kernels(ReportBuilder& report, const PlannedRun& plan) {
   add_attempts(report, plan, is_idle);
   const bool has_device = !plan.device.empty();
   report.row_if(
-      !is_idle, "dispatches", "{} in the first attempt, at most {} invocations{} at a time ({}{})",
+      !is_idle, "dispatches", "at least {} in the first attempt, at most {} invocations{} at a time ({}{})",
       key("first_attempt/dispatches", plan.dispatches.dispatches),
       key("tile_invocations", plan.dispatches.tile_invocations),
       plan.dispatches.block_shapes > 0 ? fmt::format(" and {} shapes", plan.dispatches.block_shapes) : "",

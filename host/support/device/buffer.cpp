@@ -15,7 +15,7 @@ constexpr VkDeviceSize kSmallestBuffer = 256;
 }  // namespace
 
 Buffer::Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, VkFormat texels)
-    : device_(device.get()), size_(std::max(bytes, kSmallestBuffer)) {
+    : device_(device.get()), size_(std::max(bytes, kSmallestBuffer)), format_(texels) {
   const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
                                 .size = size_,
                                 .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |

@@ -17,6 +17,8 @@ class Buffer {
   VkBuffer get() const { return buffer_.get(); }
   VkBufferView texels() const { return texels_.get(); }
   VkDeviceSize size() const { return size_; }
+  /// True if the buffer can take the place of a new one.
+  bool fits(VkDeviceSize bytes, VkFormat texels) const { return size_ >= bytes && format_ == texels; }
 
   /// Writes bytes to the start of a mapped buffer. Work that is submitted to the queue later sees these bytes.
   void write(std::span<const std::byte> bytes);
@@ -29,6 +31,7 @@ class Buffer {
 
   VkDevice device_ = VK_NULL_HANDLE;
   VkDeviceSize size_ = 0;
+  VkFormat format_ = VK_FORMAT_UNDEFINED;
   VkMemoryPropertyFlags memory_flags_ = 0;
   // The destructor destroys members in reverse order: the memory last.
   UniqueMemory memory_;

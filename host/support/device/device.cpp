@@ -12,25 +12,12 @@
 namespace dolp::vulkan {
 namespace {
 
-struct QueueFamily {
-  std::uint32_t index = 0;
-  std::uint32_t timestamp_bits = 0;
-};
-
 std::vector<VkQueueFamilyProperties> queue_families(VkPhysicalDevice physical) {
   std::uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
   vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
   return families;
-}
-
-std::optional<QueueFamily> compute_family(VkPhysicalDevice physical) {
-  const std::vector<VkQueueFamilyProperties> families = queue_families(physical);
-  for (std::uint32_t i = 0; i < families.size(); ++i) {
-    if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) return QueueFamily{i, families[i].timestampValidBits};
-  }
-  return std::nullopt;
 }
 
 VkDeviceSize largest_device_heap(const VkPhysicalDeviceMemoryProperties& memory) {
@@ -83,6 +70,17 @@ std::uint32_t choose_local_size(const dolp::Device& device) {
 
 }  // namespace
 
+std::optional<std::uint32_t> choose_queue_family(std::span<const VkQueueFamilyProperties> families) {
+  std::optional<std::uint32_t> chosen;
+  for (std::uint32_t i = 0; i < families.size(); ++i) {
+    const VkQueueFlags flags = families[i].queueFlags;
+    if (!(flags & VK_QUEUE_COMPUTE_BIT)) continue;
+    if (!(flags & VK_QUEUE_GRAPHICS_BIT)) return i;
+    if (!chosen) chosen = i;
+  }
+  return chosen;
+}
+
 dolp::Device describe(VkPhysicalDevice physical) {
   VkPhysicalDeviceProperties properties{};
   vkGetPhysicalDeviceProperties(physical, &properties);
@@ -90,7 +88,8 @@ dolp::Device describe(VkPhysicalDevice physical) {
   vkGetPhysicalDeviceFeatures(physical, &features);
   VkPhysicalDeviceMemoryProperties memory{};
   vkGetPhysicalDeviceMemoryProperties(physical, &memory);
-  const std::optional<QueueFamily> family = compute_family(physical);
+  const std::vector<VkQueueFamilyProperties> families = queue_families(physical);
+  const std::optional<std::uint32_t> family = choose_queue_family(families);
 
   dolp::Device description;
   description.name = properties.deviceName;
@@ -104,17 +103,18 @@ dolp::Device describe(VkPhysicalDevice physical) {
   description.max_texels = properties.limits.maxTexelBufferElements;
   description.max_workgroups = properties.limits.maxComputeWorkGroupCount[0];
   description.memory_bytes = largest_device_heap(memory);
-  description.timestamps = family && family->timestamp_bits > 0;
+  description.timestamps = family && families[*family].timestampValidBits > 0;
   if (properties.apiVersion >= VK_API_VERSION_1_2) add_properties_1_2(physical, description);
   description.local_size = choose_local_size(description);
   return description;
 }
 
 Device::Device(VkPhysicalDevice physical, bool float64) {
-  const std::optional<QueueFamily> family = compute_family(physical);
+  const std::vector<VkQueueFamilyProperties> families = queue_families(physical);
+  const std::optional<std::uint32_t> family = choose_queue_family(families);
   if (!family) throw DeviceError("the Vulkan device has no compute queue");
-  queue_family_ = family->index;
-  timestamp_bits_ = family->timestamp_bits;
+  queue_family_ = *family;
+  timestamp_bits_ = families[*family].timestampValidBits;
   VkPhysicalDeviceProperties properties{};
   vkGetPhysicalDeviceProperties(physical, &properties);
   limits_ = properties.limits;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "device/devices.hpp"
 
@@ -22,7 +23,7 @@ namespace dolp::vulkan {
 // | maxComputeWorkGroupCount[0] | 65,535 | sizes_on() in vulkan/tiles.cpp |
 // | maxStorageBufferRange | 2^27 bytes | sizes_on(); TiledRun::add_results() for rule nodes |
 // | maxTexelBufferElements | 65,536 | masking tables: sizes_on(); rule nodes: TiledRun::add_results() |
-// | maxMemoryAllocationCount | 4,096 | about ten buffers per request |
+// | maxMemoryAllocationCount | 4,096 | at most 40 buffers, which all requests share |
 // | maxMemoryAllocationSize | 2^30 bytes | sizes_on(); a larger table of rule nodes is an error of vkAllocateMemory |
 // | timestampValidBits of the queue | 0 | without timestamps the host's clock measures kernels |
 // | texel buffers of R32G32_SFLOAT, R32G32B32A32_SFLOAT and R32G32B32A32_UINT | yes | no other formats are used |
@@ -31,6 +32,10 @@ constexpr std::uint32_t kStorageCount = 7;  // storage buffers of each kernel, w
 constexpr std::uint32_t kTexelCount = 2;    // texel buffers of each kernel, with binding numbers 7 and 8
 /// Largest number of invocations in a workgroup of dolp. Every Vulkan device allows at least 128.
 constexpr std::uint32_t kLocalSize = 64;
+
+/// Position of the queue family on which the kernels run. Prefers a family without graphics, because kernels on the
+/// queue of the desktop would keep other programs from drawing. Empty if no family has compute queues.
+std::optional<std::uint32_t> choose_queue_family(std::span<const VkQueueFamilyProperties> families);
 
 /// Properties of a device. If dolp cannot run on the device, dolp::Device::why_not has the reason.
 dolp::Device describe(VkPhysicalDevice physical);

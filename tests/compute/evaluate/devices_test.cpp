@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "device/context.hpp"
+#include "device/device.hpp"
 #include "device/devices.hpp"
 #include "device/result.hpp"
 #include "error_text.hpp"
@@ -56,6 +57,20 @@ TEST(ChooseDevice, NoMatchOrUnfit_ThrowsWithTheReason) {
   EXPECT_NE(message("6", false).find("no Vulkan device matches '6'"), std::string::npos);
   EXPECT_NE(message("2", false).find("Vulkan 1.1.0 < 1.2"), std::string::npos);
   EXPECT_NE(message("iris", true).find("shaderFloat64"), std::string::npos);
+}
+
+TEST(ChooseQueueFamily, ComputeWithoutGraphics_IsPreferred) {
+  constexpr VkQueueFlags kGraphics = VK_QUEUE_GRAPHICS_BIT, kCompute = VK_QUEUE_COMPUTE_BIT;
+  const auto chosen = [](const std::vector<VkQueueFlags>& flags) {
+    std::vector<VkQueueFamilyProperties> families;
+    for (const VkQueueFlags family : flags) families.push_back({.queueFlags = family, .queueCount = 1});
+    return vulkan::choose_queue_family(families);
+  };
+  EXPECT_EQ(chosen({kGraphics | kCompute | VK_QUEUE_TRANSFER_BIT, VK_QUEUE_TRANSFER_BIT, kCompute}), 2U);
+  EXPECT_EQ(chosen({kCompute | VK_QUEUE_TRANSFER_BIT, kGraphics | kCompute, kCompute}), 0U);
+  EXPECT_EQ(chosen({VK_QUEUE_TRANSFER_BIT, kGraphics, kGraphics | kCompute, kGraphics | kCompute}), 2U);
+  EXPECT_EQ(chosen({VK_QUEUE_TRANSFER_BIT, kGraphics}), std::nullopt);
+  EXPECT_EQ(chosen({}), std::nullopt);
 }
 
 const DeviceSelector kWatched{.validation = ValidationMode::kOn};

@@ -96,7 +96,8 @@ TEST_P(KernelProperties, OrderOfAxes_TilesAndBlocks_ChangeNoBit) {
   for (int round = 0; round < 3; ++round) {
     const Reordered other = reordered(request, random);
     VulkanOptions options;
-    options.max_tile_invocations = static_cast<std::uint32_t>(random.uniform(1.0, 20.0));
+    options.first_tile_invocations = static_cast<std::uint32_t>(random.uniform(1.0, 20.0));
+    options.max_tile_invocations = static_cast<std::uint32_t>(random.uniform(1.0, 40.0));
     // In round 0 the limit is 1 shape. A row of a kernel may need more shapes, so the evaluator must raise the limit.
     options.max_block_shapes = round == 0 ? 1 : static_cast<std::uint32_t>(random.uniform(1.0, 6.0));
     options.staged_uploads = random.chance(0.5);

@@ -199,16 +199,58 @@ TEST(VulkanEvaluator, Progress_CountsEveryTileAndTheReportEveryDispatch) {
   EXPECT_GT(report.setup_s, 0.0);
 }
 
-TEST(VulkanEvaluator, DispatchesOnAProcessor_AreShortAndNeverLongerThanWanted) {
-  dolp::Device device;
-  VulkanOptions options;
-  EXPECT_EQ(for_device(options, device, Precision::kDouble).max_tile_invocations, options.max_tile_invocations);
-  device.type = dolp::Device::Type::kCpu;
-  const std::uint32_t in_double = for_device(options, device, Precision::kDouble).max_tile_invocations;
-  EXPECT_LT(in_double, for_device(options, device, Precision::kFloat).max_tile_invocations);
-  EXPECT_LE(in_double, options.max_tile_invocations / 16);
-  options.max_tile_invocations = 7;
-  EXPECT_EQ(for_device(options, device, Precision::kDouble).max_tile_invocations, 7U);
+constexpr double kNoTime = 1e-9, kLongTime = 1e9;  // seconds; no tile takes less than the one or more than the other
+
+TEST(VulkanEvaluator, WantedTimeOfATile_ChangesTheDispatchesAndNoBit) {
+  for (const Masking masking : {Masking::kVCavity, Masking::kIntegral}) {
+    MomentsRequest request = small_request(Distribution::kCauchy, masking);
+    for (double theta_deg = 1.5; theta_deg < 89.0; theta_deg += 4.0) request.theta_deg.push_back(theta_deg);
+    VulkanOptions options = validated();
+    options.first_tile_invocations = 64;
+    options.tile_s = kLongTime;
+    VulkanEvaluator patient(options);
+    const std::vector<Moments> expected = patient.evaluate(request, {});
+    options.tile_s = kNoTime;
+    VulkanEvaluator hasty(options);
+    EXPECT_TRUE(std::ranges::equal(hasty.evaluate(request, {}), expected, are_same));
+    EXPECT_GT(hasty.report().dispatches, 2 * patient.report().dispatches);
+  }
+}
+
+TEST(VulkanEvaluator, SmallRequestAfterALargeOne_HasTheBitsOfAFreshEvaluator) {
+  const MomentsRequest large = small_request(Distribution::kCauchy, Masking::kIntegral);
+  MomentsRequest small = large;
+  small.theta_deg = {33.0};
+  small.optics = {{1.2, 0.1}};
+  MomentsRequest slopes = small;
+  slopes.masking = Masking::kVCavity;
+  VulkanEvaluator evaluator(validated());
+  const std::vector<Moments> before = evaluator.evaluate(large, {});
+  for (const MomentsRequest& request : {small, slopes}) {
+    const std::vector<Moments> expected = VulkanEvaluator(validated()).evaluate(request, {});
+    EXPECT_TRUE(std::ranges::equal(evaluator.evaluate(request, {}), expected, are_same));
+  }
+  EXPECT_TRUE(std::ranges::equal(evaluator.evaluate(large, {}), before, are_same));
+  EXPECT_TRUE(evaluator.validation_messages().empty());
+}
+
+TEST(TilePace, TimesOfTiles_LeadToTheWantedTimeInSteps) {
+  const VulkanOptions options{.first_tile_invocations = 1'000, .tile_s = 0.1};
+  vulkan::TilePace pace(options, 50'000);
+  EXPECT_EQ(pace.invocations(), 1'000U);
+  pace.note(1'000, 0.001);  // 100,000 invocations would take the wanted time
+  EXPECT_EQ(pace.invocations(), 4'000U);
+  pace.note(1'000, 10.0);  // smaller than half a tile: says nothing
+  EXPECT_EQ(pace.invocations(), 4'000U);
+  pace.note(4'000, 0.08);
+  EXPECT_EQ(pace.invocations(), 4'992U);  // of 5,000, in groups of 16
+  pace.note(4'992, 5.0);
+  EXPECT_EQ(pace.invocations(), 1'248U);
+  for (int i = 0; i < 4; ++i) pace.note(pace.invocations(), kNoTime);
+  EXPECT_EQ(pace.invocations(), 50'000U);
+  for (int i = 0; i < 9; ++i) pace.note(pace.invocations(), kLongTime);
+  EXPECT_EQ(pace.invocations(), 16U);
+  EXPECT_EQ(vulkan::TilePace(options, 7).invocations(), 7U);
 }
 
 TEST(VulkanEvaluator, CancelledRequest_LeavesTheEvaluatorUsable) {

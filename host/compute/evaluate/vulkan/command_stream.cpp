@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
+#include <cassert>
 #include <utility>
 
 #include "base/interrupt.hpp"
@@ -45,31 +45,36 @@ CommandStream::CommandStream(const Device& device) : device_(device) {
                                                   .commandPool = pool_.get(),
                                                   .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
                                                   .commandBufferCount = 1};
-  check(vkAllocateCommandBuffers(device.get(), &commands_info, &commands_), "allocating a command buffer");
-
   const VkFenceCreateInfo fence_info{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
-  fence_ = created<UniqueFence>(device.get(), vkCreateFence, fence_info, "creating a fence");
-  if (device.timestamp_bits() == 0) return;
   const VkQueryPoolCreateInfo query_info{
       .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO, .queryType = VK_QUERY_TYPE_TIMESTAMP, .queryCount = 2};
-  timestamps_ = created<UniqueQueryPool>(device.get(), vkCreateQueryPool, query_info, "creating a query pool");
+  for (Recording& recording : recordings_) {
+    check(vkAllocateCommandBuffers(device.get(), &commands_info, &recording.commands), "allocating a command buffer");
+    recording.fence = created<UniqueFence>(device.get(), vkCreateFence, fence_info, "creating a fence");
+    if (device.timestamp_bits() == 0) continue;
+    recording.timestamps =
+        created<UniqueQueryPool>(device.get(), vkCreateQueryPool, query_info, "creating a query pool");
+  }
 }
 
 void CommandStream::begin() {
+  assert(in_flight_ < kMostInFlight);
+  if (in_flight_ == 0) slot_ = 0;
   // After an error the commands may still be in recording state.
-  check(vkResetCommandBuffer(commands_, 0), "resetting commands");
+  check(vkResetCommandBuffer(commands(), 0), "resetting commands");
   has_copies_ = false;
   const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                       .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
-  check(vkBeginCommandBuffer(commands_, &info), "recording commands");
-  if (timestamps_.get() == VK_NULL_HANDLE) return;
-  vkCmdResetQueryPool(commands_, timestamps_.get(), 0, 2);
-  vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, timestamps_.get(), 0);
+  check(vkBeginCommandBuffer(commands(), &info), "recording commands");
+  const VkQueryPool timestamps = recordings_[slot_].timestamps.get();
+  if (timestamps == VK_NULL_HANDLE) return;
+  vkCmdResetQueryPool(commands(), timestamps, 0, 2);
+  vkCmdWriteTimestamp(commands(), VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, timestamps, 0);
 }
 
 void CommandStream::copy(const Buffer& from, VkBuffer to, VkDeviceSize bytes) {
   const VkBufferCopy region{.srcOffset = 0, .dstOffset = 0, .size = bytes};
-  vkCmdCopyBuffer(commands_, from.get(), to, 1, &region);
+  vkCmdCopyBuffer(commands(), from.get(), to, 1, &region);
   has_copies_ = true;
 }
 
@@ -79,7 +84,7 @@ void CommandStream::barrier(Barrier barrier) {
   const VkMemoryBarrier memory{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
                                .srcAccessMask = scopes.from_access,
                                .dstAccessMask = scopes.to_access};
-  vkCmdPipelineBarrier(commands_, scopes.from_stage, scopes.to_stage, 0, 1, &memory, 0, nullptr, 0, nullptr);
+  vkCmdPipelineBarrier(commands(), scopes.from_stage, scopes.to_stage, 0, 1, &memory, 0, nullptr, 0, nullptr);
 }
 
 void CommandStream::dispatch(const Kernels& kernels, VkPipeline pipeline, std::uint32_t first, std::uint32_t count,
@@ -87,24 +92,34 @@ void CommandStream::dispatch(const Kernels& kernels, VkPipeline pipeline, std::u
   if (count == 0) return;
   const std::array<std::uint32_t, kPushConstantCount> constants{first, count, static_cast<std::uint32_t>(largest_order),
                                                                 sky};
-  const VkDescriptorSet set = kernels.descriptor_set();
+  const VkDescriptorSet set = kernels.descriptor_set(slot_);
   const std::uint32_t local_size = kernels.local_size();
-  vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-  vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernels.layout(), 0, 1, &set, 0, nullptr);
-  vkCmdPushConstants(commands_, kernels.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof constants, constants.data());
-  vkCmdDispatch(commands_, (count + local_size - 1) / local_size, 1, 1);
+  vkCmdBindPipeline(commands(), VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+  vkCmdBindDescriptorSets(commands(), VK_PIPELINE_BIND_POINT_COMPUTE, kernels.layout(), 0, 1, &set, 0, nullptr);
+  vkCmdPushConstants(commands(), kernels.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof constants, constants.data());
+  vkCmdDispatch(commands(), (count + local_size - 1) / local_size, 1, 1);
 }
 
-double CommandStream::submit_and_wait(double timeout_s) {
-  if (timestamps_.get() != VK_NULL_HANDLE) {
-    vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, timestamps_.get(), 1);
+void CommandStream::submit() {
+  Recording& recording = recordings_[slot_];
+  if (recording.timestamps.get() != VK_NULL_HANDLE) {
+    vkCmdWriteTimestamp(commands(), VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, recording.timestamps.get(), 1);
   }
-  check(vkEndCommandBuffer(commands_), "recording commands");
+  check(vkEndCommandBuffer(commands()), "recording commands");
   const VkSubmitInfo info{
-      .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 1, .pCommandBuffers = &commands_};
-  const VkFence fence = fence_.get();
+      .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 1, .pCommandBuffers = &recording.commands};
+  recording.follows = in_flight_ > 0;
+  recording.submitted = std::chrono::steady_clock::now();
+  check(vkQueueSubmit(device_.queue(), 1, &info, recording.fence.get()), "submitting work");
+  slot_ = (slot_ + 1) % kMostInFlight;
+  ++in_flight_;
+}
+
+double CommandStream::wait(double timeout_s) {
+  assert(in_flight_ > 0);
+  const Recording& recording = recordings_[oldest_slot()];
+  const VkFence fence = recording.fence.get();
   const auto start = std::chrono::steady_clock::now();
-  check(vkQueueSubmit(device_.queue(), 1, &info, fence), "submitting work");
   VkResult result = VK_TIMEOUT;
   while (result == VK_TIMEOUT) {
     const double slice_s = std::min(timeout_s, kInterruptIntervalS);
@@ -114,22 +129,43 @@ double CommandStream::submit_and_wait(double timeout_s) {
       throw DeviceTimeout(fmt::format("the Vulkan device did not finish a tile within {:g} s", timeout_s));
     }
   }
-  const double host_s = seconds_since(start);
+  --in_flight_;
   if (result != VK_SUCCESS) vkDeviceWaitIdle(device_.get());  // only the wait failed; the kernels may still be running
   const VkResult reset = vkResetFences(device_.get(), 1, &fence);
   check(result, "waiting for the device");
   check(reset, "resetting a fence");
-  return timestamps_.get() == VK_NULL_HANDLE ? host_s : elapsed_s();
+  return elapsed_s(recording);
 }
 
-double CommandStream::elapsed_s() const {
+void CommandStream::drain(double timeout_s) {
+  while (in_flight_ > 0) {
+    try {
+      wait(timeout_s);
+    } catch (const DeviceTimeout&) {
+      throw;
+    } catch (const std::exception&) {
+      // The caller already has an error, and wait() has counted the submission as ended.
+    }
+  }
+}
+
+double CommandStream::elapsed_s(const Recording& recording) {
+  const auto seen = std::exchange(last_end_seen_, std::chrono::steady_clock::now());
+  if (recording.timestamps.get() == VK_NULL_HANDLE) {
+    return std::chrono::duration<double>(last_end_seen_ - std::max(seen, recording.submitted)).count();
+  }
   std::array<std::uint64_t, 2> ticks{};
-  check(vkGetQueryPoolResults(device_.get(), timestamps_.get(), 0, 2, sizeof ticks, ticks.data(), sizeof ticks[0],
-                              VK_QUERY_RESULT_64_BIT),
+  check(vkGetQueryPoolResults(device_.get(), recording.timestamps.get(), 0, 2, sizeof ticks, ticks.data(),
+                              sizeof ticks[0], VK_QUERY_RESULT_64_BIT),
         "reading timestamps");
+  const std::uint64_t before = std::exchange(last_end_, ticks[1]);
   const std::uint32_t unused_bits = 64 - device_.timestamp_bits();
   // Shifting out the unused bits makes the difference wrap around as the device's counter does.
-  const std::uint64_t difference = ((ticks[1] << unused_bits) - (ticks[0] << unused_bits)) >> unused_bits;
+  const auto from = [&](std::uint64_t start) {
+    return ((ticks[1] << unused_bits) - (start << unused_bits)) >> unused_bits;
+  };
+  // The device may start a submission before the end of the submission before.
+  const std::uint64_t difference = recording.follows ? std::min(from(ticks[0]), from(before)) : from(ticks[0]);
   return static_cast<double>(difference) * static_cast<double>(device_.limits().timestampPeriod) /
          kNanosecondsPerSecond;
 }

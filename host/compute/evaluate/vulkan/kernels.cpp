@@ -124,7 +124,7 @@ KernelVariant masking_table_variant(const KernelData& data) {
 
 Kernels::Kernels(const Device& device, bool float64) : device_(device), float64_(float64) {
   create_layouts();
-  create_descriptor_set();
+  create_descriptor_sets();
 }
 
 void Kernels::create_layouts() {
@@ -151,23 +151,25 @@ void Kernels::create_layouts() {
   layout_ = created<UniquePipelineLayout>(device_.get(), vkCreatePipelineLayout, info, "creating a pipeline layout");
 }
 
-void Kernels::create_descriptor_set() {
+void Kernels::create_descriptor_sets() {
   const std::array<VkDescriptorPoolSize, 2> sizes{
-      {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kStorageCount}, {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, kTexelCount}}};
+      {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kMostInFlight * kStorageCount},
+       {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, kMostInFlight * kTexelCount}}};
   const VkDescriptorPoolCreateInfo pool_info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                             .maxSets = 1,
+                                             .maxSets = kMostInFlight,
                                              .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
                                              .pPoolSizes = sizes.data()};
   pool_ = created<UniqueDescriptorPool>(device_.get(), vkCreateDescriptorPool, pool_info, "creating a descriptor pool");
-  const VkDescriptorSetLayout set_layout = set_layout_.get();
+  std::array<VkDescriptorSetLayout, kMostInFlight> set_layouts{};
+  set_layouts.fill(set_layout_.get());
   const VkDescriptorSetAllocateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
                                          .descriptorPool = pool_.get(),
-                                         .descriptorSetCount = 1,
-                                         .pSetLayouts = &set_layout};
-  check(vkAllocateDescriptorSets(device_.get(), &info, &set_), "allocating a descriptor set");
+                                         .descriptorSetCount = kMostInFlight,
+                                         .pSetLayouts = set_layouts.data()};
+  check(vkAllocateDescriptorSets(device_.get(), &info, sets_.data()), "allocating descriptor sets");
 }
 
-void Kernels::bind(const Bindings& bindings) {
+void Kernels::bind(const Bindings& bindings, std::size_t slot) {
   const auto is_given = [](const auto& handle) { return handle != VK_NULL_HANDLE; };
   const auto any_buffer = std::ranges::find_if(bindings.buffers, is_given);
   const auto any_view = std::ranges::find_if(bindings.texels, is_given);
@@ -177,7 +179,7 @@ void Kernels::bind(const Bindings& bindings) {
   for (std::uint32_t i = 0; i < kStorageCount + (any_view != bindings.texels.end() ? kTexelCount : 0); ++i) {
     VkWriteDescriptorSet& write =
         writes.emplace_back(VkWriteDescriptorSet{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                                 .dstSet = set_,
+                                                 .dstSet = sets_[slot],
                                                  .dstBinding = i,
                                                  .descriptorCount = 1,
                                                  .descriptorType = descriptor_type(i)});

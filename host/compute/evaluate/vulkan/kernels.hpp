@@ -1,4 +1,4 @@
-// The compute pipelines of shaders/*.comp; they share one descriptor set.
+// The compute pipelines of shaders/*.comp; they share the descriptor sets.
 #pragma once
 
 #include <array>
@@ -10,6 +10,7 @@
 
 #include "device/device.hpp"
 #include "device/result.hpp"
+#include "evaluate/vulkan/command_stream.hpp"
 #include "plan/kernel_data.hpp"
 
 namespace dolp::vulkan {
@@ -49,22 +50,23 @@ class Kernels {
     std::array<VkBuffer, kStorageCount> buffers{};
     std::array<VkBufferView, kTexelCount> texels{};  ///< for DOLP_BINDING_RULE_NODES and DOLP_BINDING_MASKING_NODES
   };
-  /// Binds the buffers. In place of a null buffer, which no kernel reads, binds any other buffer of `bindings`. This
-  /// replaces the old binding, whose buffer may be destroyed: Vulkan forbids bindings to destroyed buffers.
-  void bind(const Bindings& bindings);
+  /// Binds the buffers for recordings in `slot` (see CommandStream). In place of a null buffer, which no kernel reads,
+  /// binds any other buffer of `bindings`. This replaces the old binding, whose buffer may be destroyed: Vulkan forbids
+  /// bindings to destroyed buffers.
+  void bind(const Bindings& bindings, std::size_t slot = 0);
 
   VkPipeline pipeline(const KernelVariant& variant);
   bool has(const KernelVariant& variant) { return known(variant) != VK_NULL_HANDLE; }
   std::uint32_t local_size() const { return device_.local_size(); }
   VkPipelineLayout layout() const { return layout_.get(); }
-  VkDescriptorSet descriptor_set() const { return set_; }
+  VkDescriptorSet descriptor_set(std::size_t slot) const { return sets_[slot]; }
 
   /// Creates a pipeline from any SPIR-V module that has the bindings and constants of interface.glsl.
   UniquePipeline create(std::span<const std::uint32_t> spirv, const KernelVariant& variant) const;
 
  private:
   void create_layouts();
-  void create_descriptor_set();
+  void create_descriptor_sets();
   VkPipeline known(const KernelVariant& variant);
 
   const Device& device_;
@@ -72,7 +74,7 @@ class Kernels {
   UniqueDescriptorSetLayout set_layout_;
   UniquePipelineLayout layout_;
   UniqueDescriptorPool pool_;
-  VkDescriptorSet set_ = VK_NULL_HANDLE;
+  std::array<VkDescriptorSet, kMostInFlight> sets_{};
   std::mutex mutex_;  ///< guards the pipelines
   std::map<KernelVariant, UniquePipeline> pipelines_;
 };

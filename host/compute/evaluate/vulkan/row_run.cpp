@@ -11,41 +11,42 @@ namespace {
 using TaskWords = std::array<std::uint32_t, 4>;
 
 constexpr std::size_t kRowsAtOnce = 512;
+constexpr std::size_t kMostRanges = 16;  // ranges of rows in a tile, as each range looks at all pieces of the tile
 
 class RowRun final : public TiledRun {
  public:
   RowRun(const KernelContext& context, const MomentsRequest& request, const VulkanOptions& options)
-      : TiledRun(context, request.precision),
+      : TiledRun(context, options, request.precision),
         request_(request),
         tiles_(request, context.description, options),
         data_(tiles_.data),
         rows_(tiles_.rows),
         thetas_(data_.thetas.size()),
-        indices_(request.optics.size()) {
+        indices_(request.optics.size()),
+        table_pace_(options, tiles_.sizes.shapes) {
     const std::size_t invocations = tiles_.sizes.invocations;
     const std::size_t shapes = tiles_.sizes.shapes;
-    add_inputs<kernel::ThetaNode>(DOLP_BINDING_THETAS, std::min(invocations, data_.thetas.size()));
-    add_inputs<kernel::ShapeNode>(DOLP_BINDING_SHAPES, shapes);
-    add_inputs<kernel::IndexNode>(DOLP_BINDING_INDICES, std::min(invocations, data_.indices.size()));
-    add_input(DOLP_BINDING_TASKS, invocations * sizeof(TaskWords));
-    masking_buffer_.emplace(context_.device, shapes * packing_.masking_nodes() * packing_.node_bytes<MaskingNode>(),
-                            MemoryUse::kDeviceOnly, packing_.masking_texels());
-    bindings_.buffers[DOLP_BINDING_MASKING_TABLE] = masking_buffer_->get();
-    bindings_.texels[DOLP_BINDING_MASKING_NODES - kStorageCount] = masking_buffer_->texels();
+    pace_ = TilePace(options, tiles_.sizes.invocations);
+    add_tile_inputs<kernel::ThetaNode>(DOLP_BINDING_THETAS, std::min(invocations, data_.thetas.size()));
+    add_shared_input(DOLP_BINDING_SHAPES, shapes * packing_.node_bytes<kernel::ShapeNode>());
+    add_tile_inputs<kernel::IndexNode>(DOLP_BINDING_INDICES, std::min(invocations, data_.indices.size()));
+    add_tile_input(DOLP_BINDING_TASKS, invocations * sizeof(TaskWords));
+    add_masking_tables(shapes);
     add_results(DOLP_BINDING_MOMENTS, result_bytes(invocations), data_, moments_variant(data_, rows_.width));
   }
 
   void create_pipelines() override {
     const KernelVariant tables = masking_table_variant(data_);
     std::future<void> table_pipeline;
-    if (data_.needs_masking_table() && !context_.kernels.has(tables)) {
+    if (!context_.kernels.has(tables)) {
       table_pipeline = std::async(std::launch::async, [&] { context_.kernels.pipeline(tables); });
     }
     TiledRun::create_pipelines();
     if (table_pipeline.valid()) table_pipeline.get();
   }
 
-  std::optional<std::vector<Moments>> compute(const Progress& progress) override {
+ protected:
+  std::vector<Moments> compute_tiles(const Progress& progress) override {
     cost_.curves_s = data_.curves_s;
     std::vector<kernel::MomentsNode> results(rows_.rows.size() * rows_.width);
     column_results_.assign(results.size() * column_sums(data_), 0.0);
@@ -53,17 +54,20 @@ class RowRun final : public TiledRun {
     for (const Block& block : tiles_.blocks()) {
       const std::vector<RowPiece> pieces = row_pieces(rows_, data_, block.first_row, block.row_count);
       if (!pieces.empty()) begin_block(block);
-      for (std::size_t first = 0; first < pieces.size(); first += tiles_.sizes.invocations) {
-        const std::size_t count = std::min<std::size_t>(tiles_.sizes.invocations, pieces.size() - first);
-        if (first > 0) context_.stream.begin();
+      for (std::size_t first = 0; first < pieces.size();) {
+        begin_tile();
+        const std::size_t count = std::min<std::size_t>(pace_.invocations(), pieces.size() - first);
         const auto tile = std::span<const RowPiece>(pieces).subspan(first, count);
-        upload_tile(block, tile);
-        run_kernel(tile.size(), result_bytes(tile.size()), data_);
-        add_pieces(tile, results);
-        const double block_share = static_cast<double>(first + count) / static_cast<double>(pieces.size());
+        first += count;
+        const double block_share = static_cast<double>(first) / static_cast<double>(pieces.size());
         const double share = (block.first_row + block.row_count * block_share) / static_cast<double>(rows_.rows.size());
-        if (!goes_on(progress, share, wanted)) return std::nullopt;
+        upload_tile(block, tile);
+        submit_tile(count, result_bytes(count), data_, [&, tile, share] {
+          add_pieces(tile, results);
+          note_progress(progress, share, wanted);
+        });
       }
+      finish_tiles();
     }
     return entry_moments(results);
   }
@@ -73,17 +77,25 @@ class RowRun final : public TiledRun {
     return invocations * rows_.width * packing_.output_bytes<kernel::MomentsNode>(column_sums(data_));
   }
 
+  /// Uploads the shapes of a block and computes their masking tables.
   void begin_block(const Block& block) {
     CommandStream& stream = context_.stream;
-    stream.begin();
-    upload(DOLP_BINDING_SHAPES, block.shape_count, [&](std::size_t i) { return rows_.shapes[block.first_shape + i]; });
-    upload_rule(data_);
-    if (!data_.needs_masking_table()) return;
-    stream.barrier(Barrier::kUploadToKernel);
-    stream.dispatch(context_.kernels, context_.kernels.pipeline(masking_table_variant(data_)), 0, block.shape_count,
-                    data_.rule_order);
-    stream.barrier(Barrier::kKernelToKernel);
-    ++cost_.dispatches;
+    for (std::uint32_t first = 0; first < block.shape_count;) {
+      begin_tile();
+      if (first == 0) {
+        upload(DOLP_BINDING_SHAPES, block.shape_count,
+               [&](std::size_t i) { return rows_.shapes[block.first_shape + i]; });
+        if (cost_.dispatches == 0) upload_rule(data_);
+      }
+      stream.barrier(Barrier::kUploadToKernel);
+      const std::uint32_t count = std::min(table_pace_.invocations(), block.shape_count - first);
+      stream.dispatch(context_.kernels, context_.kernels.pipeline(masking_table_variant(data_)), first, count,
+                      data_.rule_order);
+      stream.barrier(Barrier::kKernelToKernel);
+      ++cost_.dispatches;
+      submit({.pace = &table_pace_, .invocations = count});
+      first += count;
+    }
   }
 
   void upload_tile(const Block& block, std::span<const RowPiece> pieces) {
@@ -98,7 +110,7 @@ class RowRun final : public TiledRun {
       words.push_back({thetas_(theta), chunk.first - block.first_shape, indices_(row.index),
                        task_word(data_.pieces[theta], row_piece.piece, chunk.count)});
     }
-    inputs_[DOLP_BINDING_TASKS]->write(std::as_bytes(std::span(words)), context_.stream);
+    upload_bytes(DOLP_BINDING_TASKS, std::as_bytes(std::span(words)));
     const std::span<const std::uint32_t> thetas = thetas_.used(), indices = indices_.used();
     upload(DOLP_BINDING_THETAS, thetas.size(), [&](std::size_t i) { return data_.thetas[thetas[i]]; });
     upload(DOLP_BINDING_INDICES, indices.size(), [&](std::size_t i) { return data_.indices[indices[i]]; });
@@ -113,7 +125,9 @@ class RowRun final : public TiledRun {
     // A thread sums all pieces of a row, in their order. So rounding does not depend on the number of threads.
     const auto [least, most] = std::ranges::minmax(pieces, {}, &RowPiece::row);
     const std::uint32_t first_row = least.row;
-    parallel_ranges(most.row - least.row + std::size_t{1}, kRowsAtOnce, [&](std::size_t first, std::size_t last) {
+    const std::size_t rows = most.row - least.row + std::size_t{1};
+    const std::size_t at_once = std::max(kRowsAtOnce, rows / kMostRanges);
+    parallel_ranges(rows, at_once, [&](std::size_t first, std::size_t last) {
       std::vector<double> columns(per_entry);
       for (std::size_t i = 0; i < pieces.size(); ++i) {
         const std::size_t row = pieces[i].row - first_row;
@@ -159,8 +173,8 @@ class RowRun final : public TiledRun {
   const KernelData& data_;
   const Rows& rows_;
   Renumbering thetas_, indices_;
+  TilePace table_pace_;                 ///< for the masking tables
   std::vector<double> column_results_;  ///< DOLP_COLUMN_PARTS sums per column and entry (physics/columns.glsl)
-  std::optional<Buffer> masking_buffer_;
 };
 
 }  // namespace

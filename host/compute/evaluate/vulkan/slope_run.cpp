@@ -12,43 +12,46 @@ namespace {
 class SlopeRun final : public TiledRun {
  public:
   SlopeRun(const KernelContext& context, const MomentsRequest& request, const VulkanOptions& options)
-      : TiledRun(context, request.precision),
+      : TiledRun(context, options, request.precision),
         request_(request),
         tiles_(request, context.description, options),
         data_(tiles_.data),
         thetas_(data_.thetas.size()),
         indices_(request.optics.size()) {
     const std::size_t slopes = tiles_.slopes;
-    add_inputs<kernel::ThetaNode>(DOLP_BINDING_THETAS, std::min(slopes, data_.thetas.size()));
-    add_inputs<kernel::IndexNode>(DOLP_BINDING_INDICES, std::min(slopes, data_.indices.size()));
-    add_inputs<kernel::SlopeNode>(DOLP_BINDING_SLOPES, slopes);
-    add_results(DOLP_BINDING_AZIMUTHS,
-                orders_at_once(data_) * slopes * packing_.output_bytes<kernel::AzimuthNode>(column_azimuths(data_)),
-                data_, slopes_variant(data_));
+    pace_ = TilePace(options, tiles_.slopes);
+    add_tile_inputs<kernel::ThetaNode>(DOLP_BINDING_THETAS, std::min(slopes, data_.thetas.size()));
+    add_tile_inputs<kernel::IndexNode>(DOLP_BINDING_INDICES, std::min(slopes, data_.indices.size()));
+    add_tile_inputs<kernel::SlopeNode>(DOLP_BINDING_SLOPES, slopes);
+    add_results(DOLP_BINDING_AZIMUTHS, result_bytes(slopes), data_, slopes_variant(data_));
   }
 
-  std::optional<std::vector<Moments>> compute(const Progress& progress) override {
+ protected:
+  std::vector<Moments> compute_tiles(const Progress& progress) override {
     std::vector<Moments> moments(request_.size());
     const std::size_t wanted = request_.wanted_count();
     const std::size_t at_once = tiles_.batch_directions();
     cost_.curves_s = data_.curves_s;
-    context_.stream.begin();
-    upload_rule(data_);
     for (std::size_t first = 0; first < data_.directions; first += at_once) {
       const std::size_t last = std::min(first + at_once, data_.directions);
       const SlopeBatch batch = tiles_.batch(first);
       SampledAzimuths azimuths(batch.nodes, data_);
       const std::span<const std::uint32_t> slopes(batch.in_lockstep);
       for (std::size_t done = 0; done < slopes.size();) {
-        const std::size_t count = std::min<std::size_t>(tiles_.slopes, slopes.size() - done);
-        if (cost_.dispatches > 0) context_.stream.begin();
-        run_tile(batch, slopes.subspan(done, count), azimuths);
-        done += count;
+        begin_tile();
+        if (cost_.dispatches == 0) upload_rule(data_);
+        const auto tile = slopes.subspan(done, std::min<std::size_t>(pace_.invocations(), slopes.size() - done));
+        done += tile.size();
         const double batch_share = static_cast<double>(done) / static_cast<double>(slopes.size());
         const double share = (static_cast<double>(first) + batch_share * static_cast<double>(last - first)) /
                              static_cast<double>(data_.directions);
-        if (!goes_on(progress, share, wanted)) return std::nullopt;
+        upload_tile(batch, tile);
+        submit_tile(tile.size(), result_bytes(tile.size()), data_, [&, tile, share] {
+          read_tile(batch, tile, azimuths);
+          note_progress(progress, share, wanted);
+        });
       }
+      finish_tiles();
       for (const kernel::AzimuthNode& azimuth : azimuths.nodes) cost_.evaluations += azimuth.evaluations;
       const auto start = std::chrono::steady_clock::now();
       parallel_ranges(batch.samples.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -63,7 +66,11 @@ class SlopeRun final : public TiledRun {
   }
 
  private:
-  void run_tile(const SlopeBatch& batch, std::span<const std::uint32_t> slopes, SampledAzimuths& azimuths) {
+  std::size_t result_bytes(std::size_t slopes) const {
+    return orders_at_once(data_) * slopes * packing_.output_bytes<kernel::AzimuthNode>(column_azimuths(data_));
+  }
+
+  void upload_tile(const SlopeBatch& batch, std::span<const std::uint32_t> slopes) {
     thetas_.clear();
     indices_.clear();
     nodes_.clear();
@@ -76,9 +83,11 @@ class SlopeRun final : public TiledRun {
     upload(DOLP_BINDING_SLOPES, nodes_.size(), [&](std::size_t i) { return nodes_[i]; });
     upload(DOLP_BINDING_THETAS, thetas.size(), [&](std::size_t i) { return data_.thetas[thetas[i]]; });
     upload(DOLP_BINDING_INDICES, indices.size(), [&](std::size_t i) { return data_.indices[indices[i]]; });
+  }
+
+  void read_tile(const SlopeBatch& batch, std::span<const std::uint32_t> slopes, SampledAzimuths& azimuths) {
     const std::size_t per_node = column_azimuths(data_);
     const std::size_t nodes = slopes.size() * batch.orders_at_once;
-    run_kernel(slopes.size(), nodes * packing_.output_bytes<kernel::AzimuthNode>(per_node), data_);
     const std::size_t behind = nodes * packing_.node_bytes<kernel::AzimuthNode>();
     for (std::size_t i = 0; i < slopes.size(); ++i) {
       const SlopeBatch::Output& output = batch.outputs[slopes[i]];

@@ -7,14 +7,19 @@
 #include <utility>
 
 #include "base/parallel_ranges.hpp"
+#include "evaluate/vulkan/command_stream.hpp"
 
 namespace dolp::vulkan {
 namespace {
 
 using EntryWords = std::array<std::uint32_t, 4>;
 
-constexpr std::uint64_t kHeapFraction = 8;    // tiles get an eighth of the memory, masking tables another eighth
+constexpr std::uint64_t kHeapFraction =
+    8;  // all tiles in flight get an eighth of the memory, masking tables another eighth
 constexpr std::size_t kSampledAtOnce = 1024;  // pairs of direction and index in a batch; each has some hundred slopes
+
+// Largest factor between the sizes of a tile and the next. Costs of neighbouring invocations can differ by a factor 10.
+constexpr double kLargestChange = 4.0;
 
 std::uint32_t at_least_one(std::uint64_t count) {
   return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(count, 1, UINT32_MAX));
@@ -22,12 +27,15 @@ std::uint32_t at_least_one(std::uint64_t count) {
 
 TileSizes sizes_on(const dolp::Device& device, const TileCosts& costs, std::uint64_t invocations,
                    std::uint64_t shapes = 1) {
-  // No single buffer exceeds its limit, because `bytes` limits even the sum of all buffers.
-  const std::uint64_t bytes = std::min(device.max_storage_buffer_bytes, device.memory_bytes / kHeapFraction);
+  // No single buffer exceeds its limit, because the limit holds even for the sum of all buffers of a tile.
+  const std::uint64_t memory = device.memory_bytes / kHeapFraction;
+  const std::uint64_t bytes = std::min(device.max_storage_buffer_bytes, memory);
+  const std::uint64_t tile_bytes = std::min(device.max_storage_buffer_bytes, memory / kMostInFlight);
   const std::uint64_t dispatch_invocations = std::uint64_t{device.max_workgroups} * device.local_size;
   const std::uint64_t tables = costs.shape_texels > 0 ? device.max_texels / costs.shape_texels : shapes;
-  return {.invocations = at_least_one(std::min({bytes / costs.invocation_bytes, dispatch_invocations, invocations})),
-          .shapes = at_least_one(std::min({bytes / costs.shape_bytes, dispatch_invocations, shapes, tables}))};
+  return {
+      .invocations = at_least_one(std::min({tile_bytes / costs.invocation_bytes, dispatch_invocations, invocations})),
+      .shapes = at_least_one(std::min({bytes / costs.shape_bytes, dispatch_invocations, shapes, tables}))};
 }
 
 // Rule nodes that do not fit into the texels of a buffer are in a storage buffer, too.
@@ -65,6 +73,18 @@ std::vector<std::uint32_t> in_lockstep(const SlopeBatch& batch, const KernelData
 Packing make_packing(Precision precision) { return Packing(precision == Precision::kDouble); }
 
 }  // namespace
+
+TilePace::TilePace(const VulkanOptions& options, std::uint32_t most)
+    : tile_s_(options.tile_s), most_(most), invocations_(std::min(options.first_tile_invocations, most)) {}
+
+void TilePace::note(std::size_t invocations, double seconds) {
+  if (2 * invocations < invocations_) return;  // the rest of some work, too small to occupy the device
+  const double size = invocations_;
+  const double wanted = tile_s_ / seconds * static_cast<double>(invocations);
+  const auto next = static_cast<std::uint32_t>(std::clamp(wanted, size / kLargestChange, size * kLargestChange));
+  // Whole lockstep groups take the shortest time.
+  invocations_ = std::clamp(next - next % kLockstep, std::min(kLockstep, most_), most_);
+}
 
 RowTiles::RowTiles(const MomentsRequest& request, const dolp::Device& device, const VulkanOptions& options,
                    Tables tables)
@@ -107,9 +127,10 @@ DispatchCount RowTiles::count() const {
   count.rows = rows.rows.size();
   for (const Block& block : blocks()) {
     count.dispatches += tiles_in(row_pieces(rows, data, block.first_row, block.row_count).size(), sizes.invocations);
-    if (data.needs_masking_table()) ++count.dispatches;
+    ++count.dispatches;  // for the masking tables
   }
-  count.device_bytes = sizes.invocations * costs.invocation_bytes + sizes.shapes * costs.shape_bytes + costs.rule_bytes;
+  count.device_bytes =
+      kMostInFlight * sizes.invocations * costs.invocation_bytes + sizes.shapes * costs.shape_bytes + costs.rule_bytes;
   return count;
 }
 
@@ -169,7 +190,7 @@ DispatchCount SlopeTiles::count() const {
     count.rows += slope_batch.samples.size();
     count.slopes += slope_batch.slopes.size();
   }
-  count.device_bytes = slopes * costs.invocation_bytes + costs.rule_bytes;
+  count.device_bytes = kMostInFlight * slopes * costs.invocation_bytes + costs.rule_bytes;
   return count;
 }
 
@@ -193,7 +214,7 @@ namespace dolp {
 
 vulkan::DispatchCount count_dispatches(const MomentsRequest& request, const dolp::Device& device) {
   if (request.wanted_count() == 0) return {};
-  const VulkanOptions options = for_device({}, device, request.precision);
+  const VulkanOptions options;
   if (has_slope_samples(request)) return vulkan::SlopeTiles(request, device, options, Tables::kCounted).count();
   return vulkan::RowTiles(request, device, options, Tables::kCounted).count();
 }

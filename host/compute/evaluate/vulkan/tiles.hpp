@@ -25,7 +25,8 @@ struct TileCosts {
   std::uint64_t rule_bytes = 0;    ///< bytes of the rule nodes, which all tiles share
 };
 
-/// Invocations per dispatch, and shapes whose masking tables are bound at a time; at least one each.
+/// Largest number of invocations per dispatch, and of shapes whose masking tables are bound at a time; at least one
+/// each.
 struct TileSizes {
   std::uint32_t invocations = 1;
   std::uint32_t shapes = 1;
@@ -34,6 +35,20 @@ struct TileSizes {
 /// The CPU driver lavapipe runs this many invocations in lockstep: a loop lasts until all of them leave it. So
 /// different loop bounds add iterations, and after 65,535 iterations lavapipe stops the group without an error.
 inline constexpr std::uint32_t kLockstep = 16;
+
+/// Chooses the number of invocations of each tile from the times that the device took for the tiles before. The first
+/// tile is small, because the cost of an invocation depends on the request and on the device.
+class TilePace {
+ public:
+  /// `most`: largest number of invocations
+  TilePace(const VulkanOptions& options, std::uint32_t most);
+  std::uint32_t invocations() const { return invocations_; }
+  void note(std::size_t invocations, double seconds);
+
+ private:
+  double tile_s_;
+  std::uint32_t most_, invocations_;
+};
 
 /// Consecutive shapes whose masking tables are on the device at a time, and the kernel rows with these shapes.
 struct Block {
@@ -65,10 +80,10 @@ struct SlopeBatch {
 struct DispatchCount {
   std::uint32_t tile_invocations = 0;
   std::uint32_t block_shapes = 0;
-  std::uint32_t row_width = 1;  ///< largest number of entries per invocation, see plan/rows.hpp
-  std::uint64_t rows = 0;       ///< kernel rows; for slope samples, pairs of a direction and an index
-  std::uint64_t slopes = 0;     ///< slopes of all slope samples
-  std::uint64_t dispatches = 0;
+  std::uint32_t row_width = 1;     ///< largest number of entries per invocation, see plan/rows.hpp
+  std::uint64_t rows = 0;          ///< kernel rows; for slope samples, pairs of a direction and an index
+  std::uint64_t slopes = 0;        ///< slopes of all slope samples
+  std::uint64_t dispatches = 0;    ///< at least; TilePace divides the work into more if it takes long
   std::uint64_t device_bytes = 0;  ///< upper bound of the memory of all buffers
 };
 
@@ -103,7 +118,7 @@ struct SlopeTiles {
   KernelData data;
   SlopeSampling sampling;
   TileCosts costs;
-  std::uint32_t slopes = 0;  ///< slopes per dispatch: a multiple of kLockstep, so that no lockstep group is divided
+  std::uint32_t slopes = 0;  ///< largest number of slopes per dispatch; a multiple of kLockstep
 };
 
 /// Numbers the items of a list in the order of their first use. So a tile uploads only the items that it needs.

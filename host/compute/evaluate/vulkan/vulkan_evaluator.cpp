@@ -22,6 +22,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::uint32_t kShrinking = 4;
 constexpr std::uint32_t kSmallestTile = 64;
+constexpr int kMostLosses = 3;  // per request; the first tile has then shrunk from 1,024 to 16 invocations
 
 void check_entries(const MomentsRequest& request) {
   const std::size_t size = request.size();
@@ -38,13 +39,6 @@ void check_entries(const MomentsRequest& request) {
 
 }  // namespace
 
-VulkanOptions for_device(VulkanOptions options, const dolp::Device& device, Precision precision) {
-  if (device.type != dolp::Device::Type::kCpu) return options;
-  const std::uint32_t most = precision == Precision::kDouble ? 4'096 : 16'384;
-  options.max_tile_invocations = std::min(options.max_tile_invocations, most);
-  return options;
-}
-
 class VulkanEvaluator::Impl {
  public:
   explicit Impl(const VulkanOptions& options)
@@ -59,30 +53,39 @@ class VulkanEvaluator::Impl {
   /// Releases the buffers of the last request, and shrinks later tiles. Returns false if they cannot shrink further.
   bool shrink_tiles() {
     run_.reset();
+    buffers_ = {};
     if (options_.max_tile_invocations <= kSmallestTile) return false;
     options_.max_tile_invocations /= kShrinking;
     options_.max_block_shapes = std::max(options_.max_block_shapes / kShrinking, 1U);
     return true;
   }
 
-  /// Computes the request, and adds the cost to `report`. After a DeviceTimeout this object must not be destroyed.
-  std::vector<Moments> compute(const MomentsRequest& request, const Progress& progress, EvaluationReport& report) {
+  /// Invocations of the tile that the last request computed when it failed, or none if it failed before the first tile.
+  std::optional<std::uint32_t> failed_tile() const {
+    return run_ ? std::optional(run_->tile_invocations()) : std::nullopt;
+  }
+
+  /// Computes the request in tiles of at most `most` invocations, and adds the cost to `report`. After a DeviceTimeout
+  /// this object must not be destroyed.
+  std::vector<Moments> compute(const MomentsRequest& request, const Progress& progress, std::uint32_t most,
+                               EvaluationReport& report) {
     run_.reset();
     if (request.precision != Precision::kDouble) measure_arithmetic(report);
     const auto make_run = has_slope_samples(request) ? vulkan::slope_run : vulkan::row_run;
-    run_ = make_run(context_for(request.precision), request, options_for(request.precision));
+    VulkanOptions options = options_;
+    options.max_tile_invocations = std::min(options.max_tile_invocations, most);
+    run_ = make_run(context_for(request.precision), request, options);
     const Clock::time_point start = Clock::now();
     run_->create_pipelines();
     const double pipelines_s = seconds_since(start);
     report.setup_s += pipelines_s;
     report.pipelines_s += pipelines_s;
-    std::optional<std::vector<Moments>> moments = run_->compute(progress);
+    std::vector<Moments> moments = run_->compute(progress);
     report += run_->cost();
     note_precision(report.precision, request.precision == Precision::kDouble);
     run_.reset();
-    if (!moments) throw Cancelled();
     context_.check_validation();
-    return std::move(*moments);
+    return moments;
   }
 
  private:
@@ -105,12 +108,11 @@ class VulkanEvaluator::Impl {
             .description = description(),
             .kernels = kernels_for(requested),
             .stream = stream_,
+            .buffers = buffers_,
             .unit_roundoff = requested == Precision::kDouble ? kDoubleRoundoff : float_roundoff(*arithmetic_),
             .staged_uploads = options_.staged_uploads,
             .tile_timeout_s = options_.tile_timeout_s};
   }
-
-  VulkanOptions options_for(Precision requested) const { return for_device(options_, description(), requested); }
 
   vulkan::Kernels& kernels_for(Precision requested) {
     const bool float64 = requested == Precision::kDouble;
@@ -126,8 +128,9 @@ class VulkanEvaluator::Impl {
   vulkan::Context context_;
   std::optional<vulkan::Kernels> float_kernels_, double_kernels_;
   vulkan::CommandStream stream_;
+  vulkan::DeviceBuffers buffers_;
   std::optional<Arithmetic> arithmetic_;
-  // The next two are members, because their buffers must still exist after a timeout.
+  // The next two are members, because they must still exist after a timeout.
   std::optional<vulkan::ArithmeticProbe> probe_;
   std::unique_ptr<vulkan::TiledRun> run_;
 };
@@ -156,19 +159,23 @@ std::vector<Moments> VulkanEvaluator::evaluate(const MomentsRequest& request, co
   if (!impl_) throw DeviceError("the Vulkan device was given up after work that did not finish in time");
   check_entries(request);
   if (request.wanted_count() == 0) return std::vector<Moments>(request.size());
-  for (bool is_new_device = false;;) {
+  std::uint32_t most = UINT32_MAX;  // invocations of a tile
+  for (int losses = 0;;) {
     try {
-      return impl_->compute(request, progress, report_);
+      return impl_->compute(request, progress, most, report_);
     } catch (const vulkan::DeviceTimeout&) {
       // Vulkan forbids destroying objects that the driver still uses, so they all live until the end of the process.
       static_cast<void>(impl_.release());
       if (interrupted()) throw Cancelled();
       throw;
     } catch (const vulkan::DeviceLost&) {
-      if (is_new_device) throw;
-      is_new_device = true;
+      if (++losses > kMostLosses) throw;
       ++report_.devices_lost;
-      impl_ = std::make_unique<Impl>(impl_->options());
+      // The driver may have reset the device because the tile took too long.
+      if (const auto tile = impl_->failed_tile()) most = std::max(*tile / kShrinking, 1U);
+      VulkanOptions options = impl_->options();
+      options.first_tile_invocations = std::min(options.first_tile_invocations, most);
+      impl_ = std::make_unique<Impl>(options);
     } catch (const MemoryError&) {
       if (!impl_->shrink_tiles()) throw;
     }

@@ -17,14 +17,13 @@ struct VulkanOptions {
   bool needs_double = false;
   ValidationMode validation = ValidationMode::kFromEnvironment;
   // The following options do not change results.
-  std::uint32_t max_tile_invocations = 65'536;  ///< limit per dispatch; cancelling waits for the end of a dispatch
-  std::uint32_t max_block_shapes = 4'096;       ///< largest number of shapes with masking tables on the device
-  bool staged_uploads = false;  ///< uses staging buffers even if the host can map the memory of the device
+  std::uint32_t max_tile_invocations = 65'536;   ///< limit per dispatch
+  std::uint32_t first_tile_invocations = 1'024;  ///< in the first dispatch of a request, whose time is not known
+  double tile_s = 0.075;  ///< wanted duration of a dispatch; cancelling waits for the end of up to two dispatches
+  std::uint32_t max_block_shapes = 4'096;  ///< largest number of shapes with masking tables on the device
+  bool staged_uploads = false;             ///< uses staging buffers even if the host can map the memory of the device
   double tile_timeout_s = 600.0;
 };
-
-/// Returns `options`, with smaller dispatches if the device is a CPU. So a call ends within a second after cancelling.
-VulkanOptions for_device(VulkanOptions options, const dolp::Device& device, Precision precision);
 
 class VulkanEvaluator : public ModelEvaluator {
  public:
@@ -34,8 +33,9 @@ class VulkanEvaluator : public ModelEvaluator {
 
   /// Errors:
   /// - InputError if a list of the request has the wrong length.
-  /// - DeviceError if the request needs double precision and the device has none, if the device fails or is lost twice,
-  ///   if a tile exceeds tile_timeout_s (all later calls fail too), or if the validation layer has a message.
+  /// - DeviceError if the request needs double precision and the device has none, if the device fails or is lost four
+  ///   times in a request, if a tile exceeds tile_timeout_s (all later calls fail too), or if the validation layer has
+  ///   a message.
   /// - MemoryError if the device has too little memory even for small tiles.
   /// - Cancelled if `progress`, called after each tile, returns false.
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;

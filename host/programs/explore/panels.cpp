@@ -35,9 +35,13 @@ std::optional<Scene> with_other_distribution(const Scene& scene) {
   const double sigma = scene.number("surface.sigma").value();
   const double ratio = std::sqrt(scene.number("surface.q").value() - 1.0);
   const bool is_cauchy = scene.word("surface.distribution") == "cauchy";
+  const double factor = is_cauchy ? 1.0 / ratio : ratio;
+  if (has_wind(scene) && has_cross_slopes(scene)) return std::nullopt;
   try {
-    return scene.with({{"surface.distribution", is_cauchy ? "gaussian" : "cauchy"},
-                       {"surface.sigma", is_cauchy ? sigma / ratio : sigma * ratio}});
+    std::vector<Setting> changes = {{"surface.distribution", is_cauchy ? "gaussian" : "cauchy"},
+                                    {"surface.sigma", factor * sigma}};
+    if (const auto cross = scene.number(kSigmaCross)) changes.push_back({kSigmaCross, factor * *cross});
+    return scene.with(changes);
   } catch (const InputError&) {
     return std::nullopt;
   }
@@ -101,7 +105,7 @@ ScatteringCut scattering_cut(Evaluator& evaluator, const Scene& scene, double th
   ScatteringCut cut;
   const auto [from_um, to_um] = spectrum_um(scene);
   cut.wavelength_um = 0.5 * (from_um + to_um);
-  cut.theta_r_deg = zeniths(-90.0, 90.0, count);
+  cut.theta_r_deg = Scale{-90.0, 90.0}.values(count);
   std::vector<double> zenith_deg, azimuth_deg;
   for (const double theta_r_deg : cut.theta_r_deg) {
     zenith_deg.push_back(std::abs(theta_r_deg));
@@ -128,11 +132,13 @@ std::optional<ImagePolarisation> polarisation_at(const std::vector<Point>& curve
 }
 
 void SourceSky::follow(const std::string& key, const Scene& scene) {
-  for (std::size_t i = 0; i < kAzimuths; ++i) {
+  const double last_deg = has_cross_slopes(scene) ? 360.0 - kStepDeg : 180.0;
+  rings_.resize(static_cast<std::size_t>(last_deg / kStepDeg) + 1);
+  for (std::size_t i = 0; i < rings_.size(); ++i) {
     const Scene ring = scene.with("geometry.relative_azimuth_deg", azimuth_deg(i));
     rings_[i].follow({.key = fmt::format("sky {} {}", i, key),
                       .scene = ring,
-                      .parts = {points_at(ring, zeniths(0.0, 90.0, kZeniths))},
+                      .parts = {points_at(ring, Scale{0.0, 90.0}.values(kZeniths))},
                       .tolerance = Curve::kCoarseTolerance});
   }
 }

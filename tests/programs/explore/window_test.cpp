@@ -185,7 +185,7 @@ TEST_F(Window, List_OpensAndClosesOnTheScreenWithoutTheMouseMoving) {
 
 TEST_F(Window, EventsBetweenTwoFrames_AllCount) {
   click_control("field surface.sigma");
-  xdotool({"key", "--delay", "12", "0", "period", "2", "Tab", "4", "Return"});
+  xdotool({"key", "--delay", "12", "0", "period", "2", "Tab", "Tab", "4", "Return"});
   frames();
   EXPECT_EQ(number("surface.sigma"), 0.2);
   EXPECT_EQ(number("surface.q"), 4.0);

@@ -168,9 +168,9 @@ void export_figure(Ui& ui) {
   const auto plot = [&ui](Path path) { ui.actions.save_plot(path, ui.curves.x(), ui.curves.y()); };
   const auto window = [&ui](Path path) { ui.actions.attempt("saved " + path, [&] { ui.actions.save_picture(path); }); };
   export_as(ui, "Save a figure",
-            {{"curves and map, SVG", "_plot.svg", plot},
-             {"curves and map, PDF", "_plot.pdf", plot},
-             {"curves and map, PNG", "_plot.png", plot},
+            {{"curves and view, SVG", "_plot.svg", plot},
+             {"curves and view, PDF", "_plot.pdf", plot},
+             {"curves and view, PNG", "_plot.png", plot},
              {"the window, PNG", "_window.png", window}},
             format);
 }
@@ -180,12 +180,15 @@ template <DataFormat format>
 void export_data(Ui& ui) {
   const auto curve = [&ui](Path path) { ui.actions.attempt("saved " + path, [&] { save_curve(ui.session, path); }); };
   const auto table = [&ui](Path path) { ui.actions.export_table(path); };
-  export_as(ui, "Save data",
-            {{"the curve, CSV", "_curve.csv", curve},
-             {"the table of the scene's grid, NetCDF", "_table.nc", table},
-             {"the table of the scene's grid, CSV", "_table.csv", table},
-             {"the table of the scene's grid, NumPy", "_table.npy", table}},
-            format);
+  std::vector<PathDialog::Format> formats = {{"the curve, CSV", "_curve.csv", curve},
+                                             {"the table of the scene's grid, NetCDF", "_table.nc", table},
+                                             {"the table of the scene's grid, CSV", "_table.csv", table},
+                                             {"the table of the scene's grid, NumPy", "_table.npy", table}};
+  if (*swept_name(ui.session.view().panel) != '\0') {
+    const auto sweep = [&ui](Path path) { ui.actions.attempt("saved " + path, [&] { save_sweep(ui.session, path); }); };
+    formats.push_back({"the curve over " + ui.session.sweep_axis().label + ", CSV", "_view.csv", sweep});
+  }
+  export_as(ui, "Save data", formats, format);
 }
 
 void ask_what_to_open(Ui& ui) {

@@ -113,7 +113,7 @@ void draw_cells(const Disc& disc, const std::vector<double>& shares, std::size_t
 
 void draw_sphere(const Session& session, const Disc& disc, const Colours& colours) {
   std::vector<double> shares;
-  const std::vector<double> rings_deg = zeniths(0.0, 90.0, kRings + 1);
+  const std::vector<double> rings_deg = Scale{0.0, 90.0}.values(kRings + 1);
   for (const double zenith_deg : rings_deg) shares.push_back(std::sin(zenith_deg * kDegree));
   draw_cells(disc, shares, kSectors, [&](std::size_t ring, double azimuth_deg) {
     const double zenith_deg = 0.5 * (rings_deg[ring] + rings_deg[ring + 1]);
@@ -163,12 +163,13 @@ void draw_bar(ImVec2 corner, float width, const Colours& colours) {
 
 void draw_rings(const SourceSky& sky, const Disc& disc, const Colours& colours) {
   std::vector<double> shares;
-  for (const double zenith_deg : zeniths(0.0, 90.0, SourceSky::kZeniths)) shares.push_back(zenith_deg / 90.0);
-  draw_cells(disc, shares, 2 * (SourceSky::kAzimuths - 1), [&](std::size_t ring, double azimuth_deg) -> ImU32 {
-    const double side_deg = std::min(azimuth_deg, 360.0 - azimuth_deg);
-    const auto nearest = static_cast<std::size_t>(std::lround(side_deg / SourceSky::azimuth_deg(1)));
-    const std::vector<Point>& points = sky.at(nearest);
-    if (ring >= points.size()) return kBackground;  // not computed yet
+  for (const double zenith_deg : Scale{0.0, 90.0}.values(SourceSky::kZeniths)) shares.push_back(zenith_deg / 90.0);
+  constexpr auto kSectorsOfSky = static_cast<std::size_t>(360.0 / SourceSky::kStepDeg);
+  draw_cells(disc, shares, kSectorsOfSky, [&](std::size_t ring, double azimuth_deg) -> ImU32 {
+    const auto sector = static_cast<std::size_t>(std::lround(azimuth_deg / SourceSky::kStepDeg));
+    const std::size_t azimuth = sector < sky.azimuths() ? sector : kSectorsOfSky - sector;
+    if (azimuth >= sky.azimuths() || ring >= sky.at(azimuth).size()) return kBackground;  // not computed yet
+    const std::vector<Point>& points = sky.at(azimuth);
     return points[ring].is_good() ? viridis(colours.dolp.position(points[ring][Quantity::kDolp])) : kBadColour;
   });
 }
@@ -190,7 +191,7 @@ void draw_sky_marks(const Scene& scene, double source_zenith_deg, const Disc& di
 
 std::vector<Point> all_points(const SourceSky& sky) {
   std::vector<Point> all;
-  for (std::size_t i = 0; i < SourceSky::kAzimuths; ++i) all.insert(all.end(), sky.at(i).begin(), sky.at(i).end());
+  for (std::size_t i = 0; i < sky.azimuths(); ++i) all.insert(all.end(), sky.at(i).begin(), sky.at(i).end());
   return all;
 }
 

@@ -60,11 +60,9 @@ void draw_effects(const Session& session);
 void draw_slopes(const Session& session, ImVec2 size);    ///< slope distributions D
 void draw_material(const Session& session, ImVec2 size);  ///< n and k over wavelength
 
-/// Draws the plotted quantity over wavelength at the cursor's zenith. A drag changes the scene's wavelength.
-void draw_spectrum(Session& session, AxisEditor& editor, ImVec2 size);
-/// Draws the plotted quantity over the camera's zenith, with the source at the cursor's zenith. A drag moves the
-/// camera.
-void draw_camera(Session& session, ImVec2 size);
+/// Draws the plotted quantity at the cursor's zenith over another number of the scene (Session::sweep()): wavelength,
+/// zenith of the camera, or azimuth of the surface. A drag changes this number.
+void draw_sweep(Session& session, AxisEditor& editor, ImVec2 size);
 /// Draws the reflectances R_s and R_p of a facet over the local angle of incidence, and over wavelength at one angle.
 void draw_smooth(Session& session, AxisEditor& editor, ImVec2 size);
 

@@ -220,7 +220,7 @@ const Point& HeatMap::point_at(std::size_t finest, std::size_t row, std::size_t 
 MapField HeatMap::field(Plotted quantity) const {
   std::size_t finest = kLevels.size() - 1;
   while (finest > 0 && points_[finest].empty()) --finest;
-  if (points_[finest].empty()) return {};
+  if (points_[finest].empty()) return {.quantity = quantity};
   const std::size_t count = kLevels[finest].count;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   MapField field{.quantity = quantity, .count = count, .values = {}, .min = kInfinity, .max = -kInfinity};

@@ -24,13 +24,6 @@ std::pair<double, double> known_um(const Scene& scene) {  // range of the wavele
 
 }  // namespace
 
-Panel find_panel(const std::string& name) {
-  const auto found = std::ranges::find(kPanelNames, name);
-  if (found == kPanelNames.end())
-    throw InputError("view " + name + ": is not one of " + join({kPanelNames.begin(), kPanelNames.end()}));
-  return static_cast<Panel>(found - kPanelNames.begin());
-}
-
 std::optional<Scene> with_other_distribution(const Scene& scene) {
   const double sigma = scene.number("surface.sigma").value();
   const double ratio = std::sqrt(scene.number("surface.q").value() - 1.0);
@@ -129,18 +122,6 @@ std::optional<ImagePolarisation> polarisation_at(const std::vector<Point>& curve
   const double q_over_i = (1.0 - part) * below->values[Quantity::kQOverI] + part * above->values[Quantity::kQOverI];
   const double angle_deg = std::fmod(azimuth_deg + (q_over_i > 0.0 ? 90.0 : 0.0) + 360.0, 180.0);
   return ImagePolarisation{std::abs(q_over_i), angle_deg};
-}
-
-void SourceSky::follow(const std::string& key, const Scene& scene) {
-  const double last_deg = has_cross_slopes(scene) ? 360.0 - kStepDeg : 180.0;
-  rings_.resize(static_cast<std::size_t>(last_deg / kStepDeg) + 1);
-  for (std::size_t i = 0; i < rings_.size(); ++i) {
-    const Scene ring = scene.with("geometry.relative_azimuth_deg", azimuth_deg(i));
-    rings_[i].follow({.key = fmt::format("sky {} {}", i, key),
-                      .scene = ring,
-                      .parts = {points_at(ring, Scale{0.0, 90.0}.values(kZeniths))},
-                      .tolerance = Curve::kCoarseTolerance});
-  }
 }
 
 }  // namespace dolp::explore

@@ -34,8 +34,6 @@ constexpr const char* swept_name(Panel panel) {
   return panel == Panel::kAzimuth ? "surface azimuth" : "";
 }
 
-Panel find_panel(const std::string& name);  ///< Errors: InputError that lists the names
-
 /// The scene with a Gaussian slope distribution instead of a Cauchy one, or the reverse, with the same density D(0) of
 /// horizontal facets: sigma_gaussian = sigma_cauchy / sqrt(q - 1). Empty if the model forbids the new sigma or q, and
 /// for a directional wind, which is Gaussian.
@@ -77,34 +75,5 @@ struct ImagePolarisation {
 /// the direction to the camera, towards `azimuth_deg` in the image. Interpolates between two points of `curve`; empty
 /// if one of them is missing or not good. The electric field is along `azimuth_deg` if Q < 0 (p), else perpendicular.
 std::optional<ImagePolarisation> polarisation_at(const std::vector<Point>& curve, double theta_deg, double azimuth_deg);
-
-/// DOLP of a bistatic scene for all directions of the source: one curve over the source's zenith for each azimuth.
-class SourceSky {
- public:
-  static constexpr std::size_t kZeniths = 31;  ///< 0 to 90 degrees
-  static constexpr double kStepDeg = 5.0;      ///< between two azimuths
-
-  /// Switches to `scene`. `key` identifies the scene, but not the azimuth of the source: this object has all azimuths.
-  /// With equal slopes along and across, these are 0 to 180 degrees: the other half of the sky is the mirror image.
-  void follow(const std::string& key, const Scene& scene);
-  std::vector<Job> wanted() const {  // one job for each azimuth that is not computed yet
-    std::vector<Job> jobs;
-    for (const Sweep& ring : rings_) {
-      if (const std::optional<Job> job = ring.wanted()) jobs.push_back(*job);
-    }
-    return jobs;
-  }
-  void take(const JobPart& news) {
-    std::ranges::any_of(rings_, [&](Sweep& ring) { return ring.take(news); });
-  }
-  std::size_t azimuths() const { return rings_.size(); }
-  /// The points at an azimuth times kStepDeg, ordered by zenith; empty until they are computed.
-  const std::vector<Point>& at(std::size_t azimuth) const { return rings_[azimuth].points(); }
-  static double azimuth_deg(std::size_t azimuth) { return kStepDeg * static_cast<double>(azimuth); }
-  bool is_finished() const { return !rings_.empty() && std::ranges::all_of(rings_, &Sweep::is_finished); }
-
- private:
-  std::vector<Sweep> rings_;
-};
 
 }  // namespace dolp::explore

@@ -100,8 +100,7 @@ std::string curve_name(const Session& session) {
 std::string overlay_name(const Session& session) {
   if (!session.overlay()) return {};
   const Scene& shown = session.overlay()->shown_scene();
-  return fmt::format("{} {}, same D(0){}", shown.word("surface.distribution").value(), width_name(shown),
-                     remark(session, *session.overlay()));
+  return slopes_name(shown) + ", same D(0)" + remark(session, *session.overlay());
 }
 
 std::string pin_name(const Session& session, const Pin& pin) {

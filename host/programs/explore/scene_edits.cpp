@@ -41,6 +41,13 @@ std::string medium_name(const Scene& scene, const std::string& table) {
   return fmt::format("n {:.4g} k {:.4g}", scene.number(table + ".n").value(), scene.number(table + ".k").value());
 }
 
+std::string width_name(const Scene& scene) {
+  const bool has_cross = has_cross_slopes(scene);
+  if (has_wind(scene)) return number_text(scene, "surface.wind_m_s") + (has_cross ? " directional" : "");
+  const std::string width = number_text(scene, "surface.sigma");
+  return has_cross ? width + ' ' + number_text(scene, kSigmaCross) : width;
+}
+
 std::vector<std::vector<std::string>> shape_words(const Scene& scene) {
   std::vector<std::vector<std::string>> groups = {{scene.word("surface.distribution").value(), width_name(scene)},
                                                   {scene.word("surface.masking").value()}};
@@ -199,13 +206,6 @@ constexpr const char* kSkyHeader = "zenith_deg,temperature_K";
 
 }  // namespace
 
-std::string width_name(const Scene& scene) {
-  const bool has_cross = has_cross_slopes(scene);
-  if (has_wind(scene)) return number_text(scene, "surface.wind_m_s") + (has_cross ? " directional" : "");
-  const std::string width = number_text(scene, "surface.sigma");
-  return has_cross ? width + ' ' + number_text(scene, kSigmaCross) : width;
-}
-
 const Key& described(const std::string& key) {
   const auto found = std::ranges::find(dolp::keys(), key, &Key::key);
   if (found == dolp::keys().end()) throw std::logic_error("no scene key " + key);
@@ -314,6 +314,8 @@ std::string material_name(const Scene& scene) {
   }
   return name;
 }
+
+std::string slopes_name(const Scene& scene) { return fmt::format("{}", fmt::join(shape_words(scene).front(), " ")); }
 
 std::string surface_name(const Scene& scene, const Scene* other) {
   std::vector<std::string> common, parts;

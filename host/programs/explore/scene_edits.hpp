@@ -69,7 +69,7 @@ std::string unused_text(const Scene& scene, const Control& control);  ///< why t
 /// before the material that is the same for `other`. If the surfaces are equal, adds what else differs: "T 300 K".
 std::string surface_name(const Scene& scene, const Scene* other = nullptr);
 
-std::string width_name(const Scene& scene);     ///< the wind or the slope widths: "σ 0.06 σ_c 0.18"
+std::string slopes_name(const Scene& scene);    ///< the slope distribution: "cauchy σ 0.15 q 3"
 std::string material_name(const Scene& scene);  ///< the material of the surface, and its films
 
 inline constexpr const char* kSigmaCross = "surface.sigma_cross";

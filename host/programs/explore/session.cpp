@@ -70,6 +70,7 @@ Session::Session(SceneEdits edits)
     : state_{.edits = std::move(edits)},
       curve_(scene()),
       map_(scene()),
+      sky_(scene()),
       sweep_scene_(scene()),
       peak_(scene()),
       residuals_(scene()) {
@@ -275,9 +276,7 @@ void Session::follow() {
   follow_map();
   follow_sweep();
   follow_smooth(content);
-  if (shows(Panel::kSky) && is_bistatic(scene()))
-    source_sky_.follow(content_key(scene(), state_.edits.changes_without({"geometry.relative_azimuth_deg"}), false),
-                       scene());
+  follow_sky();
   estimate_influences();
   follow_peak();
   is_changed_ = true;
@@ -309,11 +308,22 @@ void Session::follow_map() {
   if (is_dragged() && map_.is_arriving()) return;  // a drag must not interrupt a map that is being computed
   const MapAxis x = axis_or_another(scene(), state_.view, state_.view.map_x, state_.view.map_y);
   const MapAxis y = axis_or_another(scene(), state_.view, state_.view.map_y, x.name);
+  follow_over(map_, x, y);
+}
+
+/// With equal slopes along and across, half of the sky is the mirror image of the other half.
+void Session::follow_sky() {
+  if (!shows(Panel::kSky) || !is_bistatic(scene())) return;
+  const double last_deg = has_cross_slopes(scene()) ? 360.0 : 180.0;
+  follow_over(sky_, {"azimuth", "Δφ", "geometry.relative_azimuth_deg", {0.0, last_deg}}, {});
+}
+
+void Session::follow_over(HeatMap& map, const MapAxis& x, const MapAxis& y) {
   std::string key = content_key(scene(), state_.edits.changes_without({x.key, y.key}), keeps_all());
   if (!x.key.empty() && !y.key.empty()) key += "\ntheta=" + format_number(state_.theta_deg);
   for (const MapAxis& axis : {x, y})
     key += fmt::format("\n{} {} {} {}", axis.label, axis.scale.from, axis.scale.to, axis.scale.is_log);
-  map_.follow(key, scene(), keeps_all(), x, y, state_.theta_deg);
+  map.follow(key, scene(), keeps_all(), x, y, state_.theta_deg);
 }
 
 /// Finds the axis `name` of the shown view. Returns false if the scene lacks it, or its range cannot be drawn.
@@ -364,20 +374,24 @@ void Session::follow_smooth(const std::string& content) {
   if (find_sweep_axis("wavelength")) follow_over_axis(smooth_spectrum_, smooth_scene(sweep_scene_), kWavelengths);
 }
 
+std::vector<const Sweep*> Session::shown_sweeps() const {
+  if (shows(Panel::kSmooth)) return {&smooth_, &smooth_spectrum_};
+  return shows_sweep() ? std::vector{&sweep_} : std::vector<const Sweep*>{};
+}
+
 std::vector<Job> Session::wanted_in_drag() const {
   JobList list;
   const auto add_other = [&](bool is_map) {
     if (is_map && shows(Panel::kMap) && !map_.is_coarse_done()) list.add(map_.wanted(0));
-    if (is_map && shows(Panel::kSky)) list.add(source_sky_.wanted());
+    if (is_map && shows(Panel::kSky)) list.add(sky_.wanted(0));
     if (!is_map && overlay_) list.add(overlay_->wanted(Curve::Stage::kCoarse));
   };
   if (!is_curve_next_) add_other(is_map_next_);
   list.add(curve_.wanted(Curve::Stage::kCoarse));
   if (is_curve_next_) add_other(is_map_next_);
-  for (const Sweep* sweep : {&smooth_, &smooth_spectrum_}) {
-    if (shows(Panel::kSmooth)) list.add(sweep->wanted());
+  for (const Sweep* sweep : shown_sweeps()) {
+    if (!shows(Panel::kSpectrum)) list.add(sweep->wanted());
   }
-  if (shows_sweep() && !shows(Panel::kSpectrum)) list.add(sweep_.wanted());
   add_other(!is_map_next_);
   return list.jobs;
 }
@@ -389,16 +403,14 @@ std::vector<Job> Session::wanted() const {
   list.add(curve_.wanted(Curve::Stage::kFine));
   if (overlay_) list.add(overlay_->wanted(Curve::Stage::kFine));
   if (shows(Panel::kMap)) list.add(map_.wanted(0));
-  for (const Sweep* sweep : {&smooth_, &smooth_spectrum_}) {
-    if (shows(Panel::kSmooth)) list.add(sweep->wanted());
-  }
-  if (shows_sweep()) list.add(sweep_.wanted());
+  for (const Sweep* sweep : shown_sweeps()) list.add(sweep->wanted());
   list.add(peak_.wanted());
   list.add(residuals_.wanted());
   for (const Pin& pin : state_.pins) list.add(pin.curve.wanted(Curve::Stage::kFine));
-  if (shows(Panel::kSky)) list.add(source_sky_.wanted());
-  for (std::size_t level = 1; shows(Panel::kMap) && level < HeatMap::kLevels.size(); ++level)
-    list.add(map_.wanted(level));
+  for (std::size_t level = 0; level < HeatMap::kLevels.size(); ++level) {
+    if (shows(Panel::kMap) && level > 0) list.add(map_.wanted(level));
+    if (shows(Panel::kSky)) list.add(sky_.wanted(level));
+  }
   return list.jobs;
 }
 
@@ -411,7 +423,7 @@ void Session::take(const std::vector<JobPart>& news) {
     is_curve_next_ = !is_curve;
     if (!is_curve) is_map_next_ = !is_map;
     if (is_map && part.is_last && is_dragged()) follow();
-    source_sky_.take(part);
+    sky_.take(part);
     for (Sweep* sweep : {&sweep_, &smooth_, &smooth_spectrum_}) sweep->take(part);
     if (peak_.take(part) && peak_.answer()) {
       for (Pin& pin : state_.pins) {

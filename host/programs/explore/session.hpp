@@ -135,7 +135,7 @@ class Session {
   std::vector<Snapshot>& snapshots() { return state_.snapshots; }
   const std::vector<Snapshot>& snapshots() const { return state_.snapshots; }
   const HeatMap& map() const { return map_; }
-  const SourceSky& source_sky() const { return source_sky_; }
+  const HeatMap& sky() const { return sky_; }  ///< bistatic results over the azimuth and zenith of the source
   /// The results at the cursor's zenith over another number of the scene, for the views of swept_name().
   const Sweep& sweep() const { return sweep_; }
   const MapAxis& sweep_axis() const { return sweep_axis_; }
@@ -181,11 +181,14 @@ class Session {
   void follow();
   void follow_overlay(const std::string& content);
   void follow_map();
+  void follow_sky();
+  void follow_over(HeatMap& map, const MapAxis& x, const MapAxis& y);
   void follow_peak() {
     if (!curve_.is_finished()) return;
     peak_.set_cursor(*at_cursor());
     peak_.follow(curve_, state_.edits, state_.view.theta_max_deg);
   }
+  std::vector<const Sweep*> shown_sweeps() const;
   std::vector<Job> wanted_in_drag() const;
   bool find_sweep_axis(const std::string& name);
   void follow_over_axis(Sweep& sweep, const Scene& swept, std::size_t count);
@@ -203,7 +206,7 @@ class Session {
   Curve curve_;
   std::optional<Curve> overlay_;
   HeatMap map_;
-  SourceSky source_sky_;
+  HeatMap sky_;
   Scene sweep_scene_;
   MapAxis sweep_axis_;
   Sweep sweep_, smooth_, smooth_spectrum_;

@@ -98,10 +98,10 @@ TEST(ExplorePanels, SmoothSceneOfAWind_AndABandOfTheWindow_AreAccepted) {
 }
 
 TEST(ExplorePanels, Spectrum_IsTheCurveOverWavelengthAtTheCursor_AndIsComputedWhileItIsShown) {
-  Driver driver(paint({"surface.material=water 25C", "spectrum.band_um=[8,14]", "accuracy.tolerance=1e-2"}));
+  const SceneEdits water = paint({"surface.material=water 25C", "spectrum.band_um=[8,14]", "accuracy.tolerance=1e-2"});
+  EXPECT_FALSE(Session(water).sweep().wanted());
+  Driver driver(water, {.panel = Panel::kSpectrum});
   Session& session = driver.session;
-  EXPECT_TRUE(session.sweep().points().empty());
-  session.set_view(&View::panel, Panel::kSpectrum);
   session.set_theta(70.0);
   driver.settle();
   ASSERT_TRUE(session.sweep().is_finished());
@@ -150,26 +150,29 @@ TEST(ExplorePanels, SphereOfASurface_ShowsPAlongTheTiltAndSAcross) {
 }
 
 TEST(ExplorePanels, Sky_OfABistaticScene_IsComputedWhileItIsShown) {
-  Driver driver(paint({"geometry.mode=\"bistatic\"", "source.preset=\"sun\"", "geometry.view_zenith_deg=60"}));
+  const SceneEdits sun = paint({"geometry.mode=\"bistatic\"", "source.preset=\"sun\"", "geometry.view_zenith_deg=60"});
+  EXPECT_TRUE(Session(sun).sky().field(Plotted::kDolp).values.empty());
+  Driver driver(sun, {.panel = Panel::kSky});
   Session& session = driver.session;
-  EXPECT_FALSE(session.source_sky().is_finished());
-  session.set_view(&View::panel, Panel::kSky);
-  driver.settle();
-  ASSERT_TRUE(session.source_sky().is_finished());
-  const std::size_t azimuth = 12;
-  const Scene scene = session.scene().with({{"geometry.relative_azimuth_deg", SourceSky::azimuth_deg(azimuth)},
-                                            {"accuracy.tolerance", explore::Curve::kCoarseTolerance}});
-  expect_same(session.source_sky().at(azimuth), truth(scene, session.source_sky().at(azimuth)));
+  const HeatMap& sky = session.sky();
+  ASSERT_TRUE(sky.is_finished());
+  EXPECT_EQ(sky.x().scale.to, 180.0);
+  const MapField field = sky.field(Plotted::kDolp);
+  const Scale azimuths{0.0, 180.0}, zeniths{0.0, 90.0};
+  const Scene scene = session.scene().with("geometry.relative_azimuth_deg", azimuths.values(field.count)[90]);
+  const Point exact = truth(scene, points_at(scene, {zeniths.values(field.count)[70]})).front();
+  EXPECT_NEAR(field.values[70 * field.count + 90], exact[Quantity::kDolp], 2.0 * exact[Quantity::kErrorEstimate]);
   session.set("geometry.relative_azimuth_deg", 77.0);
-  EXPECT_TRUE(session.source_sky().is_finished());
+  EXPECT_TRUE(sky.is_finished());
   session.set("surface.sigma", 0.3);
-  EXPECT_FALSE(session.source_sky().is_finished());
+  EXPECT_FALSE(sky.is_finished());
+  session.set(kSigmaCross, 0.45);
+  EXPECT_EQ(sky.x().scale.to, 360.0);  // no half of the sky is the mirror image of the other
 }
 
 TEST(ExplorePanels, Camera_IsTheCurveOverTheViewZenith_WithTheSourceAtTheCursor) {
-  Driver driver(paint({"geometry.mode=bistatic", "source.irradiance=20"}));
+  Driver driver(paint({"geometry.mode=bistatic", "source.irradiance=20"}), {.panel = Panel::kCamera});
   Session& session = driver.session;
-  session.set_view(&View::panel, Panel::kCamera);
   session.set_theta(35.0);
   driver.settle();
   ASSERT_TRUE(session.sweep().is_finished());
@@ -208,19 +211,6 @@ TEST(ExplorePanels, Azimuth_IsTheCurveOverTheSurfacesAzimuth_WithUAndTheRowsOfEv
   EXPECT_TRUE(session.sweep().is_finished());
   EXPECT_EQ(quantity_refusal(session.scene(), Plotted::kUOverI), "");
   EXPECT_NE(quantity_refusal(paint().scene(), Plotted::kUOverI), "");
-}
-
-TEST(ExplorePanels, Sky_OverABrushedSurface_HasAllAzimuths) {
-  SourceSky sky;
-  const Scene scene = paint({"geometry.mode=bistatic", "source.preset=sun", "surface.sigma_cross=0.45"})
-                          .scene()
-                          .with(kSurfaceAzimuth, 30);
-  sky.follow("brushed", scene);
-  ASSERT_EQ(sky.azimuths(), 72U);
-  const std::vector<Job> jobs = sky.wanted();
-  for (const std::size_t azimuth : {34U, 38U}) sky.take(done(jobs[azimuth]));
-  const auto dolp = [&](std::size_t azimuth) { return sky.at(azimuth)[20][Quantity::kDolp]; };
-  EXPECT_GT(std::abs(dolp(34) - dolp(38)), 1e-3);  // 170 and 190 degrees
 }
 
 TEST(ExplorePanels, EveryViewOfEveryScene_IsWanted_OrRefusedWithAReason) {
@@ -325,7 +315,7 @@ TEST_F(Window, Films_AreAddedOutside_ChangedAndRemoved) {
 }
 
 TEST_F(Window, SceneWithAWind_HasItsSliderInsteadOfSigma_AndADirectionalOneAnAzimuth) {
-  session().set_view(&View::panel, Panel::kSlopes);  // a view without a map, because maps of bands take long
+  session().set_view(&View::panel, Panel::kSlopes);  // without a map, frames are faster
   session().set({{"surface.distribution", "gaussian"}, {"surface.wind_m_s", 8.0}});
   settle();
   EXPECT_THROW(app_->control_area("surface.sigma"), std::out_of_range);

@@ -43,12 +43,6 @@ void draw_lines(const Plot& plot, const std::vector<double>& xs, const std::vect
   }
 }
 
-std::string distribution_name(const Scene& scene) {
-  const std::string name = scene.word("surface.distribution").value();
-  const std::string q = name == "cauchy" ? fmt::format(" q {:.4g}", scene.number("surface.q").value()) : "";
-  return fmt::format("{} σ {:.4g}{}", name, scene.number("surface.sigma").value(), q);
-}
-
 /// Marks a wavelength, a band, or the response of the camera, whose largest value has the height of the plot.
 void mark_spectrum(const Plot& plot, const Scene& scene) {
   const auto [from_um, to_um] = spectrum_um(scene);
@@ -127,9 +121,9 @@ void draw_slopes(const Session& session, ImVec2 size) {
       values.push_back(slope_density(shape, alpha_deg) * std::cos(alpha_deg * kDegree));
     return values;
   };
-  std::vector<NamedLine> lines = {{distribution_name(scene), current_style(), densities(scene)}};
+  std::vector<NamedLine> lines = {{slopes_name(scene), current_style(), densities(scene)}};
   const Scale range = values_range(lines, session.view().is_log);
-  if (other) lines.push_back({distribution_name(*other) + ", same D(0)", overlay_style(), densities(*other)});
+  if (other) lines.push_back({slopes_name(*other) + ", same D(0)", overlay_style(), densities(*other)});
   const Plot plot("slopes", size, {"angle of the facets α [°]", {0.0, 90.0}}, {"D(α) cos α [1/sr]", range});
   draw_lines(plot, all_deg, lines);
 }

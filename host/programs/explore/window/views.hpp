@@ -109,7 +109,7 @@ class MapView {
     double level;
     std::vector<Segment> segments;
   };
-  const PlottedDescription& quantity() const { return described(quantity_); }
+  const PlottedDescription& quantity() const { return described(field_.quantity); }
   void update(const Session& session);
   Scale colour_range() const;  ///< automatic range of the values that the colours show
   ImU32 colour(double position) const;
@@ -120,7 +120,6 @@ class MapView {
 
   // Inputs of the last update(). From them it computed the members from colour_scale_ to contours_.
   std::size_t version_ = 0;
-  Plotted quantity_ = Plotted::kDolp;
   bool is_log_ = false;
   std::optional<Scale> typed_colours_;
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the plots of the window `dolp explore`: curves, measured points and map. The window runs this program.
+"""Draws the plots of the window `dolp explore`: curves, measured points and view. The window runs this program.
 
 Usage: plot_view.py .svg|.pdf|.png < PLOTS.json > PICTURE
 Needs python3-matplotlib. Exit status: 0 done, 2 usage or wrong input, 4 the picture cannot be written.
@@ -50,17 +50,17 @@ def draw_curves(axes, plots):
     for order, curve in enumerate(plots["curves"]):
         style = curve["style"]
         style = STYLES.get(style) or dict(zip(("color", "linestyle"), PINS[style % len(PINS)]))
-        theta, values, good = numbers(curve["theta_deg"]), numbers(curve["values"]), np.array(curve["good"], dtype=bool)
+        at, values, good = numbers(curve["at"]), numbers(curve["values"]), np.array(curve["good"], dtype=bool)
         low, high = numbers(curve["low"]), numbers(curve["high"])
-        axes.plot(theta, np.where(good, values, np.nan), label=curve["name"], linewidth=1.5, zorder=3 - 0.01 * order,
+        axes.plot(at, np.where(good, values, np.nan), label=curve["name"], linewidth=1.5, zorder=3 - 0.01 * order,
                   **style)
-        axes.plot(theta, np.where(good, np.nan, values), label="_" if good.all() else MODEL_FAILS, **FAILING)
+        axes.plot(at, np.where(good, np.nan, values), label="_" if good.all() else MODEL_FAILS, **FAILING)
         if np.isfinite(low).any():
-            axes.fill_between(theta, low, high, label=BAND, color=style["color"], alpha=0.2, linewidth=0)
+            axes.fill_between(at, low, high, label=BAND, color=style["color"], alpha=0.2, linewidth=0)
     points = plots["measured"]
     if points:
-        column = {name: numbers([point[name] for point in points]) for name in ("theta_deg", "value", "uncertainty")}
-        axes.errorbar(column["theta_deg"], column["value"], column["uncertainty"], fmt="o", markersize=4, color="0.2",
+        column = {name: numbers([point[name] for point in points]) for name in ("at", "value", "uncertainty")}
+        axes.errorbar(column["at"], column["value"], column["uncertainty"], fmt="o", markersize=4, color="0.2",
                       markerfacecolor="none", elinewidth=0.8, label="measured")
     set_axes(axes, plots["x"], plots["y"])
     axes.grid(alpha=0.25, linewidth=0.6)
@@ -109,12 +109,14 @@ def draw(plots, suffix):
     # Keeps text as text in an SVG. Does not parse titles as formulas, because they may contain any character.
     plt.rcParams.update({"font.size": 10, "svg.fonttype": "none", "text.parse_math": False})
     plt.rcParams.update({"axes.spines.top": False, "axes.spines.right": False})
-    has_map = plots["map"] is not None
-    size = (11.0 if has_map else 6.5, 4.4)
-    figure, panels = plt.subplots(1, 1 + has_map, figsize=size, dpi=150, layout="constrained", squeeze=False)
+    has_view = plots["map"] is not None or plots["sweep"] is not None
+    size = (11.0 if has_view else 6.5, 4.4)
+    figure, panels = plt.subplots(1, 1 + has_view, figsize=size, dpi=150, layout="constrained", squeeze=False)
     figure.set_figheight(size[1] + LINE_INCHES * draw_curves(panels[0, 0], plots))
-    if has_map:
+    if plots["map"] is not None:
         draw_map(figure, panels[0, 1], plots["map"])
+    if plots["sweep"] is not None:
+        draw_curves(panels[0, 1], plots["sweep"])
     figure.suptitle(textwrap.fill(plots["title"], int(9 * size[0])))
     figure.savefig(sys.stdout.buffer, format=suffix.lstrip(".") or "png")
 

@@ -118,11 +118,12 @@ class Pictures(PackageCase):
 
     def test_plots_of_the_window_have_no_legend_on_a_curve_and_name_the_grey_of_the_map(self):
         theta = [*range(0, 91)]
-        curve = {"style": "curve", "theta_deg": theta, "values": theta, "good": [True] * 91, "low": [None] * 91, "high": [None] * 91}
+        curve = {"style": "curve", "at": theta, "values": theta, "good": [True] * 91, "low": [None] * 91, "high": [None] * 91}
         axis = {"label": "x", "from": 0, "to": 90, "is_log": False}
         grid = {"x": axis, "y": axis, "label": "DOLP", "is_log": False, "is_signed": False, "colours": None}
         for count, bad in ((1, None), (6, 2.0)):
-            plots = {"title": "Plate", "x": axis, "y": axis, "measured": [], "map": {**grid, "rows": [[1.0, bad], [2.0, 3.0]]},
+            plots = {"title": "Plate", "x": axis, "y": axis, "measured": [], "sweep": None,
+                     "map": {**grid, "rows": [[1.0, bad], [2.0, 3.0]]},
                      "curves": [{**curve, "name": f"curve {i} " + 8 * i * "x", "style": i or "curve"} for i in range(count)]}
             with unittest.mock.patch("sys.stdout", unittest.mock.Mock(buffer=io.BytesIO())):
                 plot_view.draw(plots, ".svg")

@@ -49,7 +49,11 @@ inline Evaluate on_the_cpu(Evaluator& evaluator) {
 /// A session and its worker, which computes on the CPU.
 class Driver {
  public:
-  explicit Driver(SceneEdits edits) : session(std::move(edits)), worker_(on_the_cpu(evaluator_), [] {}) { settle(); }
+  explicit Driver(SceneEdits edits, const View& view = {})
+      : session(std::move(edits)), worker_(on_the_cpu(evaluator_), [] {}) {
+    session.set_view(view);
+    settle();
+  }
 
   /// Does what the window does for each frame: takes results and requests new ones. Returns false if all is done.
   bool frame() {

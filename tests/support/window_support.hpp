@@ -42,7 +42,7 @@ temperature_K = 290.0
 [surroundings]
 temperature_K = 240.0
 [spectrum]
-band_um = [8.0, 14.0]
+wavelength_um = 10.0
 [grid]
 theta_deg = [0, 30, 60]
 [accuracy]

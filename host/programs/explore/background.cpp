@@ -40,13 +40,16 @@ void BackgroundTask::finish() {
 
 void Sweep::follow(Job job, const std::string& column) {
   job_ = std::move(job);
-  column_ = column;
+  if (std::exchange(column_, column) == column) return;
+  points_.clear();  // the old points belong to another axis
+  at_.clear();
 }
 
 bool Sweep::take(const JobPart& news) {
   if (!job_ || news.key != job_->key) return false;
   shown_key_ = news.key;
   points_ = news.points;
+  csv_ = news.csv;
   at_ = job_->parts.front()[column_];
   return true;
 }
@@ -110,18 +113,24 @@ JobPart Worker::advance(Task& task) {
     job.scene = job.scene.with("accuracy.tolerance", job.tolerance);
   const PointList& list = job.parts[task.next_part];
   const auto start = std::chrono::steady_clock::now();
-  const Results results =
-      evaluate_(job.scene, list,
-                {.keep_all = job.keep_all, .progress = [&](std::size_t, std::size_t) { return may_continue(job); }});
-  JobPart news{.key = job.key, .part = task.next_part, .scene = job.scene, .points = result_points(list, results)};
+  const auto progress = [&](std::size_t, std::size_t) { return may_continue(job); };
+  JobPart news{.key = job.key, .part = task.next_part, .scene = job.scene};
+  Results results;
+  try {
+    results = evaluate_(job.scene, list, {.keep_all = job.keep_all, .progress = progress});
+  } catch (const InputError& error) {
+    news.refusal = error.what();
+    results.status.assign(list.size(), kOutsideModelDomain);
+  }
+  news.points = result_points(list, results);
   task.wall_s += seconds_since(start);
   task.evaluations += results.integrand_evaluations;
   news.is_last = ++task.next_part == job.parts.size();
   if (!news.is_last) return news;
   news.wall_s = task.wall_s;
   news.evaluations = task.evaluations;
-  if (!job.wants_effects) return news;
-  news.csv = to_csv(list.columns(), results);
+  if (job.parts.size() == 1) news.csv = to_csv(list.columns(), results);
+  if (!job.wants_effects || !news.refusal.empty()) return news;
   for (const Attribute& attribute : results.attributes) {
     const bool is_device = attribute.name == "device" || attribute.name == "driver";
     if (is_device) news.device += (news.device.empty() ? "" : ", ") + std::get<std::string>(attribute.value);

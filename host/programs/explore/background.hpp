@@ -82,7 +82,7 @@ struct Job {
   std::vector<PointList> parts;  ///< lists of points, computed one after the other; more urgent jobs may run in between
   double tolerance = 0.0;        ///< the job has the larger one of this tolerance and its scene's tolerance
   bool keep_all = false;
-  bool wants_effects = false;  ///< the last part of the job then has JobPart::effects and JobPart::csv
+  bool wants_effects = false;  ///< the last part of the job then has JobPart::effects
   bool is_brief = false;       ///< once begun, the job runs to its end even if it is no longer wanted
 };
 
@@ -91,7 +91,8 @@ struct JobPart {
   std::size_t part = 0;  ///< position in Job::parts
   Scene scene;           ///< Job::scene with the tolerance that was used for `points`
   std::vector<Point> points = {};
-  std::string csv = {};  ///< `points` as CSV with the columns of `dolp eval`; empty unless Job::wants_effects
+  std::string csv = {};      ///< `points` as CSV with the columns of `dolp eval`; empty if the job has several parts
+  std::string refusal = {};  ///< why no point has a value: slope widths that differ too much; "" if they have
   bool is_last = false;
   // The members below belong to the whole job. Only the last part of a job has them.
   std::vector<Effect> effects = {};
@@ -110,10 +111,11 @@ class Sweep {
   bool is_finished() const { return job_ && shown_key_ == job_->key; }  ///< points() belong to the newest job
   const std::vector<Point>& points() const { return points_; }
   const std::vector<double>& at() const { return at_; }  ///< values of `column`, one per point
+  const std::string& csv() const { return csv_; }        ///< JobPart::csv of points()
 
  private:
   std::optional<Job> job_;
-  std::string column_, shown_key_;
+  std::string column_, shown_key_, csv_;
   std::vector<Point> points_;
   std::vector<double> at_;
 };

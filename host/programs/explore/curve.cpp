@@ -22,29 +22,32 @@ double upper_dolp(const Point& point) { return point_dolp(point) + point[Quantit
 struct Removal {
   const char* effect;
   bool radiates;
-  const char* key;  ///< scene key; its value shows whether a scene has the effect
-  Setting change;   ///< setting that removes the effect from a scene
+  const char* key;               ///< scene key; its value shows whether a scene has the effect
+  std::vector<Setting> changes;  ///< settings that remove the effect from a scene
 
   bool is_in(const Scene& scene) const {
     const bool is_number = described(key).type == Key::Type::kNumber;
-    if (!is_number) return scene.word(key) && *scene.word(key) != plain_text(change.value);
-    const bool is_table = change.key.find('.') == std::string::npos;
+    if (!is_number) return scene.word(key) && *scene.word(key) != plain_text(changes.front().value);
+    const bool is_table = changes.front().key.find('.') == std::string::npos;
     return is_table ? scene.number(key).has_value() : scene.number(key) > 0.0;
   }
 };
 
 const std::vector<Removal>& removals() {
   static const std::vector<Removal> all = {
-      {"emission", true, "emission.temperature_K", {"emission", {}}},
-      {"source", true, "source.scale", {"source", {}}},
-      {"surroundings", true, "surroundings.temperature_K", {"surroundings", {}}},
-      {"surroundings", true, "surroundings.profile", {"surroundings", {}}},
-      {"path", false, "path.transmittance", {"path", {}}},
-      {"diffuse", false, "surface.diffuse", {"surface.diffuse", 0.0}},
-      {"specular", false, "surface.specular", {"surface.specular", 0.0}},
-      {"masking", false, "surface.masking", {"surface.masking", "none"}},
-      {"scattering", false, "surface.scattering", {"surface.scattering", "single"}},
-      {"roughness", false, "surface.sigma", {"surface.sigma", 0.0}},
+      {"emission", true, "emission.temperature_K", {{"emission", {}}}},
+      {"source", true, "source.scale", {{"source", {}}}},
+      {"surroundings", true, "surroundings.temperature_K", {{"surroundings", {}}}},
+      {"surroundings", true, "surroundings.profile", {{"surroundings", {}}}},
+      {"path", false, "path.transmittance", {{"path", {}}}},
+      {"diffuse", false, "surface.diffuse", {{"surface.diffuse", 0.0}}},
+      {"specular", false, "surface.specular", {{"surface.specular", 0.0}}},
+      {"masking", false, "surface.masking", {{"surface.masking", "none"}}},
+      {"scattering", false, "surface.scattering", {{"surface.scattering", "single"}}},
+      {"roughness",
+       false,
+       "surface.sigma",
+       {{"surface.sigma", 0.0}, {kSigmaCross, Value()}, {"grid.sigma_cross", Value()}}},
   };
   return all;
 }
@@ -54,7 +57,7 @@ std::vector<WithoutEffect> without_each(const Scene& scene, const SceneEdits& ed
   for (const Removal& removal : removals()) {
     if (!removal.is_in(scene)) continue;
     try {
-      without.push_back({removal.effect, removal.radiates, edits.scene().with({removal.change})});
+      without.push_back({removal.effect, removal.radiates, edits.scene().with(removal.changes)});
     } catch (const InputError&) {
       // The scene is invalid without this effect, for example if nothing else radiates. So the list lacks it.
     }
@@ -85,7 +88,7 @@ std::optional<Job> Curve::wanted(Stage stage) const {
   const bool is_coarse = stage == Stage::kCoarse;
   return Job{.key = job_key(stage),
              .scene = scene_,
-             .parts = {points_at(scene_, zeniths(0.0, 90.0, is_coarse ? kCoarseCount : kFineCount))},
+             .parts = {points_at(scene_, Scale{0.0, 90.0}.values(is_coarse ? kCoarseCount : kFineCount))},
              .tolerance = is_coarse ? kCoarseTolerance : 0.0,
              .keep_all = keep_all_,
              .wants_effects = !is_coarse,
@@ -151,7 +154,7 @@ void Peak::follow(const Curve& curve, const SceneEdits& edits, double theta_max_
   if (best == curve_.end()) return;
   const double low = (best == curve_.begin() ? best : best - 1)->theta_deg;
   const double high = (best + 1 == curve_.end() ? best : best + 1)->theta_deg;
-  theta_deg_ = zeniths(low, high, static_cast<std::size_t>(std::lround((high - low) / kStepDeg)) + 1);
+  theta_deg_ = Scale{low, high}.values(static_cast<std::size_t>(std::lround((high - low) / kStepDeg)) + 1);
   without_ = without_each(scene_, edits);
 }
 

@@ -270,6 +270,11 @@ void save_curve(const Session& session, const std::string& path) {
   write_text_atomically(path, session.curve().finished().csv);
 }
 
+void save_sweep(const Session& session, const std::string& path) {
+  if (!session.sweep().is_finished()) throw InputError("the curve of the view is not finished yet");
+  write_text_atomically(path, session.sweep().csv());
+}
+
 bool is_session_file(const std::string& path) {
   std::error_code unknown;
   try {

@@ -15,8 +15,10 @@ void save_session(const Session& session, const std::string& path);
 /// saves this sky as NAME_sky.csv in the same folder, and the scene then uses that file. Errors: IoError.
 void save_scene(Session& session, const std::string& path);
 
-/// Writes the curve as CSV with the columns of `dolp eval`. Errors: InputError if the curve is not finished; IoError.
+/// Writes the curve, or the curve of the view (Session::sweep()), as CSV with the columns of `dolp eval`. Errors:
+/// InputError if the curve is not finished; IoError.
 void save_curve(const Session& session, const std::string& path);
+void save_sweep(const Session& session, const std::string& path);
 
 bool is_session_file(const std::string& path);  ///< false also if the file cannot be read
 

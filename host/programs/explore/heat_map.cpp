@@ -27,7 +27,9 @@ const std::vector<AxisOfNumber>& axes_of_numbers() {
                                       {"wavelength", "spectrum.wavelength_um"},
                                       {"temperature", "emission.temperature_K"},
                                       {"view zenith", "geometry.view_zenith_deg"},
-                                      {"azimuth", "geometry.relative_azimuth_deg", Scale{0.0, 180.0}}};
+                                      {"azimuth", "geometry.relative_azimuth_deg", Scale{0.0, 180.0}},
+                                      {"sigma cross", kSigmaCross},
+                                      {"surface azimuth", kSurfaceAzimuth}};
     for (const Key& key : keys()) {
       if (key.key.ends_with(".thickness_um"))
         axes.push_back({fmt::format("film {}", key.layer), key.key, Scale{1e-2, 10.0, true}});
@@ -59,6 +61,8 @@ void add_lines(const MapField& field, double level, std::size_t column, std::siz
     value[i] = field.values[at] - level;
     if (std::isnan(value[i])) return;
   }
+  const auto [low, high] = std::ranges::minmax(value);
+  if (described(field.quantity).jumps(low, high)) return;
   std::vector<std::pair<double, double>> crossings;
   for (std::size_t i = 0; i < 4; ++i) {
     const std::size_t j = (i + 1) % 4;
@@ -216,10 +220,10 @@ const Point& HeatMap::point_at(std::size_t finest, std::size_t row, std::size_t 
 MapField HeatMap::field(Plotted quantity) const {
   std::size_t finest = kLevels.size() - 1;
   while (finest > 0 && points_[finest].empty()) --finest;
-  if (points_[finest].empty()) return {};
+  if (points_[finest].empty()) return {.quantity = quantity};
   const std::size_t count = kLevels[finest].count;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  MapField field{.count = count, .values = {}, .min = kInfinity, .max = -kInfinity};
+  MapField field{.quantity = quantity, .count = count, .values = {}, .min = kInfinity, .max = -kInfinity};
   for (std::size_t i = 0; i < count * count; ++i) {
     const Point& point = point_at(finest, i / count, i % count);
     const double value = described(quantity).value(point);

@@ -36,6 +36,7 @@ std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range)
 
 /// Values of one quantity on a map: `count` rows of `count` values. x grows along a row, and y from row to row.
 struct MapField {
+  Plotted quantity = Plotted::kDolp;
   std::size_t count = 0;
   std::vector<double> values;  ///< NaN where the point is not good (Point::is_good) or has no value
   double min = 0.0;            ///< smallest value; `max` is the largest value

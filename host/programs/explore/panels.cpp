@@ -24,20 +24,17 @@ std::pair<double, double> known_um(const Scene& scene) {  // range of the wavele
 
 }  // namespace
 
-Panel find_panel(const std::string& name) {
-  const auto found = std::ranges::find(kPanelNames, name);
-  if (found == kPanelNames.end())
-    throw InputError("view " + name + ": is not one of " + join({kPanelNames.begin(), kPanelNames.end()}));
-  return static_cast<Panel>(found - kPanelNames.begin());
-}
-
 std::optional<Scene> with_other_distribution(const Scene& scene) {
   const double sigma = scene.number("surface.sigma").value();
   const double ratio = std::sqrt(scene.number("surface.q").value() - 1.0);
   const bool is_cauchy = scene.word("surface.distribution") == "cauchy";
+  const double factor = is_cauchy ? 1.0 / ratio : ratio;
+  if (has_wind(scene) && has_cross_slopes(scene)) return std::nullopt;
   try {
-    return scene.with({{"surface.distribution", is_cauchy ? "gaussian" : "cauchy"},
-                       {"surface.sigma", is_cauchy ? sigma / ratio : sigma * ratio}});
+    std::vector<Setting> changes = {{"surface.distribution", is_cauchy ? "gaussian" : "cauchy"},
+                                    {"surface.sigma", factor * sigma}};
+    if (const auto cross = scene.number(kSigmaCross)) changes.push_back({kSigmaCross, factor * *cross});
+    return scene.with(changes);
   } catch (const InputError&) {
     return std::nullopt;
   }
@@ -101,7 +98,7 @@ ScatteringCut scattering_cut(Evaluator& evaluator, const Scene& scene, double th
   ScatteringCut cut;
   const auto [from_um, to_um] = spectrum_um(scene);
   cut.wavelength_um = 0.5 * (from_um + to_um);
-  cut.theta_r_deg = zeniths(-90.0, 90.0, count);
+  cut.theta_r_deg = Scale{-90.0, 90.0}.values(count);
   std::vector<double> zenith_deg, azimuth_deg;
   for (const double theta_r_deg : cut.theta_r_deg) {
     zenith_deg.push_back(std::abs(theta_r_deg));
@@ -125,16 +122,6 @@ std::optional<ImagePolarisation> polarisation_at(const std::vector<Point>& curve
   const double q_over_i = (1.0 - part) * below->values[Quantity::kQOverI] + part * above->values[Quantity::kQOverI];
   const double angle_deg = std::fmod(azimuth_deg + (q_over_i > 0.0 ? 90.0 : 0.0) + 360.0, 180.0);
   return ImagePolarisation{std::abs(q_over_i), angle_deg};
-}
-
-void SourceSky::follow(const std::string& key, const Scene& scene) {
-  for (std::size_t i = 0; i < kAzimuths; ++i) {
-    const Scene ring = scene.with("geometry.relative_azimuth_deg", azimuth_deg(i));
-    rings_[i].follow({.key = fmt::format("sky {} {}", i, key),
-                      .scene = ring,
-                      .parts = {points_at(ring, zeniths(0.0, 90.0, kZeniths))},
-                      .tolerance = Curve::kCoarseTolerance});
-  }
 }
 
 }  // namespace dolp::explore

@@ -20,16 +20,23 @@ enum class Panel : std::uint8_t {
   kShapes,
   kSky,
   kCamera,
+  kAzimuth,
   kFit
 };
 
-inline constexpr std::array kPanelNames = {"map",   "slopes", "material", "smooth", "spectrum",
-                                           "pBRDF", "sphere", "sky",      "camera", "fit"};
+inline constexpr std::array kPanelNames = {"map",    "slopes", "material", "smooth",  "spectrum", "pBRDF",
+                                           "sphere", "sky",    "camera",   "azimuth", "fit"};
 
-Panel find_panel(const std::string& name);  ///< Errors: InputError that lists the names
+/// Name of the axis (MapAxis::name) over which a view shows the quantity of the curve; "" for other views.
+constexpr const char* swept_name(Panel panel) {
+  if (panel == Panel::kSpectrum) return "wavelength";
+  if (panel == Panel::kCamera) return "view zenith";
+  return panel == Panel::kAzimuth ? "surface azimuth" : "";
+}
 
 /// The scene with a Gaussian slope distribution instead of a Cauchy one, or the reverse, with the same density D(0) of
-/// horizontal facets: sigma_gaussian = sigma_cauchy / sqrt(q - 1). Empty if the model forbids the new sigma or q.
+/// horizontal facets: sigma_gaussian = sigma_cauchy / sqrt(q - 1). Empty if the model forbids the new sigma or q, and
+/// for a directional wind, which is Gaussian.
 std::optional<Scene> with_other_distribution(const Scene& scene);
 
 /// The slope distribution D in 1/sr, at the angle alpha between the normals of a facet and of the mean plane. Equations
@@ -68,32 +75,5 @@ struct ImagePolarisation {
 /// the direction to the camera, towards `azimuth_deg` in the image. Interpolates between two points of `curve`; empty
 /// if one of them is missing or not good. The electric field is along `azimuth_deg` if Q < 0 (p), else perpendicular.
 std::optional<ImagePolarisation> polarisation_at(const std::vector<Point>& curve, double theta_deg, double azimuth_deg);
-
-/// DOLP of a bistatic scene for all directions of the source: one curve over the source's zenith for each azimuth.
-class SourceSky {
- public:
-  static constexpr std::size_t kZeniths = 31;   ///< 0 to 90 degrees
-  static constexpr std::size_t kAzimuths = 37;  ///< 0 to 180 degrees; the other half of the sky is the mirror image
-
-  /// Switches to `scene`. `key` identifies the scene, but not the azimuth of the source: this object has all azimuths.
-  void follow(const std::string& key, const Scene& scene);
-  std::vector<Job> wanted() const {  // one job for each azimuth that is not computed yet
-    std::vector<Job> jobs;
-    for (const Sweep& ring : rings_) {
-      if (const std::optional<Job> job = ring.wanted()) jobs.push_back(*job);
-    }
-    return jobs;
-  }
-  void take(const JobPart& news) {
-    std::ranges::any_of(rings_, [&](Sweep& ring) { return ring.take(news); });
-  }
-  /// The points at the azimuth with this number, ordered by zenith; empty until they are computed.
-  const std::vector<Point>& at(std::size_t azimuth) const { return rings_[azimuth].points(); }
-  static double azimuth_deg(std::size_t azimuth) { return 180.0 * static_cast<double>(azimuth) / (kAzimuths - 1); }
-  bool is_finished() const { return std::ranges::all_of(rings_, &Sweep::is_finished); }
-
- private:
-  std::array<Sweep, kAzimuths> rings_;
-};
 
 }  // namespace dolp::explore

@@ -11,20 +11,48 @@ json axis_json(const std::string& label, const Scale& scale) {
   return {{"label", label}, {"from", scale.from}, {"to", scale.to}, {"is_log", scale.is_log}};
 }
 
-/// `style` is "curve", "overlay", or the number of a pin's colour (Pin::colour).
-json curve_json(const Curve& curve, const std::string& name, const json& style, Plotted quantity) {
+struct NamedPoints {
+  std::string name;
+  json style;  ///< "curve", "overlay", or the number of a pin's colour (Pin::colour)
+  std::vector<double> at;
+  std::vector<Point> points;
+};
+
+NamedPoints curve_points(const Curve& curve, const std::string& name, const json& style) {
+  NamedPoints named{name, style, {}, curve.drawn()};
+  for (const Point& point : named.points) named.at.push_back(point.theta_deg);
+  return named;
+}
+
+json curve_json(const NamedPoints& curve, Plotted quantity) {
   const PlottedDescription& description = described(quantity);
-  json theta = json::array(), values = json::array(), good = json::array(), low = json::array(), high = json::array();
-  for (const Point& point : curve.drawn()) {
-    theta.push_back(point.theta_deg);
-    values.push_back(description.shown(point));
+  double last = 0.0;
+  json values = json::array(), good = json::array(), low = json::array(), high = json::array();
+  for (const Point& point : curve.points) {
+    const double value = description.shown(point);
+    const bool is_gap = !values.empty() && description.jumps(last, value);
+    values.push_back(is_gap ? json() : json(value));
+    last = value;
     good.push_back(point.is_good());
-    const bool has_band = quantity == Plotted::kDolp && style == "curve" && point.is_good() && point.has_bracket();
+    const bool has_band =
+        quantity == Plotted::kDolp && curve.style == "curve" && point.is_good() && point.has_bracket();
     low.push_back(has_band ? json(description.scale() * point[Quantity::kDolpLow]) : json());
     high.push_back(has_band ? json(description.scale() * point[Quantity::kDolpHigh]) : json());
   }
-  return {{"name", name}, {"style", style}, {"theta_deg", theta}, {"values", values},
-          {"good", good}, {"low", low},     {"high", high}};
+  return {{"name", curve.name}, {"style", curve.style}, {"at", curve.at}, {"values", values},
+          {"good", good},       {"low", low},           {"high", high}};
+}
+
+/// The curve over another number of the scene (Session::sweep()), with its axes. Null if the window does not show it.
+json sweep_json(const Session& session) {
+  const Sweep& sweep = session.sweep();
+  const std::string name = swept_name(session.view().panel);
+  if (name.empty() || !sweep.is_finished()) return {};
+  const PlottedDescription& quantity = described(session.view().quantity);
+  return {{"x", axis_json(session.sweep_axis().label, session.sweep_axis().scale)},
+          {"y", axis_json(quantity.label(), sweep_values(session))},
+          {"curves", {curve_json({sweep_name(session), "curve", sweep.at(), sweep.points()}, quantity.quantity)}},
+          {"measured", json::array()}};
 }
 
 json map_json(const Session& session) {
@@ -53,28 +81,30 @@ json map_json(const Session& session) {
 std::string plot_json(const Session& session, const Scale& x, const Scale& y) {
   const Plotted quantity = session.view().quantity;
   json curves = json::array();
-  curves.push_back(curve_json(session.curve(), curve_name(session), "curve", quantity));
-  if (session.overlay()) curves.push_back(curve_json(*session.overlay(), overlay_name(session), "overlay", quantity));
+  curves.push_back(curve_json(curve_points(session.curve(), curve_name(session), "curve"), quantity));
+  if (session.overlay())
+    curves.push_back(curve_json(curve_points(*session.overlay(), overlay_name(session), "overlay"), quantity));
   for (const Pin& pin : session.pins()) {
     if (!pin.is_visible) continue;
     const Scene& scene = pin.curve.shown_scene();
     std::string name = pin.name.empty() ? surface_name(scene) : pin.name;
     if (name == surface_name(session.curve().shown_scene())) name = pin_name(session, pin);
-    curves.push_back(curve_json(pin.curve, name, pin.colour, quantity));
+    curves.push_back(curve_json(curve_points(pin.curve, name, pin.colour), quantity));
   }
   json measured = json::array();
   const double scale = described(quantity).scale();
   for (const Measurement& point : session.residuals().measured(quantity)) {
-    measured.push_back({{"theta_deg", point.theta_deg},
+    measured.push_back({{"at", point.theta_deg},
                         {"value", scale * point.value},
                         {"uncertainty", scale * point.uncertainty.value_or(0.0)}});
   }
   return json{{"title", figure_title(session.edits())},
-              {"x", axis_json("zenith θ [°]", x)},
+              {"x", axis_json(zenith_label(session.scene()), x)},
               {"y", axis_json(described(quantity).label(), y)},
               {"curves", curves},
               {"measured", measured},
-              {"map", map_json(session)}}
+              {"map", map_json(session)},
+              {"sweep", sweep_json(session)}}
       .dump();
 }
 

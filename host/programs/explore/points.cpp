@@ -17,7 +17,9 @@ Scene with_grid(const Scene& scene, const PointList& list) {
                                   {"n", "surface.n"},
                                   {"k", "surface.k"},
                                   {"view_zenith_deg", "geometry.view_zenith_deg"},
-                                  {"relative_azimuth_deg", "geometry.relative_azimuth_deg"}}) {
+                                  {"relative_azimuth_deg", "geometry.relative_azimuth_deg"},
+                                  {"sigma_cross", "surface.sigma_cross"},
+                                  {"surface_azimuth_deg", "geometry.surface_azimuth_deg"}}) {
     const bool is_listed = std::ranges::count(axes, axis, &Setting::key) > 0;
     if (!is_listed && !scene.numbers(std::string("grid.") + axis).empty())
       axes.push_back({axis, scene.number(key).value()});
@@ -32,6 +34,7 @@ template <Quantity kQuantity>
 double point_value(const Point& point) {
   return point[kQuantity];
 }
+double u_over_i(const Point& point) { return point[Quantity::kStokesU] / point[Quantity::kStokesI]; }
 double rho_s(const Point& point) { return point[Quantity::kRhoI] + point[Quantity::kRhoQ]; }
 double rho_p(const Point& point) { return point[Quantity::kRhoI] - point[Quantity::kRhoQ]; }
 
@@ -43,17 +46,19 @@ double emissivity(const Point& point) {
 
 }  // namespace
 
-const std::array<PlottedDescription, 7> kAllPlotted = {{
-    {Plotted::kDolp, "DOLP", "√(Q² + U²)/I, in percent", true, false, point_value<Quantity::kDolp>},
-    {Plotted::kSignedDolp, "Q/I", "positive: s polarised, negative: p; in percent", true, false,
+const std::array<PlottedDescription, 9> kAllPlotted = {{
+    {Plotted::kDolp, "DOLP", "√(Q² + U²)/I, in percent", "%", false, point_value<Quantity::kDolp>},
+    {Plotted::kSignedDolp, "Q/I", "positive: s polarised, negative: p; in percent", "%", false,
      point_value<Quantity::kQOverI>, true},
-    {Plotted::kRhoS, "ρ_s", "ρ_I + ρ_Q, eq. (16)", false, true, rho_s},
-    {Plotted::kRhoP, "ρ_p", "ρ_I − ρ_Q, eq. (16)", false, true, rho_p},
-    {Plotted::kEmissivityS, "ε_s", "by the emission's model; without emission 1 − ρ_s (Kirchhoff)", false, true,
+    {Plotted::kUOverI, "U/I", "polarised at 45° (positive) or 135° from s; in percent", "%", false, u_over_i, true},
+    {Plotted::kAolp, "AOLP", "atan2(U, Q)/2: 0° is s, 90° is p", "°", false, point_value<Quantity::kAolp>, false, true},
+    {Plotted::kRhoS, "ρ_s", "ρ_I + ρ_Q, eq. (16)", "", true, rho_s},
+    {Plotted::kRhoP, "ρ_p", "ρ_I − ρ_Q, eq. (16)", "", true, rho_p},
+    {Plotted::kEmissivityS, "ε_s", "by the emission's model; without emission 1 − ρ_s (Kirchhoff)", "", true,
      emissivity<Quantity::kEmissivityS, rho_s>},
-    {Plotted::kEmissivityP, "ε_p", "by the emission's model; without emission 1 − ρ_p (Kirchhoff)", false, true,
+    {Plotted::kEmissivityP, "ε_p", "by the emission's model; without emission 1 − ρ_p (Kirchhoff)", "", true,
      emissivity<Quantity::kEmissivityP, rho_p>},
-    {Plotted::kAlbedo, "albedo", "A(θ), ρ of perfectly reflecting facets", false, true, point_value<Quantity::kAlbedo>},
+    {Plotted::kAlbedo, "albedo", "A(θ), ρ of perfectly reflecting facets", "", true, point_value<Quantity::kAlbedo>},
 }};
 
 Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list, const RunOptions& options) {
@@ -68,7 +73,19 @@ std::vector<double>& PointList::operator[](const std::string& name) {
   return found == values.end() ? values.emplace_back(name, std::vector<double>()).second : found->second;
 }
 
+std::size_t PointList::size() const {
+  std::size_t size = 1;
+  for (const auto& [name, column] : values) size = is_grid ? size * column.size() : std::max(size, column.size());
+  return size;
+}
+
 bool has_wind(const Scene& scene) { return scene.number("surface.wind_m_s").has_value(); }
+
+bool has_cross_slopes(const Scene& scene) {
+  if (has_wind(scene)) return scene.word("surface.wind_model") == "directional";
+  const std::optional<double> cross = scene.number("surface.sigma_cross");
+  return cross && cross != scene.number("surface.sigma");
+}
 
 PointList points_at(const Scene& scene, std::vector<double> theta_deg) {
   const std::size_t count = theta_deg.size();
@@ -76,16 +93,6 @@ PointList points_at(const Scene& scene, std::vector<double> theta_deg) {
   for (const std::string name : {has_wind(scene) ? "wind_m_s" : "sigma", "q"})
     list[name].assign(count, scene.number("surface." + name).value());
   return list;
-}
-
-std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count) {
-  std::vector<double> theta_deg(count, from_deg);
-  const double last = static_cast<double>(count - 1);
-  for (std::size_t i = 1; i < count; ++i) {
-    const double done = static_cast<double>(i);
-    theta_deg[i] = ((last - done) * from_deg + done * to_deg) / last;
-  }
-  return theta_deg;
 }
 
 std::vector<Point> result_points(const PointList& list, const Results& results) {

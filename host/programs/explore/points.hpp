@@ -19,6 +19,7 @@ struct PointList {
   std::vector<Setting> changes = {};  ///< settings of the scene that hold for all points
 
   std::vector<double>& operator[](const std::string& name);  ///< adds a column or axis `name` if it is missing
+  std::size_t size() const;                                  ///< number of points
   std::vector<Column> columns() const {
     std::vector<Column> columns;
     for (const auto& [name, column] : values) columns.push_back({name, column});
@@ -26,12 +27,11 @@ struct PointList {
   }
 };
 
-bool has_wind(const Scene& scene);  ///< true if a wind speed determines sigma
+bool has_wind(const Scene& scene);          ///< true if a wind speed determines sigma
+bool has_cross_slopes(const Scene& scene);  ///< true if slopes differ along and across
 
 /// Points at the zeniths `theta_deg` with the scene's slope distribution. The zenith is the first column.
 PointList points_at(const Scene& scene, std::vector<double> theta_deg);
-
-std::vector<double> zeniths(double from_deg, double to_deg, std::size_t count);  ///< equal steps, both ends included
 
 Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list, const RunOptions& options);
 
@@ -51,22 +51,36 @@ struct Point : PointResult {
 std::vector<Point> result_points(const PointList& list, const Results& results);
 std::string status_text(std::uint32_t status);  ///< "good", or a short text of the status bits
 
-enum class Plotted : std::uint8_t { kDolp, kSignedDolp, kRhoS, kRhoP, kEmissivityS, kEmissivityP, kAlbedo };
+enum class Plotted : std::uint8_t {
+  kDolp,
+  kSignedDolp,
+  kUOverI,
+  kAolp,
+  kRhoS,
+  kRhoP,
+  kEmissivityS,
+  kEmissivityP,
+  kAlbedo
+};
 
 struct PlottedDescription {
   Plotted quantity;
   const char* name;               ///< name in UTF-8
   const char* meaning;            ///< text in UTF-8, with the equation
-  bool in_percent;                ///< true: plots show 100 times the value
+  const char* unit;               ///< unit in plots; with "%", plots show 100 times the value
   bool needs_rho;                 ///< true: computed from rho, so a run must keep effects that change only rho
   double (*value)(const Point&);  ///< NaN where the model gives no value
   bool is_signed = false;
+  bool is_angle = false;  ///< an angle of a line: 0 and 180 degrees are equal
 
   double shown(const Point& point) const { return scale() * value(point); }  ///< value() in the unit of label()
-  double scale() const { return in_percent ? 100.0 : 1.0; }
-  std::string label() const { return std::string(name) + (in_percent ? " [%]" : ""); }
+  double scale() const { return is_percent() ? 100.0 : 1.0; }
+  bool is_percent() const { return *unit == '%'; }
+  std::string label() const { return *unit ? std::string(name) + " [" + unit + ']' : name; }
+  /// True if a line between two neighbouring values would cross all values, because an angle passes from 180 to 0.
+  bool jumps(double a, double b) const { return is_angle && std::abs(a - b) > 90.0; }
 };
-extern const std::array<PlottedDescription, 7> kAllPlotted;
+extern const std::array<PlottedDescription, 9> kAllPlotted;
 
 inline const PlottedDescription& described(Plotted quantity) {
   return kAllPlotted.at(static_cast<std::size_t>(quantity));

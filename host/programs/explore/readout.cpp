@@ -49,7 +49,10 @@ const WithoutEffect* without(const Session& session, const std::string& effect) 
   return away == all.end() || !away->at_cursor ? nullptr : &*away;
 }
 
-const char* polarisation(const Point& point) { return point[Quantity::kQOverI] > 0.0 ? "s" : "p"; }
+std::string polarisation(const Point& point) {
+  if (point[Quantity::kStokesU] != 0.0) return fmt::format("AOLP {:.2f}°", point[Quantity::kAolp]);
+  return point[Quantity::kQOverI] > 0.0 ? "s polarised" : "p polarised";
+}
 
 bool is_medium(const std::string& key) {
   return key == "surface.n" || key == "surface.k" || key == "surface.reflectance_file" ||
@@ -70,8 +73,7 @@ std::string change_text(const Scene& scene, const Setting& change) {
   const auto shown = std::ranges::find(controls(), key, [](const Control& control) { return control.key->key; });
   if (shown == controls().end()) return key + ' ' + std::filesystem::path(plain_text(change.value)).filename().string();
   if (!shown->is_number()) return shown->label + ' ' + scene.word(key).value_or("");
-  const std::string unit = unit_text(*shown->key);
-  return fmt::format("{} {:.4g}{}{}", shown->label, scene.number(key).value_or(0.0), unit.empty() ? "" : " ", unit);
+  return shown->text(scene.number(key).value_or(0.0));
 }
 
 std::string without_spectrum(const std::string& title) {  // "Paint, 8-14 um" becomes "Paint"
@@ -98,14 +100,31 @@ std::string curve_name(const Session& session) {
 std::string overlay_name(const Session& session) {
   if (!session.overlay()) return {};
   const Scene& shown = session.overlay()->shown_scene();
-  return fmt::format("{} σ {:.4g}, same D(0){}", shown.word("surface.distribution").value(),
-                     shown.number("surface.sigma").value(), remark(session, *session.overlay()));
+  return slopes_name(shown) + ", same D(0)" + remark(session, *session.overlay());
 }
 
 std::string pin_name(const Session& session, const Pin& pin) {
   const Scene& scene = pin.curve.shown_scene();
   const std::string name = pin.name.empty() ? surface_name(scene, &session.curve().shown_scene()) : pin.name;
   return name + (session.is_foreign(scene) ? ", another scene" : stale_text(pin.curve.is_stale()));
+}
+
+std::string zenith_label(const Scene& scene) {
+  return is_bistatic(scene) ? "zenith θ of the source [°]" : "zenith θ [°]";
+}
+
+std::string sweep_name(const Session& session) {
+  return fmt::format("{}θ = {:.4g}°", is_bistatic(session.scene()) ? "source at " : "", session.theta_deg());
+}
+
+Scale sweep_values(const Session& session) {
+  const PlottedDescription& quantity = described(session.view().quantity);
+  std::vector<double> values;
+  for (const Point& point : session.sweep().points()) {
+    if (point.is_good()) values.push_back(quantity.shown(point));
+  }
+  const Scale automatic = value_scale(std::move(values), session.view().is_log);
+  return session.view().range(View::kSweepValues).value_or(automatic);
 }
 
 std::string no_residuals_text(const Session& session, const Scale& theta) {
@@ -127,11 +146,18 @@ std::string view_refusal(const Session& session, Panel panel) {
   const Scene& scene = session.scene();
   const bool has_index = !scene.word("surface.reflectance_file");
   const bool is_rough = scene.number("surface.sigma") > 0.0;
+  const bool has_cross = has_cross_slopes(scene);
   if (panel == Panel::kSlopes && !is_rough) return "A mirror: all facets lie in the mean plane.";
+  if (panel == Panel::kSlopes && has_cross)
+    return "D depends on the azimuth of the facets, too: slopes differ along and across.";
   if (panel == Panel::kMaterial && !has_index) return "The scene has measured reflectances instead of n and k.";
   if (panel == Panel::kScattering && !has_index) return "The pBRDF needs phases, which measured reflectances lack.";
   if (panel == Panel::kShapes && is_bistatic(scene))
     return "A sphere needs all directions of view, and bistatic mode has one: choose the mode hemispherical.";
+  if (panel == Panel::kShapes && has_cross)
+    return "Slopes differ along and across, and a sphere has no single direction along.";
+  if (panel == Panel::kAzimuth && !has_cross)
+    return "All azimuths are alike: slopes are equal along and across. Move σ_c, or choose a directional wind.";
   if (panel == Panel::kSky && !is_bistatic(scene)) return "This view needs a source: choose the mode bistatic.";
   if (panel == Panel::kCamera && !is_bistatic(scene))
     return "This view needs a camera beside a source: choose the mode bistatic.";
@@ -141,6 +167,12 @@ std::string view_refusal(const Session& session, Panel panel) {
   return "";
 }
 
+std::string quantity_refusal(const Scene& scene, Plotted quantity) {
+  const bool needs_u = quantity == Plotted::kUOverI || quantity == Plotted::kAolp;
+  if (!needs_u || has_cross_slopes(scene) || is_bistatic(scene)) return "";
+  return "U is 0: slopes are equal along and across, and the mode is hemispherical.";
+}
+
 std::string headline(const Session& session) {
   const Point* const shown = session.at_cursor();
   if (!shown) return "At the cursor: …";
@@ -148,7 +180,7 @@ std::string headline(const Session& session) {
       fmt::format("At the cursor{}, θ = {:.1f}°", remark(session, session.curve()), shown->theta_deg);
   const std::string status = shown->is_trusted() ? "" : " (" + status_text(shown->status) + ')';
   if (!shown->is_good()) return fmt::format("{}: no DOLP{}. {}", place, status, peak_text(session));
-  return fmt::format("{}: DOLP {:.3f} % ± {}, {} polarised{}. {}", place, kPercent * (*shown)[Quantity::kDolp],
+  return fmt::format("{}: DOLP {:.3f} % ± {}, {}{}. {}", place, kPercent * (*shown)[Quantity::kDolp],
                      points_text((*shown)[Quantity::kErrorEstimate]), polarisation(*shown), status, peak_text(session));
 }
 
@@ -160,7 +192,7 @@ std::string peak_text(const Session& session) {
   if (at[Quantity::kDolp] <= error) return "Maximum: 0 everywhere, within its bound.";
   const bool has_range = !peak->rival_deg && peak->theta_low_deg < peak->theta_high_deg;
   std::string text =
-      fmt::format("Maximum: {:.3f} % ± {} at {}, {} polarised", kPercent * at[Quantity::kDolp], points_text(error),
+      fmt::format("Maximum: {:.3f} % ± {} at {}, {}", kPercent * at[Quantity::kDolp], points_text(error),
                   has_range ? fmt::format("{:.2f}° to {:.2f}°", peak->theta_low_deg, peak->theta_high_deg)
                             : fmt::format("{:.2f}°", at.theta_deg),
                   polarisation(at));
@@ -195,11 +227,16 @@ std::string cursor_text(const Session& session) {
   if (!shown) return "Cursor: …";
   const Point& r = *shown;
   const Scene& scene = session.curve().shown_scene();
-  const bool has_q = scene.word("surface.distribution") == "cauchy";
-  const Control& width = control(has_wind(scene) ? "surface.wind_m_s" : "surface.sigma");
-  std::string text = fmt::format(
-      "Cursor{}: {} = {:.4g}{}: Q/I {:+.3f} %", remark(session, session.curve()), width.label, *width.value(scene),
-      has_q ? fmt::format(", q = {:.4g}", *scene.number("surface.q")) : "", kPercent * r[Quantity::kQOverI]);
+  std::string shape;
+  for (const char* key : {"surface.sigma", kSigmaCross, "surface.wind_m_s", "surface.q", kSurfaceAzimuth}) {
+    const std::optional<double> value = scene.number(key) ? control(key).value(scene) : std::nullopt;
+    if (value) shape += fmt::format("{}{} = {:.4g}", shape.empty() ? "" : ", ", control(key).label, *value);
+  }
+  std::string text = fmt::format("Cursor{}: {}: Q/I {:+.3f} %", remark(session, session.curve()), shape,
+                                 kPercent * r[Quantity::kQOverI]);
+  if (r[Quantity::kStokesU] != 0.0 && r.is_good()) {
+    text += fmt::format(", U/I {:+.3f} %", described(Plotted::kUOverI).shown(r));
+  }
   if (r.has_bracket()) {
     text += fmt::format(", all bounces {:.3f} to {:.3f} %", kPercent * r[Quantity::kDolpLow],
                         kPercent * r[Quantity::kDolpHigh]);

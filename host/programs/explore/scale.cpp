@@ -67,8 +67,13 @@ double Scale::rounded(double position) const {
 }
 
 std::vector<double> Scale::values(std::size_t count) const {
-  std::vector<double> all;
-  for (std::size_t i = 0; i < count; ++i) all.push_back(value(static_cast<double>(i) / static_cast<double>(count - 1)));
+  std::vector<double> all(count, from);
+  const double last = static_cast<double>(count - 1);
+  for (std::size_t i = 1; i < count; ++i) {
+    const double done = static_cast<double>(i);
+    all[i] =
+        is_log ? value(done / last) : ((last - done) * from + done * to) / last;  // gives 13, not 12.999999999999998
+  }
   return all;
 }
 

@@ -18,6 +18,10 @@ namespace {
 
 bool is_cauchy(const Scene& s) { return s.word("surface.distribution") == "cauchy"; }
 bool has_no_wind(const Scene& s) { return !has_wind(s); }
+bool may_have_cross(const Scene& s) {
+  const auto masking = s.word("surface.masking");
+  return has_no_wind(s) && (masking == "none" || masking == "v-cavity");
+}
 bool is_diffuse(const Scene& s) { return s.number("surface.diffuse") > 0.0; }
 bool has_air(const Scene& s) {
   const auto sky = s.word("surroundings.profile");
@@ -26,9 +30,7 @@ bool has_air(const Scene& s) {
 bool has_response(const Scene& s) { return s.word("spectrum.response_file").has_value(); }
 bool has_index(const Scene& s) { return !s.word("surface.reflectance_file"); }
 
-std::string with_number(const Scene& scene, const char* symbol, const std::string& key, const char* unit = "") {
-  return fmt::format("{} {:.4g}{}", symbol, scene.number(key).value(), unit);
-}
+std::string number_text(const Scene& scene, const char* key) { return control(key).text(scene.number(key).value()); }
 
 /// The material in `table`, a TOML table such as "surface.coating.1", as text: a name, a file, or n and k.
 std::string medium_name(const Scene& scene, const std::string& table) {
@@ -36,15 +38,21 @@ std::string medium_name(const Scene& scene, const std::string& table) {
   for (const char* name : {".material", ".material_file"}) {
     if (const auto word = scene.word(table + name)) return *word;
   }
-  return with_number(scene, "n", table + ".n") + ' ' + with_number(scene, "k", table + ".k");
+  return fmt::format("n {:.4g} k {:.4g}", scene.number(table + ".n").value(), scene.number(table + ".k").value());
+}
+
+std::string width_name(const Scene& scene) {
+  const bool has_cross = has_cross_slopes(scene);
+  if (has_wind(scene)) return number_text(scene, "surface.wind_m_s") + (has_cross ? " directional" : "");
+  const std::string width = number_text(scene, "surface.sigma");
+  return has_cross ? width + ' ' + number_text(scene, kSigmaCross) : width;
 }
 
 std::vector<std::vector<std::string>> shape_words(const Scene& scene) {
-  std::vector<std::vector<std::string>> groups = {
-      {scene.word("surface.distribution").value(), has_wind(scene) ? with_number(scene, "U", "surface.wind_m_s", " m/s")
-                                                                   : with_number(scene, "σ", "surface.sigma")},
-      {scene.word("surface.masking").value()}};
-  if (is_cauchy(scene)) groups[0].push_back(with_number(scene, "q", "surface.q"));
+  std::vector<std::vector<std::string>> groups = {{scene.word("surface.distribution").value(), width_name(scene)},
+                                                  {scene.word("surface.masking").value()}};
+  if (is_cauchy(scene)) groups[0].push_back(number_text(scene, "surface.q"));
+  if (has_cross_slopes(scene)) groups[0].push_back(number_text(scene, kSurfaceAzimuth));
   if (scene.word("surface.scattering") == "multiple") groups.push_back({"all bounces"});
   return groups;
 }
@@ -55,8 +63,7 @@ std::string different_numbers(const Scene& scene, const Scene& other) {
   for (const Control& control : controls()) {
     const std::optional<double> value = control.value(scene);
     if (!value || value == control.value(other) || !scene.number(control.key->key)) continue;
-    const std::string unit = unit_text(*control.key);
-    words.push_back(fmt::format("{} {:.4g}{}{}", control.label, *value, unit.empty() ? "" : " ", unit));
+    words.push_back(control.text(*value));
   }
   const std::string sky = scene.word("surroundings.profile").value_or("");
   if (!sky.empty() && sky != other.word("surroundings.profile"))
@@ -86,7 +93,20 @@ std::vector<Control> controls_without_films() {
       {key("surface.n"), "n", "N = n + ik", {1.0, 40.0, true}, has_index, kNeedsIndex},
       {key("surface.k"), "k", "N = n + ik, k ≥ 0 absorbs", {0.0, 100.0}, has_index, kNeedsIndex},
       {key("surface.sigma"), "σ", "m² = 2σ²; D(α) of eq. (8) or (1)", {0.01, 2.0, true}, has_no_wind, "no wind"},
+      {key(kSigmaCross),
+       "σ_c",
+       "the slope width along the surface's y axis, manual section 12; at most 3 times more or less than σ",
+       {0.01, 2.0, true},
+       may_have_cross,
+       "the masking none or v-cavity, and no wind",
+       "surface.sigma"},
       {key("surface.wind_m_s"), "U", "m² = 0.003 + 0.00512 U (Cox and Munk 1954), D(α) of eq. (1)", {0.0, 30.0}},
+      {key("surface.wind_model"),
+       "wind",
+       "one slope width, or σ² = 0.00316 U upwind, 0.003 + 0.00192 U across",
+       {},
+       has_wind,
+       "a wind"},
       {key("surface.q"),
        "q",
        "D = (q−1)/(π m² cos⁴α) · (1 + tan²α/m²)^(−q), eq. (8)",
@@ -104,8 +124,8 @@ std::vector<Control> controls_without_films() {
       {key("source.relative_irradiance"), "e", "e = E0/(π B(T)), eq. (18)", {0.001, 10.0, true}},
       {key("source.scale"), "scale", "E0 → scale · E0", {0.01, 100.0, true}},
       {key("surroundings.temperature_K"), "T_surr", "reflects B(λ, T_surr) ρ", {0.0, 400.0}},
-      {key("surroundings.vapour_cm"), "water", kAir, {0.0, 2.7}, has_air, kNeedsAir, 1.27},
-      {key("surroundings.air_temperature_K"), "T_air", kAir, {230.0, 320.0}, has_air, kNeedsAir, 288.15},
+      {key("surroundings.vapour_cm"), "water", kAir, {0.0, 2.7}, has_air, kNeedsAir, "1.27"},
+      {key("surroundings.air_temperature_K"), "T_air", kAir, {230.0, 320.0}, has_air, kNeedsAir, "288.15"},
       {key("path.transmittance"), "τ", "I → τ I + L_path", {0.0, 1.0}},
       {key("path.temperature_K"), "T_path", "L_path = (1 − τ) B(λ, T_path)", {0.0, 400.0}},
       {key("path.radiance"), "L_path", "I → τ I + L_path", {0.001, 100.0, true}},
@@ -129,6 +149,13 @@ std::vector<Control> controls_without_films() {
        {0.0, 360.0},
        is_bistatic,
        kNeedsBistatic},
+      {key(kSurfaceAzimuth),
+       "φ_w",
+       "from the viewer's direction to the surface's x axis (upwind, or along the brush), manual section 12; at φ_w + "
+       "180° the surface is the same",
+       {0.0, 180.0},
+       has_cross_slopes,
+       "slopes that differ along and across"},
       {key("accuracy.tolerance"), "tolerance", "|δDOLP|, |δρ|/ρ_I ≤ tolerance", {1e-9, 1e-2, true}},
       {key("accuracy.precision"), "precision", "arithmetic of the device"},
   };
@@ -155,18 +182,24 @@ bool replaces(const Setting& change, const std::string& other) {
   return std::ranges::count(described(key).rivals, other) > 0;
 }
 
-/// Settings that conflict with nothing, so that change_with_needed() can try them. A value of sigma replaces a wind
-/// speed, which requires Gaussian slopes. Vapour and temperature of the air are removed: they require a built-in sky.
+/// Settings that conflict with nothing, so that change_with_needed() can try them. Vapour and temperature of the air
+/// are removed: they require a built-in sky.
 std::vector<Setting> compatible_words(const Scene& scene) {
   std::vector<Setting> words = {{"surface.masking", "v-cavity"},    {"surface.scattering", "single"},
                                 {"emission.model", "moments"},      {"emission.bracket", false},
                                 {"geometry.mode", "hemispherical"}, {"surface.diffuse_polarisation", "none"}};
   std::erase_if(words, [&](const Setting& word) { return !scene.word(word.key); });
-  if (has_wind(scene)) words.push_back({"surface.sigma", scene.number("surface.sigma").value()});
   for (const char* key : {"surroundings.vapour_cm", "surroundings.air_temperature_K"}) {
     if (scene.number(key)) words.push_back({key, Value()});
   }
   return words;
+}
+
+/// Ways to give the scene one slope width, the gentlest first. A wind also requires Gaussian slopes, so the last way
+/// replaces it by its sigma.
+std::vector<std::vector<Setting>> ways_to_one_width(const Scene& scene) {
+  if (!has_wind(scene)) return {{{kSigmaCross, Value()}, {"grid.sigma_cross", Value()}}};
+  return {{{"surface.wind_model", "isotropic"}}, {{"surface.sigma", scene.number("surface.sigma").value()}}};
 }
 
 constexpr const char* kSkyHeader = "zenith_deg,temperature_K";
@@ -182,13 +215,20 @@ const Key& described(const std::string& key) {
 std::optional<double> Control::value(const Scene& scene) const {
   if (!is_number() || !may_apply(scene)) return std::nullopt;
   const std::optional<double> number = scene.number(key->key);
-  return number ? number : standard;
+  if (number || standard.empty()) return number;
+  const std::optional<double> typed = parse_number(standard);
+  return typed ? typed : scene.number(standard);
 }
 
 std::optional<std::size_t> Control::word(const Scene& scene) const {
   const std::optional<std::string> word = is_number() || !may_apply(scene) ? std::nullopt : scene.word(key->key);
   if (!word) return std::nullopt;
   return static_cast<std::size_t>(std::ranges::find(key->words, *word) - key->words.begin());
+}
+
+std::string Control::text(double number) const {
+  const std::string unit = unit_text(*key);
+  return fmt::format("{} {:.4g}{}{}", label, number, unit.empty() || unit == "°" ? "" : " ", unit);
 }
 
 std::string Control::label_with_unit() const {
@@ -214,9 +254,15 @@ const Control& control(std::string_view key) {
 }
 
 Scale range_in(const Scene& scene, const Control& control) {
-  constexpr Scale kSmithQ{1.6, 20.0, true};  // smith masking needs q > 1.5
-  const bool is_smith = scene.word("surface.masking") == "smith" && is_cauchy(scene);
-  return is_smith && control.key->key == "surface.q" ? kSmithQ : control.slider;
+  constexpr Scale kSmithQ{1.6, 20.0, true};     // smith masking needs q > 1.5
+  constexpr Scale kDirectionalWind{0.2, 30.0};  // below 0.12 m/s the quotient of the widths is above kMostRatio
+  constexpr double kMostRatio = 3.0;  // at any tolerance, slope widths along and across may have this quotient
+  const std::string& key = control.key->key;
+  if (key == "surface.q" && scene.word("surface.masking") == "smith" && is_cauchy(scene)) return kSmithQ;
+  if (key == "surface.wind_m_s" && has_cross_slopes(scene)) return kDirectionalWind;
+  if (key != "surface.sigma" && key != kSigmaCross) return control.slider;
+  const std::optional<double> other = scene.number(key == kSigmaCross ? "surface.sigma" : kSigmaCross);
+  return other > 0.0 ? Scale{*other / kMostRatio, *other * kMostRatio, true} : control.slider;
 }
 
 void ControlRows::follow(const Scene& opened) {
@@ -230,7 +276,8 @@ bool ControlRows::stays(const Scene& scene, const Control& control) const {
   if (control.applies(scene) || !has(control.key->key)) return false;
   // Of alternatives, such as sigma and wind, only one has a row: the one that applies, otherwise the first.
   return std::ranges::none_of(controls(), [&](const Control& other) {
-    const bool share_a_row = control.is_number() && other.is_number() && !control.standard && !other.standard;
+    const bool share_a_row =
+        control.is_number() && other.is_number() && control.standard.empty() && other.standard.empty();
     const bool is_rival = share_a_row && std::ranges::count(control.key->rivals, other.key->key) > 0;
     const bool is_earlier = &other < &control && has(other.key->key);
     return is_rival && (other.applies(scene) || is_earlier);
@@ -267,6 +314,8 @@ std::string material_name(const Scene& scene) {
   }
   return name;
 }
+
+std::string slopes_name(const Scene& scene) { return fmt::format("{}", fmt::join(shape_words(scene).front(), " ")); }
 
 std::string surface_name(const Scene& scene, const Scene* other) {
   std::vector<std::string> common, parts;
@@ -400,7 +449,12 @@ std::vector<Setting> change_with_needed(SceneEdits& edits, const std::function<v
   };
   std::vector<Setting> needed;
   std::optional<SceneEdits> changed = changed_after(needed);
-  if (!changed) changed = changed_after(needed = compatible_words(edits.scene()));
+  for (const std::vector<Setting>& one_width : ways_to_one_width(edits.scene())) {
+    if (changed) break;
+    needed = compatible_words(edits.scene());
+    needed.insert(needed.end(), one_width.begin(), one_width.end());
+    changed = changed_after(needed);
+  }
   if (!changed) change(edits);  // fails again; now the caller gets the InputError
   for (std::size_t i = needed.size(); i-- > 0;) {
     std::vector<Setting> fewer = needed;

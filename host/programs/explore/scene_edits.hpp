@@ -21,14 +21,16 @@ struct Control {
   Scale slider = {};     ///< range of the slider; the user can also type other values
   /// True if the scene uses the key. Null: every scene that has the key uses it.
   bool (*is_used)(const Scene& scene) = nullptr;
-  const char* needs = "";               ///< what a scene needs to use the key, if `is_used` is not null
-  std::optional<double> standard = {};  ///< default value of a number that a scene may omit
+  const char* needs = "";  ///< what a scene needs to use the key, if `is_used` is not null
+  /// What a scene uses that omits the number: a value, or the key of another number. Empty: it does not use the number.
+  std::string standard = {};
 
   /// The scene's number; empty for words, and if the scene does not use the key.
   std::optional<double> value(const Scene& scene) const;
   /// The position of the scene's word in Key::words; empty for numbers, and if the scene does not use the key.
   std::optional<std::size_t> word(const Scene& scene) const;
-  std::string label_with_unit() const;  ///< for a number with a unit: "λ [µm]"
+  std::string label_with_unit() const;    ///< for a number with a unit: "λ [µm]"
+  std::string text(double number) const;  ///< "λ 10 µm"
   bool may_apply(const Scene& scene) const { return !is_used || is_used(scene); }
   bool applies(const Scene& scene) const { return value(scene) || word(scene); }
   bool is_number() const { return key->type == Key::Type::kNumber; }
@@ -39,10 +41,11 @@ const Key& described(const std::string& key);  ///< description of a scene key, 
 /// The controls of all keys that the window can change. The keys of the films (n, k, thickness) come last.
 const std::vector<Control>& controls();
 
-const Control& control(std::string_view key);                ///< the control of a scene key, which must have one
-Scale range_in(const Scene& scene, const Control& control);  ///< the part of the slider's range that the masking allows
-std::string parent_table(const std::string& key);            ///< "surface.coating.1" of "surface.coating.1.n"
-std::string unit_text(const Key& key);                       ///< unit for display: "°" for "degree", "" for "1"
+const Control& control(std::string_view key);  ///< the control of a scene key, which must have one
+/// The part of the slider's range that the masking allows, and the scene's other slope width if there is one.
+Scale range_in(const Scene& scene, const Control& control);
+std::string parent_table(const std::string& key);  ///< "surface.coating.1" of "surface.coating.1.n"
+std::string unit_text(const Key& key);             ///< unit for display: "°" for "degree", "" for "1"
 bool is_bistatic(const Scene& scene);
 
 /// The rows of controls in the panel of the scene. A row that was once shown stays in its place, greyed, until another
@@ -66,7 +69,11 @@ std::string unused_text(const Scene& scene, const Control& control);  ///< why t
 /// before the material that is the same for `other`. If the surfaces are equal, adds what else differs: "T 300 K".
 std::string surface_name(const Scene& scene, const Scene* other = nullptr);
 
+std::string slopes_name(const Scene& scene);    ///< the slope distribution: "cauchy σ 0.15 q 3"
 std::string material_name(const Scene& scene);  ///< the material of the surface, and its films
+
+inline constexpr const char* kSigmaCross = "surface.sigma_cross";
+inline constexpr const char* kSurfaceAzimuth = "geometry.surface_azimuth_deg";
 
 /// A scene file with changes. `dolp eval` computes the same results from the file if --set makes the same changes.
 class SceneEdits {

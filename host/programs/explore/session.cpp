@@ -18,8 +18,9 @@ std::string changes_text(const std::vector<Setting>& changes) {
 
 /// True if `change` only gives a new value to a number that the scene has, as a slider does.
 bool moves_number(const Scene& scene, const Setting& change) {
-  return std::ranges::any_of(
-      controls(), [&](const Control& control) { return control.key->key == change.key && control.value(scene); });
+  return std::ranges::any_of(controls(), [&](const Control& control) {
+    return control.key->key == change.key && control.value(scene) && scene.number(change.key);
+  });
 }
 
 struct JobList {
@@ -42,8 +43,6 @@ bool find_range(const Scene& scene, const View& view, MapAxis& axis) {
   }
   return axis.scale.refusal().empty();
 }
-
-constexpr const char* kWavelength = "spectrum.wavelength_um";
 
 /// The map axis `name`. If the scene lacks this axis or cannot show it, returns any axis except the axis `other`.
 MapAxis axis_or_another(const Scene& scene, const View& view, const std::string& name, const std::string& other) {
@@ -71,7 +70,8 @@ Session::Session(SceneEdits edits)
     : state_{.edits = std::move(edits)},
       curve_(scene()),
       map_(scene()),
-      spectral_scene_(scene()),
+      sky_(scene()),
+      sweep_scene_(scene()),
       peak_(scene()),
       residuals_(scene()) {
   tell_new_remarks_on_scene();
@@ -227,9 +227,9 @@ void Session::pin() {
 void Session::set_view(const View& view) {
   const View before = std::exchange(state_.view, view);
   if (view.quantity != before.quantity || view.is_log != before.is_log) {
-    state_.view.ranges.erase(View::kValues);
-    state_.view.ranges.erase(View::kColours);
+    for (const char* range : {View::kValues, View::kColours, View::kSweepValues}) state_.view.ranges.erase(range);
   }
+  if (view.panel != before.panel) state_.view.ranges.erase(View::kSweepValues);
   if (view.is_theta_log != before.is_theta_log) state_.view.ranges.erase(View::kZeniths);
   if (state_.view.map_x == state_.view.map_y) state_.view.map_y = state_.view.map_x == "sigma" ? "theta" : "sigma";
   state_.view.theta_max_deg = std::clamp(state_.view.theta_max_deg, kLeastThetaMaxDeg, 90.0);
@@ -274,11 +274,9 @@ void Session::follow() {
   residuals_.follow(content, scene());
   follow_overlay(content);
   follow_map();
-  follow_sweeps(content);
-  follow_camera(content);
-  if (shows(Panel::kSky) && is_bistatic(scene()))
-    source_sky_.follow(content_key(scene(), state_.edits.changes_without({"geometry.relative_azimuth_deg"}), false),
-                       scene());
+  follow_sweep();
+  follow_smooth(content);
+  follow_sky();
   estimate_influences();
   follow_peak();
   is_changed_ = true;
@@ -310,68 +308,90 @@ void Session::follow_map() {
   if (is_dragged() && map_.is_arriving()) return;  // a drag must not interrupt a map that is being computed
   const MapAxis x = axis_or_another(scene(), state_.view, state_.view.map_x, state_.view.map_y);
   const MapAxis y = axis_or_another(scene(), state_.view, state_.view.map_y, x.name);
+  follow_over(map_, x, y);
+}
+
+/// With equal slopes along and across, half of the sky is the mirror image of the other half.
+void Session::follow_sky() {
+  if (!shows(Panel::kSky) || !is_bistatic(scene())) return;
+  const double last_deg = has_cross_slopes(scene()) ? 360.0 : 180.0;
+  follow_over(sky_, {"azimuth", "Δφ", "geometry.relative_azimuth_deg", {0.0, last_deg}}, {});
+}
+
+void Session::follow_over(HeatMap& map, const MapAxis& x, const MapAxis& y) {
   std::string key = content_key(scene(), state_.edits.changes_without({x.key, y.key}), keeps_all());
   if (!x.key.empty() && !y.key.empty()) key += "\ntheta=" + format_number(state_.theta_deg);
   for (const MapAxis& axis : {x, y})
     key += fmt::format("\n{} {} {} {}", axis.label, axis.scale.from, axis.scale.to, axis.scale.is_log);
-  map_.follow(key, scene(), keeps_all(), x, y, state_.theta_deg);
+  map.follow(key, scene(), keeps_all(), x, y, state_.theta_deg);
 }
 
-void Session::follow_sweeps(const std::string& content) {
+/// Finds the axis `name` of the shown view. Returns false if the scene lacks it, or its range cannot be drawn.
+bool Session::find_sweep_axis(const std::string& name) {
+  constexpr double kWidth = 2.0;  // the wavelength axis extends beyond the band by this factor at each end
+  const bool is_spectrum = name == "wavelength";
+  sweep_scene_ = is_spectrum ? at_one_wavelength(scene()) : scene();
+  const std::vector<MapAxis> axes = map_axes(sweep_scene_, state_.view.theta_max_deg);
+  const auto named = std::ranges::find(axes, name, &MapAxis::name);
+  if (named == axes.end()) return false;
+  sweep_axis_ = *named;
+  if (is_spectrum) {
+    const auto [from_um, to_um] = spectrum_um(state_.edits.opened());
+    sweep_axis_.scale = Scale{from_um / kWidth, to_um * kWidth}.including(sweep_scene_.number(sweep_axis_.key).value());
+  }
+  return find_range(sweep_scene_, state_.view, sweep_axis_);
+}
+
+void Session::follow_over_axis(Sweep& sweep, const Scene& swept, std::size_t count) {
+  const bool keep_all = &sweep == &smooth_spectrum_ || keeps_all();
+  const Scale& range = sweep_axis_.scale;
+  PointList list = points_at(swept, std::vector<double>(count, state_.theta_deg));
+  list[sweep_axis_.column()] = range.values(count);
+  const std::string key =
+      fmt::format("{} {} from {} to {}, {} at {}\n{}", count, sweep_axis_.name, range.from, range.to, range.is_log,
+                  state_.theta_deg, content_key(swept, state_.edits.changes_without({sweep_axis_.key}), keep_all));
+  sweep.follow({.key = key, .scene = swept, .parts = {list}, .keep_all = keep_all}, sweep_axis_.column());
+}
+
+void Session::follow_sweep() {
   constexpr std::size_t kSpectrum = 121;
-  constexpr std::size_t kSmooth = 901;  // number of wavelengths, enough to show interference fringes of films
-  constexpr double kWidth = 2.0;        // the wavelength axis extends beyond the band by this factor at each end
-  const bool is_spectrum = shows(Panel::kSpectrum);
-  if (!is_spectrum && !shows(Panel::kSmooth)) return;
-  spectral_scene_ = at_one_wavelength(scene());
-  const auto [from_um, to_um] = spectrum_um(state_.edits.opened());
-  wavelengths_ = {
-      "wavelength", control(kWavelength).label_with_unit(), kWavelength, {from_um / kWidth, to_um * kWidth}};
-  wavelengths_.scale = wavelengths_.scale.including(spectral_scene_.number(kWavelength).value());
-  const bool has_range = find_range(spectral_scene_, state_.view, wavelengths_);
-  const auto follow_wavelengths = [&](Sweep& sweep, const Scene& swept, std::size_t count, bool keep_all) {
-    if (!has_range) return;
-    PointList list = points_at(swept, std::vector<double>(count, state_.theta_deg));
-    const Scale& range = wavelengths_.scale;
-    list["wavelength_um"] = range.values(count);
-    const std::string key = fmt::format("{} wavelengths from {} to {}, {} at {}\n{}", count, range.from, range.to,
-                                        range.is_log, state_.theta_deg, content);
-    sweep.follow({.key = key, .scene = swept, .parts = {list}, .keep_all = keep_all}, "wavelength_um");
-  };
-  if (is_spectrum) return follow_wavelengths(spectrum_, spectral_scene_, kSpectrum, keeps_all());
+  if (!shows_sweep()) return;
+  if (!find_sweep_axis(swept_name(state_.view.panel))) {
+    sweep_ = {};
+    return;
+  }
+  follow_over_axis(sweep_, sweep_scene_, shows(Panel::kSpectrum) ? kSpectrum : Curve::kFineCount);
+}
+
+void Session::follow_smooth(const std::string& content) {
+  constexpr std::size_t kWavelengths = 901;  // enough to show interference fringes of films
+  if (!shows(Panel::kSmooth)) return;
   const Scene smooth = smooth_scene(scene());
   smooth_.follow({.key = "smooth\n" + content,
                   .scene = smooth,
-                  .parts = {points_at(smooth, zeniths(0.0, 90.0, Curve::kFineCount))},
+                  .parts = {points_at(smooth, Scale{0.0, 90.0}.values(Curve::kFineCount))},
                   .keep_all = true});
-  follow_wavelengths(smooth_spectrum_, smooth_scene(spectral_scene_), kSmooth, true);
+  if (find_sweep_axis("wavelength")) follow_over_axis(smooth_spectrum_, smooth_scene(sweep_scene_), kWavelengths);
 }
 
-void Session::follow_camera(const std::string& content) {
-  if (!shows(Panel::kCamera) || !is_bistatic(scene())) return;
-  PointList list = points_at(scene(), std::vector<double>(Curve::kFineCount, state_.theta_deg));
-  list["view_zenith_deg"] = zeniths(0.0, 90.0, Curve::kFineCount);
-  camera_.follow({.key = fmt::format("camera, source at {}\n{}", state_.theta_deg, content),
-                  .scene = scene(),
-                  .parts = {list},
-                  .keep_all = keeps_all()},
-                 "view_zenith_deg");
+std::vector<const Sweep*> Session::shown_sweeps() const {
+  if (shows(Panel::kSmooth)) return {&smooth_, &smooth_spectrum_};
+  return shows_sweep() ? std::vector{&sweep_} : std::vector<const Sweep*>{};
 }
 
 std::vector<Job> Session::wanted_in_drag() const {
   JobList list;
   const auto add_other = [&](bool is_map) {
     if (is_map && shows(Panel::kMap) && !map_.is_coarse_done()) list.add(map_.wanted(0));
-    if (is_map && shows(Panel::kSky)) list.add(source_sky_.wanted());
+    if (is_map && shows(Panel::kSky)) list.add(sky_.wanted(0));
     if (!is_map && overlay_) list.add(overlay_->wanted(Curve::Stage::kCoarse));
   };
   if (!is_curve_next_) add_other(is_map_next_);
   list.add(curve_.wanted(Curve::Stage::kCoarse));
   if (is_curve_next_) add_other(is_map_next_);
-  for (const Sweep* sweep : {&smooth_, &smooth_spectrum_}) {
-    if (shows(Panel::kSmooth)) list.add(sweep->wanted());
+  for (const Sweep* sweep : shown_sweeps()) {
+    if (!shows(Panel::kSpectrum)) list.add(sweep->wanted());
   }
-  if (shows(Panel::kCamera)) list.add(camera_.wanted());
   add_other(!is_map_next_);
   return list.jobs;
 }
@@ -383,17 +403,14 @@ std::vector<Job> Session::wanted() const {
   list.add(curve_.wanted(Curve::Stage::kFine));
   if (overlay_) list.add(overlay_->wanted(Curve::Stage::kFine));
   if (shows(Panel::kMap)) list.add(map_.wanted(0));
-  for (const Sweep* sweep : {&smooth_, &smooth_spectrum_}) {
-    if (shows(Panel::kSmooth)) list.add(sweep->wanted());
-  }
-  if (shows(Panel::kSpectrum)) list.add(spectrum_.wanted());
-  if (shows(Panel::kCamera)) list.add(camera_.wanted());
+  for (const Sweep* sweep : shown_sweeps()) list.add(sweep->wanted());
   list.add(peak_.wanted());
   list.add(residuals_.wanted());
   for (const Pin& pin : state_.pins) list.add(pin.curve.wanted(Curve::Stage::kFine));
-  if (shows(Panel::kSky)) list.add(source_sky_.wanted());
-  for (std::size_t level = 1; shows(Panel::kMap) && level < HeatMap::kLevels.size(); ++level)
-    list.add(map_.wanted(level));
+  for (std::size_t level = 0; level < HeatMap::kLevels.size(); ++level) {
+    if (shows(Panel::kMap) && level > 0) list.add(map_.wanted(level));
+    if (shows(Panel::kSky)) list.add(sky_.wanted(level));
+  }
   return list.jobs;
 }
 
@@ -406,8 +423,8 @@ void Session::take(const std::vector<JobPart>& news) {
     is_curve_next_ = !is_curve;
     if (!is_curve) is_map_next_ = !is_map;
     if (is_map && part.is_last && is_dragged()) follow();
-    source_sky_.take(part);
-    for (Sweep* sweep : {&spectrum_, &smooth_, &smooth_spectrum_, &camera_}) sweep->take(part);
+    sky_.take(part);
+    for (Sweep* sweep : {&sweep_, &smooth_, &smooth_spectrum_}) sweep->take(part);
     if (peak_.take(part) && peak_.answer()) {
       for (Pin& pin : state_.pins) {
         if (pin.curve.key() == curve_.key()) pin.curve.set_peak(peak_.answer()->at);
@@ -415,6 +432,7 @@ void Session::take(const std::vector<JobPart>& news) {
       curve_.set_peak(peak_.answer()->at);
     }
     residuals_.take(part);
+    if (!part.refusal.empty()) tell(part.refusal, true);
     is_changed_ = is_changed_ || part.is_last;
   }
   follow_peak();

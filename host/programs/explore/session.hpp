@@ -36,6 +36,7 @@ struct View {
   static constexpr const char* kZeniths = "curve zenith";
   static constexpr const char* kValues = "curve values";
   static constexpr const char* kColours = "map colours";  ///< range of the values that the colours show
+  static constexpr const char* kSweepValues = "view values";
 
   std::optional<Scale> range(const std::string& axis) const;
   void set_range(const std::string& axis, const std::optional<Scale>& range);
@@ -91,7 +92,7 @@ class Session {
   void note_saved() { state_.edits.note_saved(); }
   void pin();
   /// Changes the view. Removes typed ranges that no longer fit: the ranges of values and colours if the quantity or
-  /// is_log changes, and the range of zeniths if is_theta_log changes.
+  /// is_log changes, the range of zeniths if is_theta_log changes, and the values of the view if the panel changes.
   void set_view(const View& view);
   template <class T>
   void set_view(T View::*part, const std::type_identity_t<T>& value) {
@@ -134,13 +135,13 @@ class Session {
   std::vector<Snapshot>& snapshots() { return state_.snapshots; }
   const std::vector<Snapshot>& snapshots() const { return state_.snapshots; }
   const HeatMap& map() const { return map_; }
-  const SourceSky& source_sky() const { return source_sky_; }
-  const Scene& spectral_scene() const { return spectral_scene_; }  ///< scene() at one wavelength instead of a band
-  const MapAxis& wavelengths() const { return wavelengths_; }      ///< axis of the plots over wavelength
-  const Sweep& spectrum() const { return spectrum_; }              ///< results at the cursor's zenith, over wavelength
+  const HeatMap& sky() const { return sky_; }  ///< bistatic results over the azimuth and zenith of the source
+  /// The results at the cursor's zenith over another number of the scene, for the views of swept_name().
+  const Sweep& sweep() const { return sweep_; }
+  const MapAxis& sweep_axis() const { return sweep_axis_; }
+  const Scene& sweep_scene() const { return sweep_scene_; }          ///< scene(); over wavelength, without its band
   const Sweep& smooth_spectrum() const { return smooth_spectrum_; }  ///< results for sigma = 0, over wavelength
   const Sweep& smooth() const { return smooth_; }                    ///< results for sigma = 0, over zenith
-  const Sweep& camera() const { return camera_; }  ///< bistatic results over the view's zenith, source at the cursor
   const Peak& peak() const { return peak_; }
   const Residuals& residuals() const { return residuals_; }
   bool is_foreign(const Scene& other) const { return other.name() != scene().name() || other.text() != scene().text(); }
@@ -180,15 +181,21 @@ class Session {
   void follow();
   void follow_overlay(const std::string& content);
   void follow_map();
+  void follow_sky();
+  void follow_over(HeatMap& map, const MapAxis& x, const MapAxis& y);
   void follow_peak() {
     if (!curve_.is_finished()) return;
     peak_.set_cursor(*at_cursor());
     peak_.follow(curve_, state_.edits, state_.view.theta_max_deg);
   }
+  std::vector<const Sweep*> shown_sweeps() const;
   std::vector<Job> wanted_in_drag() const;
-  void follow_sweeps(const std::string& content);
-  void follow_camera(const std::string& content);
+  bool find_sweep_axis(const std::string& name);
+  void follow_over_axis(Sweep& sweep, const Scene& swept, std::size_t count);
+  void follow_sweep();
+  void follow_smooth(const std::string& content);
   bool shows(Panel panel) const { return state_.view.panel == panel; }
+  bool shows_sweep() const { return *swept_name(state_.view.panel) != '\0'; }
   void estimate_influences();
 
   SkyFiles skies_;
@@ -199,10 +206,10 @@ class Session {
   Curve curve_;
   std::optional<Curve> overlay_;
   HeatMap map_;
-  SourceSky source_sky_;
-  Scene spectral_scene_;
-  MapAxis wavelengths_;
-  Sweep spectrum_, smooth_, smooth_spectrum_, camera_;
+  HeatMap sky_;
+  Scene sweep_scene_;
+  MapAxis sweep_axis_;
+  Sweep sweep_, smooth_, smooth_spectrum_;
   Peak peak_;
   Residuals residuals_;
   std::optional<Fit> fit_;

@@ -67,6 +67,7 @@ TEST(HeatMap, EachPairOfAxes_HasTheValuesOfTheScene) {
   const SceneEdits many = paint({"grid.material=[\"PET\", \"gold (Ordal)\"]", "grid.temperature_K=[280, 300]"});
   const SceneEdits glint =
       paint({"geometry.mode=bistatic", "source.irradiance=20", "grid.view_zenith_deg=[20, 70]", "grid.theta_deg=40"});
+  const SceneEdits brushed = paint({"surface.sigma_cross=0.3", "grid.surface_azimuth_deg=[0, 90]"});
   Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
   struct Case {
     const char *x, *y;
@@ -83,6 +84,8 @@ TEST(HeatMap, EachPairOfAxes_HasTheValuesOfTheScene) {
                                     {"q", "wavelength", oxide},
                                     {"view zenith", "azimuth", glint},
                                     {"theta", "view zenith", glint},
+                                    {"theta", "surface azimuth", brushed},
+                                    {"surface azimuth", "sigma cross", brushed},
                                     {"theta", "sigma", many},
                                     {"temperature", "theta", many}}) {
     SCOPED_TRACE(std::string(x) + ' ' + y);

@@ -211,8 +211,14 @@ TEST(ExplorePlots, Json_HasTheVisibleCurvesAndTheMap) {
   EXPECT_EQ(name, "T 290 K, n 1.5 k 0.1");
   driver.session.set_view(&View::ranges, {{View::kColours, {0.01, 0.08}}});
   EXPECT_EQ(json()["map"]["colours"]["to"], 8.0);
-  driver.session.set_view({.panel = Panel::kSlopes});
+  EXPECT_TRUE(json()["sweep"].is_null());
+  driver.session.set_view({.panel = Panel::kSpectrum});
+  driver.settle();
   EXPECT_TRUE(json()["map"].is_null());
+  const auto sweep = json()["sweep"];
+  EXPECT_EQ(sweep["x"]["label"], "λ [µm]");
+  EXPECT_EQ(sweep["curves"][0]["name"], "θ = 60°");
+  EXPECT_EQ(sweep["curves"][0]["at"], driver.session.sweep().at());
 }
 
 TEST_F(ExploreFiles, Preferences_KeepThemeZoomAndRecentFilesThatExist) {

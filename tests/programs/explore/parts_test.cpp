@@ -23,6 +23,7 @@ std::string sixteen_films() {
 std::string needed_by(const Key& key) {
   for (const auto& [begin, setting] : {std::pair{"source.scale", "source.irradiance=1"},
                                        {"surface.wind_m_s", "surface.distribution=gaussian"},
+                                       {"surface.sigma_cross", "surface.masking=none"},
                                        {"surroundings.vapour_cm", "surroundings.profile=clear-sky"},
                                        {"surroundings.air_temperature_K", "surroundings.profile=overcast"}}) {
     if (key.key == begin) return setting;
@@ -41,6 +42,21 @@ TEST(Controls, EndsOfEverySlider_AreAccepted) {
     }
     EXPECT_TRUE(!control.slider.is_log || control.slider.from > 0.0) << key;
   }
+}
+
+TEST(Controls, OfSlopesAlongAndAcross_AreShownWhereTheyAct_AndStayWithinAFactorOfThree) {
+  const Control &cross = control(kSigmaCross), &azimuth = control(kSurfaceAzimuth), &wind = control("surface.wind_m_s");
+  EXPECT_EQ(cross.value(paint().scene()), 0.15);  // the default, sigma
+  EXPECT_FALSE(cross.value(paint({"surface.masking=smith"}).scene()) || azimuth.value(paint().scene()));
+  const Scene brushed = paint({"surface.sigma_cross=0.3"}).scene();
+  EXPECT_EQ(azimuth.value(brushed), 0.0);
+  EXPECT_DOUBLE_EQ(range_in(brushed, cross).to, 0.45);
+  EXPECT_DOUBLE_EQ(range_in(brushed, control("surface.sigma")).from, 0.1);
+  const Scene sea = paint({"surface.distribution=gaussian", "surface.wind_m_s=8"}).scene();
+  EXPECT_EQ(control("surface.wind_model").word(sea), 0U);
+  EXPECT_FALSE(control("surface.wind_model").word(brushed) || cross.value(sea));
+  EXPECT_EQ(range_in(sea, wind).from, 0.0);
+  EXPECT_EQ(range_in(sea.with("surface.wind_model", "directional"), wind).from, 0.2);
 }
 
 TEST(Controls, OfDiffuseLightAndOfTheAir_AreShownWhereTheSceneUsesThem) {
@@ -156,6 +172,18 @@ const std::vector<EditCase> kEditCases = {
      {"surface.distribution=cauchy"},
      {"surface.wind_m_s=-", "surface.sigma=0.1646207763315433"},
      "surface.sigma = 0.16462"},
+    {{"surface.distribution=gaussian", "surface.wind_m_s=10", "surface.wind_model=directional"},
+     {"surface.masking=smith"},
+     {"surface.wind_m_s=10", "surface.wind_model=isotropic"},
+     "surface.masking = smith also sets surface.wind_model = isotropic"},
+    {{"surface.distribution=gaussian", "surface.wind_m_s=10", "surface.wind_model=directional"},
+     {"surface.sigma=0.2"},
+     {"surface.wind_m_s=-", "surface.wind_model=isotropic"}},
+    {{"surface.sigma_cross=0.3", "grid.sigma_cross=[0.3, 0.4]"},
+     {"emission.bracket=true"},
+     {"surface.sigma_cross=-", "emission.bracket=true"},
+     "grid.sigma_cross = "},
+    {{"emission.bracket=true"}, {"surface.sigma_cross=0.3"}, {"surface.sigma_cross=0.3"}, "emission.bracket = false"},
     {{"surface.coating=[{n=1.4,thickness_um=2}]"},
      {"surface.coating.1.k=0.3", "surface.coating=[{n=1.6,thickness_um=3},{n=1.4,k=0.3,thickness_um=2}]",
       "surface.coating.2.thickness_um=5", "surface.coating.1.n=1.7"},
@@ -238,7 +266,8 @@ TEST(Conflicts, EveryChoiceInEveryScene_IsTakenWithTheLeastThatItNeeds) {
     SceneEdits edits = paint();
     edits.set(combination);
     for (const Control& choice : controls()) {
-      if (choice.key->key == "spectrum.response_per") continue;  // the window shows it only beside a response_file
+      // The window shows these two only beside a response_file and a wind.
+      if (choice.key->key == "spectrum.response_per" || choice.key->key == "surface.wind_model") continue;
       for (const std::string& word : choice.key->words) {
         const Setting chosen = {choice.key->key, TomlText{word}};
         SceneEdits changed = edits;
@@ -338,6 +367,21 @@ TEST(ExploreWorker, Parts_ComeInOrderAtTheWiderTolerance_AJobOfHigherRankBetween
     }
     EXPECT_GT(news[2].evaluations, 0.0);
   }
+}
+
+TEST(ExploreWorker, RefusedJob_HasPointsWithoutValues_AndTheReasonIsTold) {
+  Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
+  Worker worker(on_the_cpu(evaluator), [] {});
+  const Scene scene = paint({"surface.sigma_cross=10"}).scene();
+  worker.want({{.key = "wide", .scene = scene, .parts = {points_at(scene, {10.0, 20.0})}, .wants_effects = true}});
+  const std::vector<JobPart> news = finish(worker);
+  ASSERT_EQ(news.size(), 1U);
+  ASSERT_EQ(news[0].points.size(), 2U);
+  for (const Point& point : news[0].points) EXPECT_EQ(point.status, kOutsideModelDomain);
+  Session session(paint());
+  session.take(news);
+  EXPECT_NE(session.message().text.find("quotient of the widths"), std::string::npos) << session.message().text;
+  EXPECT_TRUE(session.message().is_error);
 }
 
 TEST(ExploreWorker, LostDevice_IsThrownToWhoAsksForNews) {

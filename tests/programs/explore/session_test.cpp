@@ -83,9 +83,9 @@ void act(Session& session, std::mt19937_64& random) {
   acts[random() % std::size(acts)]();
 }
 
-// At 16 frames per second, 960 frames are a minute of use.
+// At 16 frames per second, 480 frames are half a minute of use.
 TEST(ExploreSession, RandomUse_NamesAndCurvesAgreeInEveryFrame) {
-  constexpr int kFrames = 960;
+  constexpr int kFrames = 480;
   std::mt19937_64 random(20261124);
   Driver driver(paint());
   const Session& session = driver.session;

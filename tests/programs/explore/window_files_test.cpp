@@ -125,6 +125,10 @@ TEST_F(WindowFiles, Plots_SavedByShortcut_AreLinesAndTextOfWhatIsShown) {
                                   std::string("DOLP [%]"), std::string("zenith θ [°]")}) {
     EXPECT_NE(svg.find(text), std::string::npos) << text;
   }
+  session().set_view(&View::panel, Panel::kSpectrum);
+  settle();
+  EXPECT_EQ(save("spectrum.svg").text, "saved " + at("spectrum.svg").string());
+  EXPECT_NE(content("spectrum.svg").find("λ [µm]"), std::string::npos);
   EXPECT_EQ(save("plot.pdf").text, "saved " + at("plot.pdf").string());
   EXPECT_TRUE(content("plot.pdf").starts_with("%PDF"));
   EXPECT_TRUE(save("plot.docx").is_error);
@@ -154,6 +158,7 @@ TEST_F(WindowFiles, TitleClicked_TakesATypedOne_WhichUndoTakesBack) {
 }
 
 TEST_F(WindowFiles, Snapshot_Clicked_RestoresTheState_AndTakesATypedName) {
+  open({{"surface.masking", "smith"}});  // leaves more room for snapshots, because the panel has no sigma_cross
   keys("ctrl+p");
   keys("ctrl+b");
   drag_slider("surface.sigma", kPartOfSlider);

@@ -185,7 +185,7 @@ TEST_F(Window, List_OpensAndClosesOnTheScreenWithoutTheMouseMoving) {
 
 TEST_F(Window, EventsBetweenTwoFrames_AllCount) {
   click_control("field surface.sigma");
-  xdotool({"key", "--delay", "12", "0", "period", "2", "Tab", "4", "Return"});
+  xdotool({"key", "--delay", "12", "0", "period", "2", "Tab", "Tab", "4", "Return"});
   frames();
   EXPECT_EQ(number("surface.sigma"), 0.2);
   EXPECT_EQ(number("surface.q"), 4.0);
@@ -201,6 +201,7 @@ TEST_F(Window, EventsBetweenTwoFrames_AllCount) {
 }
 
 TEST_F(Window, TypedNumber_IsTakenWhereverTypingEnds_AndStaysWhereItIsRefused) {
+  session().set_view(&View::panel, Panel::kSlopes);  // without a map, frames are faster
   const std::function<void()> ends[] = {[&] { keys("Return"); }, [&] { keys("Tab"); },
                                         [&] { click(app_->curve_view().area().at(0.5F, 0.5F)); },
                                         [&] {
@@ -231,6 +232,7 @@ TEST_F(Window, TypedNumber_IsTakenWhereverTypingEnds_AndStaysWhereItIsRefused) {
 }
 
 TEST_F(Window, EndsOfABand_OfWhichOneWasRefused_AreTakenTogether) {
+  open({{"spectrum.band_um", {8.0, 14.0}}});
   click_control("field spectrum.band_um 0");
   xdotool({"type", "15"});
   xdotool({"key", "Tab"});  // not keys(), which holds a key long enough to move on by two fields

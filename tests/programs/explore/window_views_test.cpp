@@ -1,4 +1,5 @@
 // The views that a user can show instead of the map, and controls of films and wind.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -97,23 +98,23 @@ TEST(ExplorePanels, SmoothSceneOfAWind_AndABandOfTheWindow_AreAccepted) {
 }
 
 TEST(ExplorePanels, Spectrum_IsTheCurveOverWavelengthAtTheCursor_AndIsComputedWhileItIsShown) {
-  Driver driver(paint({"surface.material=water 25C", "spectrum.band_um=[8,14]", "accuracy.tolerance=1e-2"}));
+  const SceneEdits water = paint({"surface.material=water 25C", "spectrum.band_um=[8,14]", "accuracy.tolerance=1e-2"});
+  EXPECT_FALSE(Session(water).sweep().wanted());
+  Driver driver(water, {.panel = Panel::kSpectrum});
   Session& session = driver.session;
-  EXPECT_TRUE(session.spectrum().points().empty());
-  session.set_view(&View::panel, Panel::kSpectrum);
   session.set_theta(70.0);
   driver.settle();
-  ASSERT_TRUE(session.spectrum().is_finished());
+  ASSERT_TRUE(session.sweep().is_finished());
   // The band begins at 8 um, and the axis at half of this. The axis ends at the last wavelength of the material.
-  EXPECT_EQ(session.wavelengths().scale, (Scale{4.0, 20.0}));
+  EXPECT_EQ(session.sweep_axis().scale, (Scale{4.0, 20.0}));
   const std::size_t at = 40;
-  const Scene scene = session.spectral_scene().with("spectrum.wavelength_um", session.spectrum().at()[at]);
+  const Scene scene = session.sweep_scene().with("spectrum.wavelength_um", session.sweep().at()[at]);
   const Point exact = truth(scene, points_at(scene, {70.0})).front();
-  const Point& shown = session.spectrum().points()[at];
+  const Point& shown = session.sweep().points()[at];
   EXPECT_NEAR(shown[Quantity::kDolp], exact[Quantity::kDolp],
               shown[Quantity::kErrorEstimate] + exact[Quantity::kErrorEstimate]);
   session.set("emission.temperature_K", 310.0);
-  EXPECT_FALSE(session.spectrum().is_finished());
+  EXPECT_FALSE(session.sweep().is_finished());
 }
 
 TEST(ExplorePanels, ScatteringCut_HasItsLobeBeyondTheNormal_AndTheValuesOfMueller) {
@@ -149,38 +150,67 @@ TEST(ExplorePanels, SphereOfASurface_ShowsPAlongTheTiltAndSAcross) {
 }
 
 TEST(ExplorePanels, Sky_OfABistaticScene_IsComputedWhileItIsShown) {
-  Driver driver(paint({"geometry.mode=\"bistatic\"", "source.preset=\"sun\"", "geometry.view_zenith_deg=60"}));
+  const SceneEdits sun = paint({"geometry.mode=\"bistatic\"", "source.preset=\"sun\"", "geometry.view_zenith_deg=60"});
+  EXPECT_TRUE(Session(sun).sky().field(Plotted::kDolp).values.empty());
+  Driver driver(sun, {.panel = Panel::kSky});
   Session& session = driver.session;
-  EXPECT_FALSE(session.source_sky().is_finished());
-  session.set_view(&View::panel, Panel::kSky);
-  driver.settle();
-  ASSERT_TRUE(session.source_sky().is_finished());
-  const std::size_t azimuth = 12;
-  const Scene scene = session.scene().with({{"geometry.relative_azimuth_deg", SourceSky::azimuth_deg(azimuth)},
-                                            {"accuracy.tolerance", explore::Curve::kCoarseTolerance}});
-  expect_same(session.source_sky().at(azimuth), truth(scene, session.source_sky().at(azimuth)));
+  const HeatMap& sky = session.sky();
+  ASSERT_TRUE(sky.is_finished());
+  EXPECT_EQ(sky.x().scale.to, 180.0);
+  const MapField field = sky.field(Plotted::kDolp);
+  const Scale azimuths{0.0, 180.0}, zeniths{0.0, 90.0};
+  const Scene scene = session.scene().with("geometry.relative_azimuth_deg", azimuths.values(field.count)[90]);
+  const Point exact = truth(scene, points_at(scene, {zeniths.values(field.count)[70]})).front();
+  EXPECT_NEAR(field.values[70 * field.count + 90], exact[Quantity::kDolp], 2.0 * exact[Quantity::kErrorEstimate]);
   session.set("geometry.relative_azimuth_deg", 77.0);
-  EXPECT_TRUE(session.source_sky().is_finished());
+  EXPECT_TRUE(sky.is_finished());
   session.set("surface.sigma", 0.3);
-  EXPECT_FALSE(session.source_sky().is_finished());
+  EXPECT_FALSE(sky.is_finished());
+  session.set(kSigmaCross, 0.45);
+  EXPECT_EQ(sky.x().scale.to, 360.0);  // no half of the sky is the mirror image of the other
 }
 
 TEST(ExplorePanels, Camera_IsTheCurveOverTheViewZenith_WithTheSourceAtTheCursor) {
-  Driver driver(paint({"geometry.mode=bistatic", "source.irradiance=20"}));
+  Driver driver(paint({"geometry.mode=bistatic", "source.irradiance=20"}), {.panel = Panel::kCamera});
   Session& session = driver.session;
-  session.set_view(&View::panel, Panel::kCamera);
   session.set_theta(35.0);
   driver.settle();
-  ASSERT_TRUE(session.camera().is_finished());
+  ASSERT_TRUE(session.sweep().is_finished());
   const std::size_t at = 100;
-  EXPECT_EQ(session.camera().at()[at], 50.0);
+  EXPECT_EQ(session.sweep().at()[at], 50.0);
   const Scene scene = session.scene().with("geometry.view_zenith_deg", 50.0);
   const Point exact = truth(scene, points_at(scene, {35.0})).front();
-  const Point& shown = session.camera().points()[at];
+  const Point& shown = session.sweep().points()[at];
   EXPECT_NEAR(shown[Quantity::kDolp], exact[Quantity::kDolp],
               shown[Quantity::kErrorEstimate] + exact[Quantity::kErrorEstimate]);
   session.set_theta(36.0);
-  EXPECT_FALSE(session.camera().is_finished());
+  EXPECT_FALSE(session.sweep().is_finished());
+}
+
+TEST(ExplorePanels, Azimuth_IsTheCurveOverTheSurfacesAzimuth_WithUAndTheRowsOfEval) {
+  Driver driver(paint({"surface.sigma_cross=0.3", "geometry.surface_azimuth_deg=30", "accuracy.tolerance=1e-2"}),
+                {.quantity = Plotted::kUOverI, .panel = Panel::kAzimuth});
+  Session& session = driver.session;
+  const Sweep& sweep = session.sweep();
+  ASSERT_TRUE(sweep.is_finished());
+  EXPECT_EQ(session.sweep_axis().label, "φ_w [°]");
+  EXPECT_EQ(session.sweep_axis().scale, (Scale{0.0, 180.0}));
+  EXPECT_EQ(sweep.at()[45], 45.0);
+  const auto u_over_i = [&](std::size_t at) { return described(Plotted::kUOverI).value(sweep.points()[at]); };
+  EXPECT_GT(std::abs(u_over_i(45)), 1e-3);
+  EXPECT_NEAR(u_over_i(135), -u_over_i(45), 1e-12);
+  PointList list = points_at(session.scene(), std::vector<double>(181, 60.0));
+  list["surface_azimuth_deg"] = Scale{0.0, 180.0}.values(181);
+  Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
+  EXPECT_EQ(sweep.csv(), to_csv(list.columns(), evaluator.evaluate(session.scene(), list.columns())));
+  const Point& shown = *session.at_cursor();
+  EXPECT_EQ(shown[Quantity::kStokesU], sweep.points()[30][Quantity::kStokesU]);
+  EXPECT_NE(headline(session).find(fmt::format("AOLP {:.2f}°", shown[Quantity::kAolp])), std::string::npos);
+  // The results over all azimuths do not depend on the azimuth of the scene.
+  session.set(kSurfaceAzimuth, 50.0);
+  EXPECT_TRUE(session.sweep().is_finished());
+  EXPECT_EQ(quantity_refusal(session.scene(), Plotted::kUOverI), "");
+  EXPECT_NE(quantity_refusal(paint().scene(), Plotted::kUOverI), "");
 }
 
 TEST(ExplorePanels, EveryViewOfEveryScene_IsWanted_OrRefusedWithAReason) {
@@ -196,14 +226,15 @@ TEST(ExplorePanels, EveryViewOfEveryScene_IsWanted_OrRefusedWithAReason) {
   };
   using Names = std::vector<std::string>;
   const TemporaryFile reflectances(".csv", "beta_deg,r_s,r_p\n0,0.04,0.04\n45,0.09,0.01\n90,1,1\n");
-  EXPECT_EQ(refused({}), (Names{"sky", "camera", "fit"}));
-  EXPECT_EQ(refused({"geometry.mode=bistatic"}), (Names{"sphere", "fit"}));
-  EXPECT_EQ(refused({"surface.sigma=0"}), (Names{"slopes", "sky", "camera", "fit"}));
+  EXPECT_EQ(refused({}), (Names{"sky", "camera", "azimuth", "fit"}));
+  EXPECT_EQ(refused({"geometry.mode=bistatic"}), (Names{"sphere", "azimuth", "fit"}));
+  EXPECT_EQ(refused({"surface.sigma=0"}), (Names{"slopes", "sky", "camera", "azimuth", "fit"}));
+  EXPECT_EQ(refused({"surface.sigma_cross=0.3"}), (Names{"slopes", "sphere", "sky", "camera", "fit"}));
   EXPECT_EQ(refused({"surface.reflectance_file=" + reflectances.path(), "spectrum.band_um=[8,14]"}),
-            (Names{"material", "pBRDF", "sky", "camera", "fit"}));
+            (Names{"material", "pBRDF", "sky", "camera", "azimuth", "fit"}));
   EXPECT_EQ(refused({"surface.distribution=gaussian", "surface.wind_m_s=8", "surroundings.profile=clear-sky",
                      "surface.coating=[{n=1.3,thickness_um=2}]"}),
-            (Names{"sky", "camera", "fit"}));
+            (Names{"sky", "camera", "azimuth", "fit"}));
 }
 
 TEST_F(Window, Choices_ThatRemoveRows_MoveNoControl) {
@@ -283,13 +314,24 @@ TEST_F(Window, Films_AreAddedOutside_ChangedAndRemoved) {
   EXPECT_NE(surface_name(before).find("film PMMA acrylic 2 µm"), std::string::npos);
 }
 
-TEST_F(Window, SceneWithAWind_HasItsSliderInsteadOfSigma) {
+TEST_F(Window, SceneWithAWind_HasItsSliderInsteadOfSigma_AndADirectionalOneAnAzimuth) {
+  session().set_view(&View::panel, Panel::kSlopes);  // without a map, frames are faster
   session().set({{"surface.distribution", "gaussian"}, {"surface.wind_m_s", 8.0}});
   settle();
   EXPECT_THROW(app_->control_area("surface.sigma"), std::out_of_range);
   drag_slider("surface.wind_m_s", kPartOfSlider);
   EXPECT_NEAR(*number("surface.wind_m_s"), 30.0 * static_cast<double>(kPartOfSlider), 30.0 * kGrab);
   EXPECT_NE(cursor_text(session()).find("U = "), std::string::npos);
+  EXPECT_THROW(app_->control_area(kSurfaceAzimuth), std::out_of_range);
+  click_control("surface.wind_model");
+  click_control("surface.wind_model directional");
+  drag_slider(kSurfaceAzimuth, kPartOfSlider);
+  EXPECT_NEAR(*number(kSurfaceAzimuth), 180.0 * static_cast<double>(kPartOfSlider), 180.0 * kGrab);
+  const Columns truth = evaluated();
+  EXPECT_EQ(session().curve().points()[120][Quantity::kStokesU], truth.at("stokes_u")[120]);
+  EXPECT_LT(truth.at("stokes_u")[120], 0.0);
+  click_control("panel azimuth");
+  EXPECT_EQ(session().view().panel, Panel::kAzimuth);
 }
 
 }  // namespace

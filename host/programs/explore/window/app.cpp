@@ -89,13 +89,10 @@ void App::settle() {
   }
 }
 
-bool App::answer(const AfterFrame& after_frame) {
+bool App::answer() {
   std::size_t left = kFramesAfterNews;
   while (left > 0) {
-    const Clock::time_point start = Clock::now();
-    const bool is_open = frame();
-    if (after_frame) after_frame(seconds_since(start));
-    if (!is_open) return false;
+    if (!frame()) return false;
     const bool has_news = input_.take_news() || !actions_.picture_path.empty();
     if (session_.is_dragged()) return true;  // draws no more frames, so that the curves get the processor
     left = has_news ? kFramesAfterEvent : left - 1;
@@ -108,10 +105,8 @@ void App::close() {
   glfwPostEmptyEvent();
 }
 
-void App::reopen() { glfwSetWindowShouldClose(screen_.window(), GLFW_FALSE); }
-
-void App::run(const AfterFrame& after_frame) {
-  while (answer(after_frame)) {
+void App::run() {
+  while (answer()) {
     // Wakes up when the mouse has rested for kTooltipDelay_s, to draw a tooltip.
     constexpr double kNote_s = static_cast<double>(kTooltipDelay_s) + 0.05;
     if (ImGui::GetIO().WantTextInput) {
@@ -167,7 +162,8 @@ void run_program(const Scene& scene, const ProgramOptions& options) {
     session.set(options.settings);
     check();
   }
-  if (!options.panel.empty()) session.set_view(&View::panel, find_panel(options.panel));
+  const auto panel = std::ranges::find(kPanelNames, options.panel);
+  if (panel != kPanelNames.end()) session.set_view(&View::panel, static_cast<Panel>(panel - kPanelNames.begin()));
   if (!options.measured_path.empty()) {
     session.load_measured(options.measured_path);
     check();

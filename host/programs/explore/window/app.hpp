@@ -14,8 +14,6 @@ struct AppOptions {
 
 class App {
  public:
-  using AfterFrame = std::function<void(double frame_s)>;  ///< gets the duration of each frame
-
   App(SceneEdits edits, const AppOptions& options);  ///< Errors: the errors of Screen()
 
   Session& session() { return session_; }
@@ -29,11 +27,10 @@ class App {
   /// Errors: DeviceError if no device can compute, or if the device is lost.
   bool frame();
   /// Draws frames until ImGui has shown all effects of the input. Returns false if the user has closed the window.
-  bool answer(const AfterFrame& after_frame = {});
-  void close();   ///< ends run(); any thread may call it
-  void reopen();  ///< lets run() continue after close()
+  bool answer();
+  void close();  ///< ends run(); any thread may call it
   /// Draws frames until the window is closed, and between them waits for input or results.
-  void run(const AfterFrame& after_frame = {});
+  void run();
   /// Draws `count` frames. If `screenshot_path` is not empty, saves a last frame with all results. Returns a text with
   /// the durations of all frames, and of the frames during computations.
   std::string run_frames(std::size_t count, const std::string& screenshot_path);
@@ -64,7 +61,7 @@ struct ProgramOptions : AppOptions {
   std::string measured_path;           ///< CSV of measured points; empty: none
   std::size_t frames = 0;              ///< number of frames to draw; 0: until the window is closed
   std::string screenshot_path;         ///< PNG of the last frame; empty: none
-  std::string panel = {};              ///< panel that the window shows first; empty: the map
+  std::string panel = {};              ///< one of kPanelNames, the view to show first; empty: the map
   std::string session_path = {};       ///< session file that replaces the scene; empty: none
   std::vector<Setting> settings = {};  ///< changes of the scene in `session_path`, from --set and similar options
 };

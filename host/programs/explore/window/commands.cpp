@@ -130,36 +130,37 @@ std::string suggested_path(const Ui& ui, const std::string& ending) {
   return (folder / ((file == "-" ? "dolp" : file.stem().string()) + ending)).string();
 }
 
-void ask_for_path(Ui& ui, const char* title, const char* ending, const std::vector<std::string>& suffixes,
-                  const std::function<void(Path)>& accept) {
-  ui.dialog.open(
-      {.title = title, .path = suggested_path(ui, ending), .suffixes = suffixes, .accept = [&ui, accept](Path path) {
-         ui.saved = {ui.session.scene().name(), std::filesystem::path(path).parent_path()};
-         accept(path);
-       }});
-}
-
-void save_as(Ui& ui, const char* title, const char* ending, const char* suffix,
-             const std::function<void(Session&, Path)>& save) {
-  ask_for_path(ui, title, ending, {suffix},
-               [&ui, save](Path path) { ui.actions.attempt("saved " + path, [&] { save(ui.session, path); }); });
-}
-
 /// Opens a dialog that saves a file in one of `formats`.
-void export_as(Ui& ui, const char* title, std::vector<PathDialog::Format> formats, std::size_t format) {
+void export_as(Ui& ui, const char* title, std::vector<PathDialog::Format> formats, std::size_t format = 0) {
+  std::vector<std::string> suffixes;
   for (PathDialog::Format& one : formats) {
+    suffixes.push_back(one.ending.substr(one.ending.find('.')));
     one.accept = [&ui, accept = one.accept](Path path) {
       ui.saved = {ui.session.scene().name(), std::filesystem::path(path).parent_path()};
       accept(path);
     };
   }
-  std::vector<std::string> suffixes;
-  for (const PathDialog::Format& one : formats) suffixes.push_back(one.ending.substr(one.ending.find('.')));
   ui.dialog.open({.title = title,
                   .path = suggested_path(ui, formats[format].ending),
                   .suffixes = suffixes,
                   .formats = formats,
                   .format = format});
+}
+
+template <auto save>  // a function of the session and a path
+std::function<void(Path)> saving(Ui& ui) {
+  return [&ui](Path path) { ui.actions.attempt("saved " + path, [&] { save(ui.session, path); }); };
+}
+
+/// Opens a dialog that opens a file, beginning in the folder of the scene.
+void ask_for_file(Ui& ui, const char* title, const std::vector<std::string>& suffixes,
+                  const std::function<void(Path)>& accept) {
+  const std::filesystem::path folder = std::filesystem::path(ui.session.scene().name()).parent_path();
+  ui.dialog.open({.title = title,
+                  .path = folder.empty() ? "" : folder.string() + '/',
+                  .suffixes = suffixes,
+                  .formats = {{"", "", accept}},
+                  .must_exist = true});
 }
 
 enum FigureFormat : std::size_t { kSvg, kPdf, kPng, kWindow };
@@ -168,9 +169,9 @@ void export_figure(Ui& ui) {
   const auto plot = [&ui](Path path) { ui.actions.save_plot(path, ui.curves.x(), ui.curves.y()); };
   const auto window = [&ui](Path path) { ui.actions.attempt("saved " + path, [&] { ui.actions.save_picture(path); }); };
   export_as(ui, "Save a figure",
-            {{"curves and map, SVG", "_plot.svg", plot},
-             {"curves and map, PDF", "_plot.pdf", plot},
-             {"curves and map, PNG", "_plot.png", plot},
+            {{"curves and view, SVG", "_plot.svg", plot},
+             {"curves and view, PDF", "_plot.pdf", plot},
+             {"curves and view, PNG", "_plot.png", plot},
              {"the window, PNG", "_window.png", window}},
             format);
 }
@@ -178,23 +179,21 @@ void export_figure(Ui& ui) {
 enum DataFormat : std::size_t { kCurve, kTable };
 template <DataFormat format>
 void export_data(Ui& ui) {
-  const auto curve = [&ui](Path path) { ui.actions.attempt("saved " + path, [&] { save_curve(ui.session, path); }); };
   const auto table = [&ui](Path path) { ui.actions.export_table(path); };
-  export_as(ui, "Save data",
-            {{"the curve, CSV", "_curve.csv", curve},
-             {"the table of the scene's grid, NetCDF", "_table.nc", table},
-             {"the table of the scene's grid, CSV", "_table.csv", table},
-             {"the table of the scene's grid, NumPy", "_table.npy", table}},
-            format);
+  std::vector<PathDialog::Format> formats = {{"the curve, CSV", "_curve.csv", saving<save_curve>(ui)},
+                                             {"the table of the scene's grid, NetCDF", "_table.nc", table},
+                                             {"the table of the scene's grid, CSV", "_table.csv", table},
+                                             {"the table of the scene's grid, NumPy", "_table.npy", table}};
+  if (*swept_name(ui.session.view().panel) != '\0') {
+    const std::string text = "the curve over " + ui.session.sweep_axis().label + ", CSV";
+    formats.push_back({text, "_view.csv", saving<save_sweep>(ui)});
+  }
+  export_as(ui, "Save data", formats, format);
 }
 
 void ask_what_to_open(Ui& ui) {
-  const std::filesystem::path folder = std::filesystem::path(ui.session.scene().name()).parent_path();
-  ui.dialog.open({.title = "Open a scene, a session (.toml) or measured points (.csv)",
-                  .path = folder.empty() ? "" : folder.string() + '/',
-                  .suffixes = {".toml", ".csv"},
-                  .must_exist = true,
-                  .accept = [&ui](Path path) { ui.actions.open(path); }});
+  ask_for_file(ui, "Open a scene, a session (.toml) or measured points (.csv)", {".toml", ".csv"},
+               [&ui](Path path) { ui.actions.open(path); });
 }
 
 void copy_command(Ui& ui) {
@@ -245,9 +244,13 @@ constexpr const char* kNoMenu = "";  // a command that has only a shortcut
 constexpr Command kCommands[] = {
     {"File", "Open", "Ctrl+O", ask_what_to_open},
     {"File", "Save the scene", "Ctrl+S",
-     [](Ui& ui) { save_as(ui, "Save the scene", "_scene.toml", ".toml", save_scene); }},
+     [](Ui& ui) {
+       export_as(ui, "Save the scene", {{"", "_scene.toml", saving<save_scene>(ui)}});
+     }},
     {"File", "Save the session", "Ctrl+Shift+S",
-     [](Ui& ui) { save_as(ui, "Save scene, pins, snapshots and view", "_session.toml", ".toml", save_session); }},
+     [](Ui& ui) {
+       export_as(ui, "Save scene, pins, snapshots and view", {{"", "_session.toml", saving<save_session>(ui)}});
+     }},
     {"File", "Remove measured points", "", [](Ui& ui) { ui.session.clear_measured(); }, nullptr,
      [](const Ui& ui) { return ui.session.residuals().data().has_value(); }},
     {"File", "Quit", "Ctrl+Q", [](Ui& ui) { ui.actions.is_quitting = true; }},
@@ -315,15 +318,11 @@ void draw_title(Ui& ui) {
 }  // namespace
 
 void ask_for_material(Ui& ui, const std::string& table) {
-  const std::filesystem::path folder = std::filesystem::path(ui.session.scene().name()).parent_path();
-  ui.dialog.open({.title = "Open a file of n and k",
-                  .path = folder.empty() ? "" : folder.string() + '/',
-                  .suffixes = {".csv", ".yml", ".yaml", ".txt", ".dat", ".nk", ".lnk"},
-                  .must_exist = true,
-                  .accept = [&ui, table](Path path) {
-                    const std::string file = std::filesystem::absolute(path).lexically_normal().string();
-                    ui.session.set(medium_change(ui.session.scene(), table, {{"material_file", file}}));
-                  }});
+  ask_for_file(ui, "Open a file of n and k", {".csv", ".yml", ".yaml", ".txt", ".dat", ".nk", ".lnk"},
+               [&ui, table](Path path) {
+                 const std::string file = std::filesystem::absolute(path).lexically_normal().string();
+                 ui.session.set(medium_change(ui.session.scene(), table, {{"material_file", file}}));
+               });
 }
 
 void run_shortcuts(Ui& ui) {

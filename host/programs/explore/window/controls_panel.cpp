@@ -26,10 +26,10 @@ void heading(const char* text) {
 }
 
 /// Marks a fitted interval at the lower edge of the slider drawn last. Draws an open end at the slider's end.
-void draw_interval(const Control& control, const FitInterval& interval) {
+void draw_interval(const Scale& slider, const FitInterval& interval) {
   const ImVec2 corner = ImGui::GetItemRectMin(), end = ImGui::GetItemRectMax();
   const auto at = [&](const std::optional<double>& value, double otherwise) {
-    const double position = value ? control.slider.position(control.slider.clamp(*value)) : otherwise;
+    const double position = value ? slider.position(slider.clamp(*value)) : otherwise;
     return corner.x + static_cast<float>(position) * (end.x - corner.x);
   };
   constexpr float kThickness = 3.0F;
@@ -126,7 +126,7 @@ struct Controls {
     const std::string id = "##slider " + slider.id;
     const bool is_moved = ImGui::SliderFloat(id.c_str(), &position, 0.0F, 1.0F, "", ImGuiSliderFlags_NoInput);
     name_item(slider.id);
-    if (const FitParameter* found = session.fitted(slider.id)) draw_interval(*control, found->interval_68);
+    if (const FitParameter* found = session.fitted(slider.id)) draw_interval(slider.scale, found->interval_68);
     const bool is_ctrl = ImGui::GetIO().KeyCtrl;
     if (ImGui::IsItemClicked() && is_ctrl) session.reset(slider.reset_key);
     if (is_moved && !is_ctrl)
@@ -143,8 +143,8 @@ struct Controls {
   void draw_number(const Control& control, double value) {
     const std::string& key = control.key->key;
     const auto change = [&](const std::string& text) { return Setting{key, parse_value(text)}; };
-    draw_slider({key, control.label_with_unit(), note_on(control, session), key, control.slider, change}, value,
-                &control);
+    const Scale slider = range_in(session.scene(), control);
+    draw_slider({key, control.label_with_unit(), note_on(control, session), key, slider, change}, value, &control);
     if (!session.residuals().data()) return;
     const std::string fit_row = "fit " + key;
     if (session.varies(key)) rows.note(fit_row);

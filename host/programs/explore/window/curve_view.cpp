@@ -89,6 +89,7 @@ void draw_curve(const Plot& plot, const ShownCurve& shown, Plotted quantity) {
     const bool can_show = plot.can_show(points[i].theta_deg, value);
     const bool is_beside_bad = !points[i].is_good() || (i > 0 && !points[i - 1].is_good()) ||
                                (i + 1 < points.size() && !points[i + 1].is_good());
+    if (i > 0 && described(quantity).jumps(described(quantity).shown(points[i - 1]), value)) good.push_back(kGap);
     const ImVec2 at = can_show ? plot.at(points[i].theta_deg, value) : kGap;
     good.push_back(points[i].is_good() ? at : kGap);
     bad.push_back(is_beside_bad ? at : kGap);
@@ -212,7 +213,7 @@ void draw_residuals(const Session& session, const Scale& theta, ImVec2 size) {
   double largest = residuals.empty() ? 1.0 : 1e-6;
   for (const Measurement& point : residuals)
     largest = std::max(largest, quantity.scale() * (std::abs(point.value) + point.uncertainty.value_or(0.0)));
-  std::string label = std::string("measured − model") + (quantity.in_percent ? " [points]" : "");
+  std::string label = std::string("measured − model") + (quantity.is_percent() ? " [points]" : "");
   if (const auto rms = residual_rms(residuals))
     label += fmt::format("; root mean square {:.3g}", quantity.scale() * *rms);
   const Plot plot("residuals", size, {"", theta}, {label, {-1.2 * largest, 1.2 * largest}});
@@ -293,8 +294,7 @@ void CurveView::draw(Session& session, AxisEditor& editor, ImVec2 size) {
   PlotAxis values{described(quantity).label(), value_scale(values_to_show(session, curves), view.is_log)};
   Zoom zoom{view.range(View::kZeniths), view.range(View::kValues)};
   choose_axes(session, zoom, zeniths, values.scale);
-  const Plot plot("curve", {size.x, size.y - residual_height - gap},
-                  {is_bistatic(session.scene()) ? "zenith θ of the source [°]" : "zenith θ [°]", x_}, values);
+  const Plot plot("curve", {size.x, size.y - residual_height - gap}, {zenith_label(session.scene()), x_}, values);
   if (plot.is_dragged()) session.set_theta(plot.x().value(plot.mouse_x()));
   plot.follow_mouse(zoom, zeniths);
   view.set_range(View::kZeniths, zoom.x);

@@ -78,16 +78,12 @@ struct Colours {
   }
 };
 
-/// The range of DOLP up to `theta_max_deg`. It begins at 0, or at the smallest DOLP if `from_least` is true.
-Scale dolp_range(const std::vector<Point>& points, double theta_max_deg, bool from_least) {
-  constexpr double kLeastRange = 1e-6;
-  Scale range{1.0, 0.0};
+Scale dolp_range(const std::vector<Point>& points, double theta_max_deg) {  // from 0 to the largest up to a zenith
+  double largest = 1e-6;
   for (const Point& point : points) {
-    if (!point.is_good() || point.theta_deg > theta_max_deg) continue;
-    range = {std::min(range.from, point[Quantity::kDolp]), std::max(range.to, point[Quantity::kDolp])};
+    if (point.is_good() && point.theta_deg <= theta_max_deg) largest = std::max(largest, point[Quantity::kDolp]);
   }
-  if (!from_least || range.to < range.from) range.from = 0.0;
-  return {range.from, std::max(range.to, range.from + kLeastRange)};
+  return {0.0, largest};
 }
 
 /// Draws a disc of cells. Ring number i lies between the shares i and i + 1 of the radius, and has `sectors` cells.
@@ -113,7 +109,7 @@ void draw_cells(const Disc& disc, const std::vector<double>& shares, std::size_t
 
 void draw_sphere(const Session& session, const Disc& disc, const Colours& colours) {
   std::vector<double> shares;
-  const std::vector<double> rings_deg = zeniths(0.0, 90.0, kRings + 1);
+  const std::vector<double> rings_deg = Scale{0.0, 90.0}.values(kRings + 1);
   for (const double zenith_deg : rings_deg) shares.push_back(std::sin(zenith_deg * kDegree));
   draw_cells(disc, shares, kSectors, [&](std::size_t ring, double azimuth_deg) {
     const double zenith_deg = 0.5 * (rings_deg[ring] + rings_deg[ring + 1]);
@@ -161,15 +157,15 @@ void draw_bar(ImVec2 corner, float width, const Colours& colours) {
   draw_text(list, {corner.x + 0.5F * width, below}, {0.5F, 0.0F}, kTextColour, colours.is_angle ? "angle" : "DOLP");
 }
 
-void draw_rings(const SourceSky& sky, const Disc& disc, const Colours& colours) {
-  std::vector<double> shares;
-  for (const double zenith_deg : zeniths(0.0, 90.0, SourceSky::kZeniths)) shares.push_back(zenith_deg / 90.0);
-  draw_cells(disc, shares, 2 * (SourceSky::kAzimuths - 1), [&](std::size_t ring, double azimuth_deg) -> ImU32 {
-    const double side_deg = std::min(azimuth_deg, 360.0 - azimuth_deg);
-    const auto nearest = static_cast<std::size_t>(std::lround(side_deg / SourceSky::azimuth_deg(1)));
-    const std::vector<Point>& points = sky.at(nearest);
-    if (ring >= points.size()) return kBackground;  // not computed yet
-    return points[ring].is_good() ? viridis(colours.dolp.position(points[ring][Quantity::kDolp])) : kBadColour;
+/// Draws the map over azimuth and zenith of the source as a disc. If the map ends at 180°, it mirrors the map.
+void draw_rings(const HeatMap& sky, const MapField& field, const Disc& disc, const Colours& colours) {
+  constexpr std::size_t kSectorsOfSky = 126;  // about two for each value of a half sky at the second level
+  const double last_deg = sky.x().scale.to, steps = static_cast<double>(field.count) - 1.0;
+  draw_cells(disc, Scale{0.0, 1.0}.values(field.count), kSectorsOfSky, [&](std::size_t ring, double azimuth_deg) {
+    const double side_deg = azimuth_deg > last_deg ? 360.0 - azimuth_deg : azimuth_deg;
+    const auto column = static_cast<std::size_t>(std::lround(steps * side_deg / last_deg));
+    const double value = field.values[ring * field.count + column];
+    return std::isnan(value) ? static_cast<ImU32>(kBadColour) : viridis(colours.dolp.position(value));
   });
 }
 
@@ -186,12 +182,6 @@ void draw_sky_marks(const Scene& scene, double source_zenith_deg, const Disc& di
   list->AddCircle(disc.at(source_zenith_deg / 90.0, azimuth_deg), scaled(5.0F), kTextColour, 0, scaled(2.0F));
   list->AddCircle(disc.at(scene.number("geometry.view_zenith_deg").value() / 90.0, 0.0), scaled(5.0F), kTextColour, 4,
                   scaled(2.0F));
-}
-
-std::vector<Point> all_points(const SourceSky& sky) {
-  std::vector<Point> all;
-  for (std::size_t i = 0; i < SourceSky::kAzimuths; ++i) all.insert(all.end(), sky.at(i).begin(), sky.at(i).end());
-  return all;
 }
 
 }  // namespace
@@ -271,7 +261,7 @@ void ShapeView::draw(Session& session, ImVec2 size) {
     session.set_theta(std::asin(std::min(1.0, std::hypot(x, y) / static_cast<double>(radius))) / kDegree);
   }
   for (const bool is_angle : {false, true}) {
-    const Colours colours{dolp_range(session.curve().points(), session.view().theta_max_deg, false), is_angle};
+    const Colours colours{dolp_range(session.curve().points(), session.view().theta_max_deg), is_angle};
     const float x = plate.x + (is_angle ? 0.5F * size.x : 0.0F);
     draw_sphere(session, {{x, high}, radius}, colours);
     draw_plate(session, {x, low}, radius, azimuth_deg_, colours);
@@ -280,19 +270,20 @@ void ShapeView::draw(Session& session, ImVec2 size) {
 }
 
 void draw_sky(const Session& session, ImVec2 size) {
-  const SourceSky& sky = session.source_sky();
-  const Colours colours{dolp_range(all_points(sky), 90.0, true)};
+  const MapField field = session.sky().field(Plotted::kDolp);
+  const Scale dolp = field.min < field.max ? Scale{field.min, field.max} : Scale{0.0, 1.0};
+  const Colours colours{dolp};
   const float line = ImGui::GetTextLineHeight();
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const float radius = std::max(line, std::min(0.5F * size.x - 2.0F * line, 0.5F * (size.y - 5.5F * line)));
   const ImVec2 middle{corner.x + 0.5F * size.x, corner.y + 2.8F * line + radius};
   ImDrawList* const list = ImGui::GetWindowDrawList();
-  draw_text(
-      list, corner, {0.0F, 0.0F}, kTextColour,
-      fmt::format("DOLP over the source's direction, view at {:.4g}°{}",
-                  session.scene().number("geometry.view_zenith_deg").value(), sky.is_finished() ? "" : ", refining"));
+  draw_text(list, corner, {0.0F, 0.0F}, kTextColour,
+            fmt::format("DOLP over the source's direction, view at {:.4g}°{}",
+                        session.scene().number("geometry.view_zenith_deg").value(),
+                        session.sky().is_finished() ? "" : ", refining"));
   const Disc disc{middle, radius};
-  draw_rings(sky, disc, colours);
+  if (field.count > 0) draw_rings(session.sky(), field, disc, colours);
   draw_sky_marks(session.scene(), session.theta_deg(), disc);
   draw_bar({middle.x - radius, middle.y + radius + 0.5F * line}, 2.0F * radius, colours);
 }

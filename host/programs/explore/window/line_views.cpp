@@ -4,6 +4,7 @@
 #include <cmath>
 #include <ranges>
 
+#include "explore/readout.hpp"
 #include "explore/window/views.hpp"
 
 namespace dolp::explore {
@@ -42,12 +43,6 @@ void draw_lines(const Plot& plot, const std::vector<double>& xs, const std::vect
   }
 }
 
-std::string distribution_name(const Scene& scene) {
-  const std::string name = scene.word("surface.distribution").value();
-  const std::string q = name == "cauchy" ? fmt::format(" q {:.4g}", scene.number("surface.q").value()) : "";
-  return fmt::format("{} σ {:.4g}{}", name, scene.number("surface.sigma").value(), q);
-}
-
 /// Marks a wavelength, a band, or the response of the camera, whose largest value has the height of the plot.
 void mark_spectrum(const Plot& plot, const Scene& scene) {
   const auto [from_um, to_um] = spectrum_um(scene);
@@ -75,28 +70,43 @@ NamedLine sweep_line(const Sweep& sweep, Plotted quantity, const CurveStyle& sty
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   NamedLine line{name, sweep.is_finished() ? style : stale(style), {}};
   const PlottedDescription& description = described(quantity);
-  for (const Point& point : sweep.points()) line.values.push_back(point.is_good() ? description.shown(point) : kNone);
+  double last = kNone;
+  for (const Point& point : sweep.points()) {
+    const double value = point.is_good() ? description.shown(point) : kNone;
+    line.values.push_back(description.jumps(last, value) ? kNone : value);
+    last = value;
+  }
   return line;
 }
 
-void mark_zenith(const Plot& plot, double zenith_deg) {
-  const float x = plot.at_position(plot.x().position(zenith_deg), 0.0).x;
+void mark(const Plot& plot, double value) {
+  const float x = plot.at_position(plot.x().position(value), 0.0).x;
   plot.list()->AddLine({x, plot.min().y}, {x, plot.max().y}, kCursorColour, scaled(1.0F));
 }
 
-void draw_wavelengths(const char* id, Session& session, AxisEditor& editor, ImVec2 size,
-                      const std::vector<NamedLine>& lines, const Sweep& sweep, const PlotAxis& values) {
-  const MapAxis axis = session.wavelengths();
+/// Draws lines over the axis of the view. A drag sets the number on this axis, unless the scene has a band instead.
+void draw_over_axis(const char* id, Session& session, AxisEditor& editor, ImVec2 size,
+                    const std::vector<NamedLine>& lines, PlotAxis values) {
+  const MapAxis axis = session.sweep_axis();
   if (!axis.scale.refusal().empty()) return coloured_text(kDimColour, "n and k are known at only one wavelength.");
+  const Sweep& sweep = session.view().panel == Panel::kSmooth ? session.smooth_spectrum() : session.sweep();
+  values.scale = session.view().range(View::kSweepValues).value_or(values.scale);
   const Plot plot(id, size, {axis.label, axis.scale}, values);
-  mark_spectrum(plot, session.scene());
+  const std::optional<double> value = session.scene().number(axis.key);
+  axis.name == "wavelength" ? mark_spectrum(plot, session.scene()) : mark(plot, *value);
   draw_lines(plot, sweep.at(), lines, true);
-  const Scene& scene = session.spectral_scene();
+  const Scene& scene = session.sweep_scene();
   const auto change = editor.draw(axis.label, plot.x_numbers(), axis.scale,
                                   [&](const Scale& range) { return refusal(scene, axis, range); });
   if (change) set_range(session, axis, *change);
-  const bool has_wavelength = session.scene().numbers("spectrum.band_um").empty();
-  if (plot.is_dragged() && has_wavelength) session.set(axis.key, axis.scale.rounded(plot.mouse_x()));
+  if (const auto typed =
+          editor.draw("view: " + values.label, plot.y_numbers(), values.scale, [](const Scale&) { return ""; })) {
+    View view = session.view();
+    view.set_range(View::kSweepValues, typed->range);
+    view.is_log = typed->is_log;
+    session.set_view(view);
+  }
+  if (plot.is_dragged() && value) session.set(axis.key, axis.scale.rounded(plot.mouse_x()));
 }
 
 }  // namespace
@@ -104,16 +114,16 @@ void draw_wavelengths(const char* id, Session& session, AxisEditor& editor, ImVe
 void draw_slopes(const Session& session, ImVec2 size) {
   const Scene& scene = session.scene();
   const std::optional<Scene> other = with_other_distribution(scene);
-  const std::vector<double> all_deg = zeniths(0.0, 89.5, kSlopeCount);
+  const std::vector<double> all_deg = Scale{0.0, 89.5}.values(kSlopeCount);
   const auto densities = [&](const Scene& shape) {
     std::vector<double> values;
     for (const double alpha_deg : all_deg)
       values.push_back(slope_density(shape, alpha_deg) * std::cos(alpha_deg * kDegree));
     return values;
   };
-  std::vector<NamedLine> lines = {{distribution_name(scene), current_style(), densities(scene)}};
+  std::vector<NamedLine> lines = {{slopes_name(scene), current_style(), densities(scene)}};
   const Scale range = values_range(lines, session.view().is_log);
-  if (other) lines.push_back({distribution_name(*other) + ", same D(0)", overlay_style(), densities(*other)});
+  if (other) lines.push_back({slopes_name(*other) + ", same D(0)", overlay_style(), densities(*other)});
   const Plot plot("slopes", size, {"angle of the facets α [°]", {0.0, 90.0}}, {"D(α) cos α [1/sr]", range});
   draw_lines(plot, all_deg, lines);
 }
@@ -129,24 +139,10 @@ void draw_material(const Session& session, ImVec2 size) {
   draw_lines(plot, curve.wavelength_um, lines);
 }
 
-void draw_spectrum(Session& session, AxisEditor& editor, ImVec2 size) {
+void draw_sweep(Session& session, AxisEditor& editor, ImVec2 size) {
   const PlottedDescription& quantity = described(session.view().quantity);
-  const NamedLine line = sweep_line(session.spectrum(), quantity.quantity, current_style(),
-                                    fmt::format("θ = {:.4g}°", session.theta_deg()));
-  draw_wavelengths("spectrum", session, editor, size, {line}, session.spectrum(),
-                   {quantity.label(), value_scale(line.values, session.view().is_log)});
-}
-
-void draw_camera(Session& session, ImVec2 size) {
-  constexpr const char* kZenith = "geometry.view_zenith_deg";
-  const PlottedDescription& quantity = described(session.view().quantity);
-  const NamedLine line = sweep_line(session.camera(), quantity.quantity, current_style(),
-                                    fmt::format("source at θ = {:.4g}°", session.theta_deg()));
-  const Plot plot("camera", size, {"zenith θv of the camera [°]", {0.0, 90.0}},
-                  {quantity.label(), value_scale(line.values, session.view().is_log)});
-  draw_lines(plot, session.camera().at(), {line}, true);
-  mark_zenith(plot, session.scene().number(kZenith).value());
-  if (plot.is_dragged()) session.set(kZenith, plot.x().rounded(plot.mouse_x()));
+  const NamedLine line = sweep_line(session.sweep(), quantity.quantity, current_style(), sweep_name(session));
+  draw_over_axis("sweep", session, editor, size, {line}, {quantity.label(), sweep_values(session)});
 }
 
 void draw_smooth(Session& session, AxisEditor& editor, ImVec2 size) {
@@ -162,9 +158,9 @@ void draw_smooth(Session& session, AxisEditor& editor, ImVec2 size) {
       {is_band ? "R_s, R_p, mean over the band" : "R_s, R_p", values_range(over_angle, session.view().is_log)});
   if (plot.is_dragged()) session.set_theta(plot.x().value(plot.mouse_x()));
   draw_lines(plot, session.smooth().at(), over_angle, true);
-  mark_zenith(plot, session.theta_deg());
-  draw_wavelengths(
-      "smooth spectrum", session, editor, half, over, session.smooth_spectrum(),
+  mark(plot, session.theta_deg());
+  draw_over_axis(
+      "smooth spectrum", session, editor, half, over,
       {fmt::format("R_s, R_p at β = {:.4g}°", session.theta_deg()), values_range(over, session.view().is_log)});
 }
 

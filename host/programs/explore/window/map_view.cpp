@@ -68,10 +68,9 @@ void MapView::update(const Session& session) {
   const Plotted quantity = session.view().quantity;
   const bool is_log = session.view().is_log;
   const bool is_same =
-      quantity_ == quantity && is_log_ == is_log && typed_colours_ == session.view().range(View::kColours);
+      field_.quantity == quantity && is_log_ == is_log && typed_colours_ == session.view().range(View::kColours);
   if (version_ == session.map().version() && is_same) return;
   version_ = session.map().version();
-  quantity_ = quantity;
   is_log_ = is_log;
   typed_colours_ = session.view().range(View::kColours);
   field_ = session.map().field(quantity);

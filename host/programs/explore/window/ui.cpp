@@ -87,8 +87,10 @@ void draw_view_controls(Session& session, NumberFields& fields) {
   const float width = 6.5F * ImGui::GetFontSize();
   label("show");
   std::vector<ListEntry> quantities;
-  for (const PlottedDescription& quantity : kAllPlotted)
-    quantities.push_back({fmt::format("{}: {}", quantity.name, quantity.meaning)});
+  for (const PlottedDescription& quantity : kAllPlotted) {
+    const std::string refusal = quantity_refusal(session.scene(), quantity.quantity);
+    quantities.push_back({fmt::format("{}: {}", quantity.name, quantity.meaning), refusal, refusal.empty()});
+  }
   const auto position = static_cast<std::size_t>(view.quantity);
   if (const auto clicked = draw_list({"quantity", width, described(view.quantity).name, "", position, quantities}))
     view.quantity = kAllPlotted[*clicked].quantity;
@@ -219,11 +221,12 @@ void draw_panel(Ui& ui, ImVec2 size) {
       [](Ui& u, ImVec2 room) { draw_slopes(u.session, room); },
       [](Ui& u, ImVec2 room) { draw_material(u.session, room); },
       [](Ui& u, ImVec2 room) { draw_smooth(u.session, u.axis_editor, room); },
-      [](Ui& u, ImVec2 room) { draw_spectrum(u.session, u.axis_editor, room); },
+      [](Ui& u, ImVec2 room) { draw_sweep(u.session, u.axis_editor, room); },
       [](Ui& u, ImVec2 room) { u.scattering_view.draw(u.session, room); },
       [](Ui& u, ImVec2 room) { u.shape_view.draw(u.session, room); },
       [](Ui& u, ImVec2 room) { draw_sky(u.session, room); },
-      [](Ui& u, ImVec2 room) { draw_camera(u.session, room); },
+      [](Ui& u, ImVec2 room) { draw_sweep(u.session, u.axis_editor, room); },
+      [](Ui& u, ImVec2 room) { draw_sweep(u.session, u.axis_editor, room); },
       [](Ui& u, ImVec2) { draw_fit_result(u.session); }};
   const Panel panel = ui.session.view().panel;
   const std::string refusal = view_refusal(ui.session, panel);
@@ -233,8 +236,9 @@ void draw_panel(Ui& ui, ImVec2 size) {
 
 void draw_plots(Ui& ui, ImVec2 size) {
   const float gap = ImGui::GetStyle().ItemSpacing.x;
-  // The buttons of the views have one line, unless the curve would have less than half of the width.
-  const float curve_width = std::clamp(size.x - gap - panel_tabs_width(), 0.5F * size.x, 0.54F * size.x);
+  // The buttons of the views have one line, unless the curve would have less than 47 % of the width.
+  const float beside_tabs = size.x - gap - panel_tabs_width();
+  const float curve_width = beside_tabs < 0.47F * size.x ? 0.5F * size.x : std::min(beside_tabs, 0.54F * size.x);
   constexpr ImGuiWindowFlags kStill = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
   ImGui::BeginChild("curves", {curve_width, size.y}, false, kStill);
   ui.curves.draw(ui.session, ui.axis_editor, ImGui::GetContentRegionAvail());

@@ -60,11 +60,9 @@ void draw_effects(const Session& session);
 void draw_slopes(const Session& session, ImVec2 size);    ///< slope distributions D
 void draw_material(const Session& session, ImVec2 size);  ///< n and k over wavelength
 
-/// Draws the plotted quantity over wavelength at the cursor's zenith. A drag changes the scene's wavelength.
-void draw_spectrum(Session& session, AxisEditor& editor, ImVec2 size);
-/// Draws the plotted quantity over the camera's zenith, with the source at the cursor's zenith. A drag moves the
-/// camera.
-void draw_camera(Session& session, ImVec2 size);
+/// Draws the plotted quantity at the cursor's zenith over another number of the scene (Session::sweep()): wavelength,
+/// zenith of the camera, or azimuth of the surface. A drag changes this number.
+void draw_sweep(Session& session, AxisEditor& editor, ImVec2 size);
 /// Draws the reflectances R_s and R_p of a facet over the local angle of incidence, and over wavelength at one angle.
 void draw_smooth(Session& session, AxisEditor& editor, ImVec2 size);
 
@@ -111,7 +109,7 @@ class MapView {
     double level;
     std::vector<Segment> segments;
   };
-  const PlottedDescription& quantity() const { return described(quantity_); }
+  const PlottedDescription& quantity() const { return described(field_.quantity); }
   void update(const Session& session);
   Scale colour_range() const;  ///< automatic range of the values that the colours show
   ImU32 colour(double position) const;
@@ -122,7 +120,6 @@ class MapView {
 
   // Inputs of the last update(). From them it computed the members from colour_scale_ to contours_.
   std::size_t version_ = 0;
-  Plotted quantity_ = Plotted::kDolp;
   bool is_log_ = false;
   std::optional<Scale> typed_colours_;
 

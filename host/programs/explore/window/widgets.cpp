@@ -235,7 +235,7 @@ bool PathDialog::draw_list() {
 }
 
 void PathDialog::draw_formats() {
-  for (std::size_t i = 0; i < request_.formats.size(); ++i) {
+  for (std::size_t i = 0; i < request_.formats.size() && request_.formats.size() > 1; ++i) {
     const Format &old = request_.formats[request_.format], &format = request_.formats[i];
     const bool is_clicked = ImGui::RadioButton(shown(format.text).c_str(), i == request_.format);
     name_item("format " + format.text);
@@ -282,9 +282,7 @@ void PathDialog::draw() {
   is_accepted = is_accepted && !wants_focus_ && !name_.empty();
   if (is_accepted || is_cancelled) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
-  if (!is_accepted) return;
-  const auto& accept = request_.formats.empty() ? request_.accept : request_.formats[request_.format].accept;
-  accept(path().string());
+  if (is_accepted) request_.formats[request_.format].accept(path().string());
 }
 
 }  // namespace dolp::explore

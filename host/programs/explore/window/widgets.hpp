@@ -90,7 +90,7 @@ class AxisEditor {
 class PathDialog {
  public:
   struct Format {
-    std::string text;
+    std::string text;    ///< shown if there are several formats
     std::string ending;  ///< end of the suggested name, with the suffix
     std::function<void(const std::string& path)> accept;
   };
@@ -98,10 +98,9 @@ class PathDialog {
     std::string title;
     std::string path;                   ///< suggested
     std::vector<std::string> suffixes;  ///< suffixes of the files in the list
+    std::vector<Format> formats;        ///< one, or several to choose from
+    std::size_t format = 0;             ///< the chosen format
     bool must_exist = false;            ///< true: the dialog opens a file, otherwise it saves one
-    std::function<void(const std::string& path)> accept;
-    std::vector<Format> formats = {};  ///< formats to choose from; if there are some, they replace `accept`
-    std::size_t format = 0;            ///< the chosen format
   };
 
   void open(Request request);

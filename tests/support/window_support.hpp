@@ -64,6 +64,8 @@ class Window : public CommandLine {
     options.preferences = at("config/dolp/window.toml");
     const auto scene = Scene::from_file(at("scene.toml"), settings);
     app_ = std::make_unique<App>(explore::SceneEdits(scene), options);
+    // Without a map, frames are faster. Tests that need the map call show_map().
+    session().set_view(&explore::View::panel, explore::Panel::kSlopes);
     settle();
     std::string found = xdotool({"search", "--name", "dolp explore"});
     window_ = found.substr(0, found.find('\n'));
@@ -76,6 +78,10 @@ class Window : public CommandLine {
   void settle() {
     app_->settle();
     frames();
+  }
+  void show_map() {
+    session().set_view(&explore::View::panel, explore::Panel::kMap);
+    settle();
   }
   void frames(int count = kFrames) {
     for (int i = 0; i < count; ++i) app_->frame();

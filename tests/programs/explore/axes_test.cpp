@@ -188,6 +188,7 @@ TEST_F(Axes, NumbersDoubleClicked_TakeTypedEnds_AndCloseAfterARefusedEndIsTakenB
 }
 
 TEST_F(Axes, DragOfASlider_GivesCoarseCurves_AndHoldsZenithsAndColours_WhichCanBeTyped) {
+  show_map();
   const MapView& map = app_->map_view();
   session().set_view(&View::quantity, Plotted::kSignedDolp);
   settle();

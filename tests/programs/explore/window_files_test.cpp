@@ -106,6 +106,7 @@ TEST_F(WindowFiles, SaveDialogs_BeginBesideTheScene_ThenInTheLastFolder) {
 
 TEST_F(WindowFiles, Plots_SavedByShortcut_AreLinesAndTextOfWhatIsShown) {
   put("measured.csv", "theta_deg,dolp,uncertainty\n40,0.02,0.001\n60,0.05,0.001\n");
+  show_map();
   session().load_measured(at("measured.csv").string());
   keys("ctrl+p");
   drag_slider("surface.sigma", kPartOfSlider);

@@ -102,7 +102,6 @@ TEST_F(Window, Legend_PinClicked_HidesIt) {
 }
 
 TEST_F(Window, LegendOfFiveCurves_HasNoScrollbar) {
-  session().set_view(&View::panel, Panel::kSlopes);
   for (const char* sigma : {"0.2", "0.3", "0.4"}) {
     session().set({{"surface.sigma", TomlText{sigma}}, {"surface.material", "carbon"}});
     settle();
@@ -122,6 +121,7 @@ TEST_F(Window, LegendOfFiveCurves_HasNoScrollbar) {
 }
 
 TEST_F(Window, CurveAndMapClicked_MoveTheCursor_AndTheCurveFollowsTheMap) {
+  show_map();
   const double before = session().theta_deg();
   click(app_->curve_view().area().at(0.5F, 0.5F));
   EXPECT_NE(session().theta_deg(), before);
@@ -201,7 +201,6 @@ TEST_F(Window, EventsBetweenTwoFrames_AllCount) {
 }
 
 TEST_F(Window, TypedNumber_IsTakenWhereverTypingEnds_AndStaysWhereItIsRefused) {
-  session().set_view(&View::panel, Panel::kSlopes);  // without a map, frames are faster
   const std::function<void()> ends[] = {[&] { keys("Return"); }, [&] { keys("Tab"); },
                                         [&] { click(app_->curve_view().area().at(0.5F, 0.5F)); },
                                         [&] {

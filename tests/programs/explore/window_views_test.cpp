@@ -253,6 +253,7 @@ TEST_F(Window, Choices_ThatRemoveRows_MoveNoControl) {
 }
 
 TEST_F(Window, Panels_ClickedOneByOne_AreDrawn_AndTheMapIsComputedWhileItIsShown) {
+  show_map();
   const Area map = app_->control_area("panel map");
   const auto below = [&] {
     return display_.pixels(static_cast<std::size_t>(map.min.x), static_cast<std::size_t>(map.max.y) + 8, 300, 200);
@@ -280,7 +281,6 @@ TEST_F(Window, Panels_ClickedOneByOne_AreDrawn_AndTheMapIsComputedWhileItIsShown
 
 TEST_F(Window, Films_AreAddedOutside_ChangedAndRemoved) {
   const auto films = [&] { return scene_films(session().scene()); };
-  session().set_view(&View::panel, Panel::kSlopes);  // a view without a map, because maps of coated surfaces take long
   session().set({coating_setting({{{"material", "PMMA acrylic"}, {"thickness_um", 2.0}}})});
   settle();
   click_control("add film");
@@ -315,7 +315,6 @@ TEST_F(Window, Films_AreAddedOutside_ChangedAndRemoved) {
 }
 
 TEST_F(Window, SceneWithAWind_HasItsSliderInsteadOfSigma_AndADirectionalOneAnAzimuth) {
-  session().set_view(&View::panel, Panel::kSlopes);  // without a map, frames are faster
   session().set({{"surface.distribution", "gaussian"}, {"surface.wind_m_s", 8.0}});
   settle();
   EXPECT_THROW(app_->control_area("surface.sigma"), std::out_of_range);

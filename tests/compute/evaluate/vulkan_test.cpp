@@ -235,8 +235,7 @@ TEST(VulkanEvaluator, SmallRequestAfterALargeOne_HasTheBitsOfAFreshEvaluator) {
 }
 
 TEST(TilePace, TimesOfTiles_LeadToTheWantedTimeInSteps) {
-  const VulkanOptions options{.first_tile_invocations = 1'000, .tile_s = 0.1};
-  vulkan::TilePace pace(options, 50'000);
+  vulkan::TilePace pace(0.1, 1'000, 50'000);
   EXPECT_EQ(pace.invocations(), 1'000U);
   pace.note(1'000, 0.001);  // 100,000 invocations would take the wanted time
   EXPECT_EQ(pace.invocations(), 4'000U);
@@ -250,7 +249,7 @@ TEST(TilePace, TimesOfTiles_LeadToTheWantedTimeInSteps) {
   EXPECT_EQ(pace.invocations(), 50'000U);
   for (int i = 0; i < 9; ++i) pace.note(pace.invocations(), kLongTime);
   EXPECT_EQ(pace.invocations(), 16U);
-  EXPECT_EQ(vulkan::TilePace(options, 7).invocations(), 7U);
+  EXPECT_EQ(vulkan::TilePace(0.1, 1'000, 7).invocations(), 7U);
 }
 
 TEST(VulkanEvaluator, CancelledRequest_LeavesTheEvaluatorUsable) {

@@ -23,10 +23,10 @@ class RowRun final : public TiledRun {
         rows_(tiles_.rows),
         thetas_(data_.thetas.size()),
         indices_(request.optics.size()),
-        table_pace_(options, tiles_.sizes.shapes) {
+        table_pace_(options.tile_s, options.first_tile_invocations, tiles_.sizes.shapes) {
     const std::size_t invocations = tiles_.sizes.invocations;
     const std::size_t shapes = tiles_.sizes.shapes;
-    pace_ = TilePace(options, tiles_.sizes.invocations);
+    pace_ = TilePace(options.tile_s, options.first_tile_invocations, tiles_.sizes.invocations);
     add_tile_inputs<kernel::ThetaNode>(DOLP_BINDING_THETAS, std::min(invocations, data_.thetas.size()));
     add_shared_input(DOLP_BINDING_SHAPES, shapes * packing_.node_bytes<kernel::ShapeNode>());
     add_tile_inputs<kernel::IndexNode>(DOLP_BINDING_INDICES, std::min(invocations, data_.indices.size()));

@@ -9,6 +9,9 @@
 namespace dolp::vulkan {
 namespace {
 
+// A piece of a kernel row, which is an invocation of the kernel for rows, has at least as many slopes.
+constexpr std::uint32_t kSlopesPerPiece = 16;
+
 class SlopeRun final : public TiledRun {
  public:
   SlopeRun(const KernelContext& context, const MomentsRequest& request, const VulkanOptions& options)
@@ -19,7 +22,7 @@ class SlopeRun final : public TiledRun {
         thetas_(data_.thetas.size()),
         indices_(request.optics.size()) {
     const std::size_t slopes = tiles_.slopes;
-    pace_ = TilePace(options, tiles_.slopes);
+    pace_ = TilePace(options.tile_s, kSlopesPerPiece * options.first_tile_invocations, tiles_.slopes);
     add_tile_inputs<kernel::ThetaNode>(DOLP_BINDING_THETAS, std::min(slopes, data_.thetas.size()));
     add_tile_inputs<kernel::IndexNode>(DOLP_BINDING_INDICES, std::min(slopes, data_.indices.size()));
     add_tile_inputs<kernel::SlopeNode>(DOLP_BINDING_SLOPES, slopes);

@@ -63,7 +63,9 @@ class TiledRun {
   };
 
   TiledRun(const KernelContext& context, const VulkanOptions& options, Precision precision)
-      : context_(context), packing_(precision == Precision::kDouble), pace_(options, options.max_tile_invocations) {}
+      : context_(context),
+        packing_(precision == Precision::kDouble),
+        pace_(options.tile_s, options.first_tile_invocations, options.max_tile_invocations) {}
 
   virtual std::vector<Moments> compute_tiles(const Progress& progress) = 0;
 

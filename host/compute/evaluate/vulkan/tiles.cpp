@@ -74,9 +74,6 @@ Packing make_packing(Precision precision) { return Packing(precision == Precisio
 
 }  // namespace
 
-TilePace::TilePace(const VulkanOptions& options, std::uint32_t most)
-    : tile_s_(options.tile_s), most_(most), invocations_(std::min(options.first_tile_invocations, most)) {}
-
 void TilePace::note(std::size_t invocations, double seconds) {
   if (2 * invocations < invocations_) return;  // the rest of some work, too small to occupy the device
   const double size = invocations_;

@@ -40,8 +40,9 @@ inline constexpr std::uint32_t kLockstep = 16;
 /// tile is small, because the cost of an invocation depends on the request and on the device.
 class TilePace {
  public:
-  /// `most`: largest number of invocations
-  TilePace(const VulkanOptions& options, std::uint32_t most);
+  /// `tile_s`: wanted time of a tile; `first`, `most`: invocations of the first tile, and of the largest
+  TilePace(double tile_s, std::uint32_t first, std::uint32_t most)
+      : tile_s_(tile_s), most_(most), invocations_(first < most ? first : most) {}
   std::uint32_t invocations() const { return invocations_; }
   void note(std::size_t invocations, double seconds);
 

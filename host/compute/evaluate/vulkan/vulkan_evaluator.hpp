@@ -18,7 +18,7 @@ struct VulkanOptions {
   ValidationMode validation = ValidationMode::kFromEnvironment;
   // The following options do not change results.
   std::uint32_t max_tile_invocations = 65'536;   ///< limit per dispatch
-  std::uint32_t first_tile_invocations = 1'024;  ///< in the first dispatch of a request, whose time is not known
+  std::uint32_t first_tile_invocations = 1'024;  ///< of the first dispatch for kernel rows, whose time is not known
   double tile_s = 0.075;  ///< wanted duration of a dispatch; cancelling waits for the end of up to two dispatches
   std::uint32_t max_block_shapes = 4'096;  ///< largest number of shapes with masking tables on the device
   bool staged_uploads = false;             ///< uses staging buffers even if the host can map the memory of the device

@@ -84,6 +84,7 @@ std::vector<Control> controls_without_films() {
   constexpr const char* kNeedsIndex = "n and k instead of measured reflectances";
   constexpr const char* kNeedsAir = "the sky clear-sky or overcast";
   constexpr const char* kNeedsBistatic = "the mode bistatic";
+  constexpr const char* kXAxis = "from the viewer's direction to the surface's x axis (upwind, or along the brush)";
   constexpr const char* kAir = "Idso (1981): radiance of the sky from vapour and temperature of the air at the ground";
   return {
       {key("surface.distribution"), "distribution", "D(α): eq. (8) cauchy, eq. (1) gaussian"},
@@ -101,12 +102,7 @@ std::vector<Control> controls_without_films() {
        "the masking none or v-cavity, and no wind",
        "surface.sigma"},
       {key("surface.wind_m_s"), "U", "m² = 0.003 + 0.00512 U (Cox and Munk 1954), D(α) of eq. (1)", {0.0, 30.0}},
-      {key("surface.wind_model"),
-       "wind",
-       "one slope width, or σ² = 0.00316 U upwind, 0.003 + 0.00192 U across",
-       {},
-       has_wind,
-       "a wind"},
+      {key("surface.wind_model"), "wind", "σ² = 0.00316 U upwind, 0.003 + 0.00192 U across", {}, has_wind, "a wind"},
       {key("surface.q"),
        "q",
        "D = (q−1)/(π m² cos⁴α) · (1 + tan²α/m²)^(−q), eq. (8)",
@@ -149,13 +145,7 @@ std::vector<Control> controls_without_films() {
        {0.0, 360.0},
        is_bistatic,
        kNeedsBistatic},
-      {key(kSurfaceAzimuth),
-       "φ_w",
-       "from the viewer's direction to the surface's x axis (upwind, or along the brush), manual section 12; at φ_w + "
-       "180° the surface is the same",
-       {0.0, 180.0},
-       has_cross_slopes,
-       "slopes that differ along and across"},
+      {key(kSurfaceAzimuth), "φ_w", kXAxis, {0.0, 180.0}, has_cross_slopes, "slopes that differ along and across"},
       {key("accuracy.tolerance"), "tolerance", "|δDOLP|, |δρ|/ρ_I ≤ tolerance", {1e-9, 1e-2, true}},
       {key("accuracy.precision"), "precision", "arithmetic of the device"},
   };

@@ -189,6 +189,7 @@ SceneEntries point_entries(const SceneValues& scene, const Points& points) {
   const bool has_shapes =
       points[Axis::kSigma] || points[Axis::kQ] || points[Axis::kSigmaCross] || points[Axis::kSurfaceAzimuth];
   if (points[Axis::kTheta] && !has_shapes && !has_views && !has_own_index && !has_variants) {
+    check_cross_slopes(scene, scene.cross_slopes().shape(surface.sigma, surface.q), scene.path_name);
     return SceneEntries::grid(make_axes(*points[Axis::kTheta], {surface.sigma}, {surface.q}), {}, scene.cross_slopes());
   }
   if (points[Axis::kWavelength] && points.size() > 0) check_wavelengths(scene, points);

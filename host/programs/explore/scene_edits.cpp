@@ -20,7 +20,8 @@ bool is_cauchy(const Scene& s) { return s.word("surface.distribution") == "cauch
 bool has_no_wind(const Scene& s) { return !has_wind(s); }
 bool may_have_cross(const Scene& s) {
   const auto masking = s.word("surface.masking");
-  return has_no_wind(s) && (masking == "none" || masking == "v-cavity");
+  const bool has_smith = masking == "smith" && s.word("emission.model") == "direct";
+  return has_no_wind(s) && (masking == "none" || masking == "v-cavity" || has_smith);
 }
 bool is_diffuse(const Scene& s) { return s.number("surface.diffuse") > 0.0; }
 bool has_air(const Scene& s) {
@@ -99,7 +100,7 @@ std::vector<Control> controls_without_films() {
        "the slope width along the surface's y axis, manual section 12; at most 3 times more or less than σ",
        {0.01, 2.0, true},
        may_have_cross,
-       "the masking none or v-cavity, and no wind",
+       "the masking none or v-cavity (or smith with the emissivity direct), and no wind",
        "surface.sigma"},
       {key("surface.wind_m_s"), "U", "m² = 0.003 + 0.00512 U (Cox and Munk 1954), D(α) of eq. (1)", {0.0, 30.0}},
       {key("surface.wind_model"), "wind", "σ² = 0.00316 U upwind, 0.003 + 0.00192 U across", {}, has_wind, "a wind"},

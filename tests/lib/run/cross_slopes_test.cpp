@@ -156,6 +156,9 @@ TEST(CrossSlopes, ImpossibleScenes_AreRefusedWithTheirKeys) {
   EXPECT_TRUE(contains(refusal(smith_direct({{"surroundings.temperature_K", 250.0}})), "[surroundings]"));
   EXPECT_TRUE(contains(refusal({{"surface.sigma_cross", 2.0}}), "quotient of the widths"));
   EXPECT_TRUE(contains(refusal({{"surface.sigma", 0.0}}), "quotient of the widths"));
+  Points points;
+  points[Axis::kTheta] = {10.0};
+  EXPECT_TRUE(contains(error_text([&] { point_entries(brushed({{"surface.sigma", 0.0}}), points); }), "quotient"));
   EXPECT_TRUE(contains(refusal({{"surface.wind_model", "directional"}}), "surface.wind_m_s"));
 }
 

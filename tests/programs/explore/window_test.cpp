@@ -40,7 +40,7 @@ TEST_F(Window, Slider_Dragged_PlottedValuesChangeAndAgreeWithEval_AndTheDragIsTa
     const double error = after[i][Quantity::kErrorEstimate] + truth.at("error_estimate")[i];
     EXPECT_NEAR(after[i][Quantity::kDolp], truth.at("dolp")[i], error) << i;
     EXPECT_NEAR(after[i][Quantity::kStokesQ], truth.at("stokes_q")[i], error * after[i][Quantity::kStokesI]) << i;
-    EXPECT_LE(error, 2.0 * session().scene().number("accuracy.tolerance")) << i;
+    EXPECT_LE(error, 2.0 * session().scene().number("accuracy.tolerance").value()) << i;
   }
   EXPECT_GT(changed, after.size() / 2);
   const auto dragged = number("surface.sigma");

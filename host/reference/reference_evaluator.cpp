@@ -65,6 +65,9 @@ void check(const MomentsRequest& request) {
   if (request.wants_direct && !has_view_masking) {
     throw InputError("reference: direct emission needs v-cavity or smith masking");
   }
+  if (request.has_only_direct() && !request.wants_direct) {
+    throw InputError("reference: smith masking with a sigma_cross other than sigma has direct emission only");
+  }
   for (const double theta_deg : request.theta_deg) check_zenith(theta_deg);
   for (std::size_t i = 0; i < request.size(); ++i) check_shape(request.distribution, request.masking, request[i].shape);
   for (const FacetOptics& index : request.optics) check_index(index);

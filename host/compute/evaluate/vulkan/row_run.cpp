@@ -31,14 +31,14 @@ class RowRun final : public TiledRun {
     add_shared_input(DOLP_BINDING_SHAPES, shapes * packing_.node_bytes<kernel::ShapeNode>());
     add_tile_inputs<kernel::IndexNode>(DOLP_BINDING_INDICES, std::min(invocations, data_.indices.size()));
     add_tile_input(DOLP_BINDING_TASKS, invocations * sizeof(TaskWords));
-    add_masking_tables(shapes);
+    add_masking_tables(data_.needs_masking_table() ? shapes : 1);
     add_results(DOLP_BINDING_MOMENTS, result_bytes(invocations), data_, moments_variant(data_, rows_.width));
   }
 
   void create_pipelines() override {
     const KernelVariant tables = masking_table_variant(data_);
     std::future<void> table_pipeline;
-    if (!context_.kernels.has(tables)) {
+    if (data_.needs_masking_table() && !context_.kernels.has(tables)) {
       table_pipeline = std::async(std::launch::async, [&] { context_.kernels.pipeline(tables); });
     }
     TiledRun::create_pipelines();
@@ -77,10 +77,12 @@ class RowRun final : public TiledRun {
     return invocations * rows_.width * packing_.output_bytes<kernel::MomentsNode>(column_sums(data_));
   }
 
-  /// Uploads the shapes of a block and computes their masking tables.
+  /// Uploads the shapes of a block and computes their masking tables, if the masking needs them.
   void begin_block(const Block& block) {
     CommandStream& stream = context_.stream;
-    for (std::uint32_t first = 0; first < block.shape_count;) {
+    const std::uint32_t tables = data_.needs_masking_table() ? block.shape_count : 0;
+    std::uint32_t first = 0;
+    do {
       begin_tile();
       if (first == 0) {
         upload(DOLP_BINDING_SHAPES, block.shape_count,
@@ -88,14 +90,16 @@ class RowRun final : public TiledRun {
         if (cost_.dispatches == 0) upload_rule(data_);
       }
       stream.barrier(Barrier::kUploadToKernel);
-      const std::uint32_t count = std::min(table_pace_.invocations(), block.shape_count - first);
-      stream.dispatch(context_.kernels, context_.kernels.pipeline(masking_table_variant(data_)), first, count,
-                      data_.rule_order);
-      stream.barrier(Barrier::kKernelToKernel);
-      ++cost_.dispatches;
+      const std::uint32_t count = std::min(table_pace_.invocations(), tables - first);
+      if (count > 0) {
+        stream.dispatch(context_.kernels, context_.kernels.pipeline(masking_table_variant(data_)), first, count,
+                        data_.rule_order);
+        stream.barrier(Barrier::kKernelToKernel);
+        ++cost_.dispatches;
+      }
       submit({.pace = &table_pace_, .invocations = count});
       first += count;
-    }
+    } while (first < tables);
   }
 
   void upload_tile(const Block& block, std::span<const RowPiece> pieces) {

@@ -124,7 +124,7 @@ DispatchCount RowTiles::count() const {
   count.rows = rows.rows.size();
   for (const Block& block : blocks()) {
     count.dispatches += tiles_in(row_pieces(rows, data, block.first_row, block.row_count).size(), sizes.invocations);
-    ++count.dispatches;  // for the masking tables
+    if (data.needs_masking_table()) ++count.dispatches;
   }
   count.device_bytes =
       kMostInFlight * sizes.invocations * costs.invocation_bytes + sizes.shapes * costs.shape_bytes + costs.rule_bytes;

@@ -77,8 +77,8 @@ struct MomentsRequest {
   std::size_t shapes() const { return sigma.size() * q.size() * sigma_cross.size() * azimuth_deg.size(); }
   SlopeShape shape(std::size_t number) const;  ///< number `number` of a grid's shapes()
   bool has_elliptic_shapes() const;
-  /// Elliptic slopes with smith masking: only the direct emission is computed; the other moments are those of a surface
-  /// that reflects nothing.
+  /// Elliptic slopes with smith masking: only the direct emission is computed. The other moments have the values of a
+  /// surface that reflects nothing.
   bool has_only_direct() const { return masking == Masking::kSmith && has_elliptic_shapes(); }
   MomentsPoint operator[](std::size_t entry) const;
   /// This request for only some directions of a grid, given by their positions in `theta_deg`.

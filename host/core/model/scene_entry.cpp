@@ -147,13 +147,13 @@ SceneEntry SceneEntries::operator[](std::size_t entry) const {
   result.theta_deg = theta_deg()[at[Axis::kTheta]];
   result.shape = slopes_.shape(sigma()[at[Axis::kSigma]], q()[at[Axis::kQ]]);
   if (has_own_index()) result.index = index_at(at);
-  const auto find = [&](Axis axis) {
-    return axes_[axis].empty() ? std::nullopt : std::optional(axes_[axis][at[axis]]);
+  const auto take = [&](Axis axis, auto& member) {
+    if (!axes_[axis].empty()) member = axes_[axis][at[axis]];
   };
-  if (const auto cross = find(Axis::kSigmaCross)) result.shape.sigma_cross = *cross;
-  if (const auto azimuth = find(Axis::kSurfaceAzimuth)) result.shape.azimuth_deg = *azimuth;
-  result.view_zenith_deg = find(Axis::kViewZenith);
-  result.relative_azimuth_deg = find(Axis::kRelativeAzimuth);
+  take(Axis::kSigmaCross, result.shape.sigma_cross);
+  take(Axis::kSurfaceAzimuth, result.shape.azimuth_deg);
+  take(Axis::kViewZenith, result.view_zenith_deg);
+  take(Axis::kRelativeAzimuth, result.relative_azimuth_deg);
   result.variant = static_cast<std::uint32_t>(variant_at(at));
   return result;
 }

@@ -252,17 +252,15 @@ std::vector<SceneKey> surface_keys() {
                  "wind over a sea; sets sigma by 2 sigma^2 = 0.003 + 0.00512 wind; only with distribution gaussian",
                  [](auto& s) { return &s.surface.wind_m_s; }),
           set_wind),
-      with_set(
-          choice("surface.wind_model", Surface().wind_model,
-                 "isotropic: the wind gives one slope width; directional: sigma^2 = 0.00316 wind along it, and "
-                 "0.003 + 0.00192 wind across (masking none, v-cavity, or smith with emission.model = direct alone)",
-                 [](auto& s) { return &s.surface.wind_model; }),
-          set_wind_model),
+      with_set(choice("surface.wind_model", Surface().wind_model,
+                      "isotropic: the wind gives one slope width; directional: sigma^2 = 0.00316 wind along it, and "
+                      "0.003 + 0.00192 wind across (masking none or v-cavity; smith only with emission.model = direct)",
+                      [](auto& s) { return &s.surface.wind_model; }),
+               set_wind_model),
       number(
           "surface.sigma_cross", "1", kSigmaCrossRange, "surface.sigma",
-          "slope width across, along the surface's y axis, as of brushed metal; sigma is that along its x axis "
-          "(masking "
-          "none, v-cavity, or smith with emission.model = direct alone)",
+          "slope width across, along the surface's y axis, as of brushed metal; sigma is the width along x "
+          "(masking none or v-cavity; smith only with emission.model = direct)",
           [](auto& s) { return &s.surface.sigma_cross; },
           [](const SceneValues& s) { return s.surface.sigma_cross > 0.0; }),
       number("surface.q", "1", kQRange, "2", "tail exponent q of the cauchy distribution; 2 is GGX",

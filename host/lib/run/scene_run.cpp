@@ -453,23 +453,22 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
   const EffectPlan plan = with_spectra(given, scene, entries);
   const std::size_t samples = plan.rules->most_samples(entries);
   const std::size_t whole = entries.is_grid() ? grid_size(entries.whole()) : entries.size();
+  const bool has_moments = entries.is_grid() && plan.kept.moments;
   std::vector<std::size_t> checked;
-  if (entries.is_grid() && plan.kept.moments)
-    checked = checked_positions(whole, checked_count(whole * samples), scene_seed(scene));
+  if (has_moments) checked = checked_positions(whole, checked_count(whole * samples), scene_seed(scene));
   RunSummary summary = sink.summary_of_done();
   const auto start = std::chrono::steady_clock::now();
   const std::shared_ptr<const ResponseBasis> basis = evaluator ? run_basis(scene, entries, plan) : nullptr;
   summary.response_basis_s += seconds_since(start);
-  const bool is_judged = entries.is_grid() && plan.kept.moments && scene.surface.scattering == Scattering::kSingle &&
-                         !scene.surface.has_cross_slopes();
+  const Surface& surface = scene.surface;
+  const bool is_judged = has_moments && surface.scattering == Scattering::kSingle && !surface.has_cross_slopes();
   const auto grooves = is_judged ? std::make_shared<const GrooveTable>(scene, entries, *plan.rules) : nullptr;
   const auto with_evaluation = [&] {
     RunSummary all = summary;
     if (evaluator) all.work += evaluator->report();
     return all;
   };
-  std::size_t left = sink.parts_done();
-  std::size_t before = 0;
+  std::size_t left = sink.parts_done(), before = 0;
   for (const SceneEntries& part : run_parts(entries, samples)) {
     const Progress part_progress = [&](std::size_t done, std::size_t total) {
       return !progress || progress(before + part.size() * done / total, entries.size());

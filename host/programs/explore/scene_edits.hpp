@@ -22,7 +22,7 @@ struct Control {
   /// True if the scene uses the key. Null: every scene that has the key uses it.
   bool (*is_used)(const Scene& scene) = nullptr;
   const char* needs = "";  ///< what a scene needs to use the key, if `is_used` is not null
-  /// What a scene uses that omits the number: a value, or the key of another number. Empty: it does not use the number.
+  /// The value, or the key of another number, that replaces an omitted number. Empty: then no number is used.
   std::string standard = {};
 
   /// The scene's number; empty for words, and if the scene does not use the key.

@@ -54,7 +54,7 @@ class TiledRun {
   /// Uses the results of a tile, which are in scratch_.
   using UseResults = std::function<void()>;
 
-  /// What happens after the end of a submission.
+  /// A submission in flight, and the work that follows its end.
   struct Pending {
     TilePace* pace = nullptr;  ///< learns the time of the submission
     std::size_t invocations = 0;

@@ -59,6 +59,14 @@ CLI::App* add_fit(CLI::App& app, StudyOptions& options) {
   return study;
 }
 
+CLI::App* add_kernels(CLI::App& app, StudyOptions& options) {
+  CLI::App* study =
+      app.add_subcommand("kernels", "registers and spilled values of the kernels, by the driver's compiler");
+  add_common(*study, options);
+  study->add_option("--case", options.cases, "only this precision: float, double")->allow_extra_args(false);
+  return study;
+}
+
 int parse_and_run(int argc, char** argv) {
   CLI::App app("dolp-bench: dolp against other ways to compute the same moments, and against itself", "dolp-bench");
   app.set_version_flag("--version", "dolp-bench " DOLP_VERSION);
@@ -71,6 +79,8 @@ int parse_and_run(int argc, char** argv) {
   const CLI::App* scale_study = add_scale(app, scale);
   StudyOptions fit = accuracy;
   const CLI::App* fit_study = add_fit(app, fit);
+  StudyOptions kernels = accuracy;
+  const CLI::App* kernels_study = add_kernels(app, kernels);
   const CLI::App* throughput_study = add_throughput(app, throughput);
   try {
     app.parse(argc, argv);
@@ -84,6 +94,8 @@ int parse_and_run(int argc, char** argv) {
     run_scale(scale);
   } else if (fit_study->parsed()) {
     run_fit_study(fit);
+  } else if (kernels_study->parsed()) {
+    run_kernels(kernels);
   } else {
     run_accuracy(accuracy);
   }

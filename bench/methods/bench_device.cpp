@@ -13,6 +13,8 @@ bool wants_validation() {
   return value != nullptr && std::string_view(value) == "1";
 }
 
+}  // namespace
+
 VkPhysicalDevice chosen_device(const vulkan::Instance& instance, const std::string& choice) {
   const std::vector<VkPhysicalDevice> all = instance.physical_devices();
   std::vector<dolp::Device> descriptions;
@@ -20,12 +22,10 @@ VkPhysicalDevice chosen_device(const vulkan::Instance& instance, const std::stri
   return all[choose_device(descriptions, choice, false)];
 }
 
-}  // namespace
-
 BenchDevice::BenchDevice(const std::string& choice)
     : instance(wants_validation() ? &log : nullptr),
       physical(chosen_device(instance, choice)),
-      device(physical, false),
+      device(physical, {}),
       stream(device) {}
 
 std::string BenchDevice::where() const {

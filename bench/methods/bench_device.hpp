@@ -9,10 +9,13 @@
 
 namespace dolp::bench {
 
+/// `choice`: position of the device in the list, or part of its name; empty means the default. Errors: DeviceError.
+VkPhysicalDevice chosen_device(const vulkan::Instance& instance, const std::string& choice);
+
 /// A Vulkan device with its instance and command stream. If the environment variable DOLP_VALIDATION is 1, the
 /// validation layer is on.
 struct BenchDevice {
-  /// `choice`: position of the device in the list, or part of its name; empty means the default. Errors: DeviceError.
+  /// `choice`: as in chosen_device(). Errors: DeviceError.
   explicit BenchDevice(const std::string& choice);
   BenchDevice(const BenchDevice&) = delete;
   BenchDevice& operator=(const BenchDevice&) = delete;

@@ -50,4 +50,10 @@ void run_scale(const StudyOptions& options);
 /// `entries` is the number of random data sets. Errors: DeviceError without a usable device; IoError; Cancelled.
 void run_fit_study(const StudyOptions& options);
 
+/// `dolp-bench kernels`: registers, spilled values and instructions of kernels of all kinds, as the driver's compiler
+/// reports them through VK_KHR_pipeline_executable_properties. Nothing runs on the device.
+///
+/// Errors: DeviceError without a device, or if its driver reports nothing; IoError; Cancelled.
+void run_kernels(const StudyOptions& options);
+
 }  // namespace dolp::bench

@@ -1,14 +1,4 @@
-struct Slope {
-  real t;
-  real digits;        // digits required of the sum over the azimuths
-  MaskingTerms masking_in;
-  bool has_split_line;
-  int most_azimuths;
-  bool is_coarse;
-  int order;          // first azimuthal order, SlopeNode::order
-  SkyPlace sky;
-  real weight[DOLP_WIDTH];  // factor of this slope in AzimuthSums::columns, for each entry of the row (row.glsl)
-};
+// Sums over the azimuths at one slope: a Gauss rule on each arc of azimuths (arcs.glsl).
 
 // Number of azimuthal orders that an invocation computes. Orders are the entries of a row.
 #if DOLP_ORDERS == 1
@@ -87,6 +77,16 @@ OrderFactors row_factors(int first, Azimuth at) {
   return factors;
 }
 
+// Adds light that leaves a groove, `light` = (r_i, r_q) and `u`, to the columns with these values.
+AzimuthSums add_groove_columns(AzimuthSums sums, OrderFactors weights, ColumnValues values, real2 light, real u) {
+  for (int g = 0; g < DOLP_ORDER_WIDTH; ++g) {
+    real2 weight = weights.of[g];
+    sums.columns[g] = add_columns(sums.columns[g], values, weight.x * light.x, weight.x * light.y);
+    if (kHasOrders) sums.columns[g] = add_u_columns(sums.columns[g], values, weight.y * u);
+  }
+  return sums;
+}
+
 AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope, Arc arc, int zone,
                      bool leaves, int order, Columns columns[DOLP_WIDTH]) {
   AzimuthSums sums = no_azimuths(columns);
@@ -96,21 +96,14 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, S
     OrderFactors factors = row_factors(slope.order, at);
     if (kIsMultiple) {
       GrooveLight light = reflected_in_groove(rule, theta, index, slope.t, at.x, at.sin_phi);
-      ColumnValues before = sky_at(slope.sky, light.cos_before);
-      ColumnValues last = sky_at(slope.sky, light.cos_last);
+      OrderFactors weights;
+      for (int g = 0; g < DOLP_WIDTH; ++g) weights.of[g] = at.weight * factors.of[g];
       for (int g = 0; g < DOLP_ORDER_WIDTH; ++g) {
-        real turned = at.weight * factors.of[g].x;
-        sums.member[g] += turned * light.moments;
-        real weight = slope.weight[g] * turned;
-        sums.columns[g] = add_columns(sums.columns[g], before, weight * light.before.x, weight * light.before.y);
-        sums.columns[g] = add_columns(sums.columns[g], last, weight * light.last.x, weight * light.last.y);
-        if (kHasOrders) {
-          real tilted = at.weight * factors.of[g].y;
-          sums.u[g].x += tilted * (light.before_u + light.last_u);
-          sums.columns[g] = add_u_columns(sums.columns[g], before, slope.weight[g] * tilted * light.before_u);
-          sums.columns[g] = add_u_columns(sums.columns[g], last, slope.weight[g] * tilted * light.last_u);
-        }
+        sums.member[g] += weights.of[g].x * light.moments;
+        if (kHasOrders) sums.u[g].x += weights.of[g].y * (light.before_u + light.last_u);
       }
+      sums = add_groove_columns(sums, weights, sky_at(slope.sky, light.cos_before), light.before, light.before_u);
+      sums = add_groove_columns(sums, weights, sky_at(slope.sky, light.cos_last), light.last, light.last_u);
     } else {
       Facet f = facet(theta, index, slope.t, at.x, at.sin_phi);
       MaskingTerms masking_out = masking_of_ray(row, f.cos_r, sine_of_ray(theta, row, f, slope.t, at), slope.t, zone);
@@ -177,15 +170,14 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
       // A loop of one turn is faster than an `if`: in lockstep, devices run both branches of an `if`, but skip a loop.
       for (bool run_once = is_before(start, stop); run_once; run_once = false) {
         bool is_first = !is_before(from, start);
-        Arc arc = masked_arc(rule, theta, row.shape[0], slope.has_split_line, slope.t, slope.digits,
-                             make_arc(start, stop), zone, is_first);
+        Arc arc = masked_arc(rule, row.shape[0], slope, make_arc(start, stop), zone, is_first);
         if (kTotalReflection) {
           bool is_last = !is_before(stop, to);
           bool is_beside = is_second ? is_first : is_last;
           is_beside = is_critical && is_beside;
-          arc = critical_arc(theta, index, slope.t, slope.digits, arc, !is_second, is_beside);
+          arc = critical_arc(theta, index, slope, arc, !is_second, is_beside);
         }
-        real nodes = arc_nodes(rule, theta, row.shape[0], index, slope.has_split_line, slope.t, slope.digits, arc, zone);
+        real nodes = arc_nodes(rule, theta, row.shape[0], index, slope, arc, zone);
         // The nodes that resolve cos(2 k phi) are in both rules. Without them the coarser rule would say nothing.
         real highest = real(slope.order + DOLP_ORDER_WIDTH - 1);
         int resolving = kHasOrders ? int(ceil(real(DOLP_NODES_OF_ORDER) * highest * arc.span)) : 0;
@@ -225,6 +217,7 @@ real below_horizon(ThetaNode theta, real t, int order, real2 horizon) {
 AzimuthSums slope_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope,
                        Columns columns[DOLP_WIDTH]) {
   SplitLines lines = split_lines(rule, theta, index, slope.t, slope.has_split_line, slope.digits);
+  slope.singular = singularities_at(theta, row.shape[0], index, slope);
   AzimuthSums sums = azimuth_sums(rule, theta, row, index, slope, lines, columns);
   if (!kIsMultiple) {
     sums.behind = real(2.0) * theta.s * slope.t * lines.horizon.x * lines.horizon.y;

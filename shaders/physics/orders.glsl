@@ -23,12 +23,6 @@ real gap_beside_unit(real a, real b) {
   return off_axis + real(2.0) * (max(a - real(1.0), real(0.0)) + max(-a, real(0.0)));
 }
 
-// The position of a singularity of the integrand, in the upper half plane of the integrand's variable.
-struct Singularity {
-  real re;
-  real im;
-};
-
 real arc_cosine(real u) {
   real angle = real(2.0) * atan_unit(sqrt((real(1.0) - abs(u)) / (real(1.0) + abs(u))));
   return choose(u < real(0.0), kPi - angle, angle);
@@ -39,10 +33,11 @@ Singularity singularity_at(real a, real b) {
   real to_minus_1 = sqrt((a + real(1.0)) * (a + real(1.0)) + b * b);
   real to_1 = sqrt((a - real(1.0)) * (a - real(1.0)) + b * b);
   real gap = gap_beside_unit(real(0.5) * (a + real(1.0)), real(0.5) * b);
-  return Singularity(arc_cosine(clamp(real(0.5) * (to_minus_1 - to_1), real(-1.0), real(1.0))), acosh_above_1(gap));
+  return Singularity(arc_cosine(clamp(real(0.5) * (to_minus_1 - to_1), real(-1.0), real(1.0))), acosh_above_1(gap), gap);
 }
 
 real nodes_per_digit(real mu) { return kHalfLn10 / max(mu, real(1e-3)); }
+real nodes_per_digit_at(real gap) { return nodes_per_digit(acosh_above_1(gap)); }
 
 int order_between(real nodes, int limit) { return int(clamp(floor(nodes + real(0.5)), real(1.0), real(limit))); }
 
@@ -98,7 +93,7 @@ real piece_cost(Piece piece, real re, real im) {
   bool starts_at_b = piece.root_at_b && !starts_at_a;
   bool has_root = piece.root_at_a || piece.root_at_b;
   real2 y = choose(has_root, sqrt_upper(choose(starts_at_b, real(1.0) - z.x, z.x), z.y), z);
-  return nodes_per_digit(acosh_above_1(gap_beside_unit(y.x, y.y)));
+  return nodes_per_digit_at(gap_beside_unit(y.x, y.y));
 }
 
 // Number of nodes for a term of the integrand like exp(-1/(m x)^2), where x (0 to 1) is the distance from an end of the
@@ -163,7 +158,7 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
   cost = max(cost, choose(piece.root_after > piece.start + piece.extent, after, real(0.0)));
   // The map y = v^2 (3 - 2v) removes the roots at v = 0 and 1. At v = 3/2 (y = 0) and v = -1/2 (y = 1) roots remain.
   bool has_two_roots = piece.root_at_a && piece.root_at_b;
-  cost = max(cost, choose(has_two_roots, nodes_per_digit(acosh_above_1(real(1.0))), real(0.0)));
+  cost = max(cost, choose(has_two_roots, nodes_per_digit_at(real(1.0)), real(0.0)));
   real roots = (piece.root_at_a ? real(1.0) : real(0.0)) + (piece.root_at_b ? real(1.0) : real(0.0));
   // A Gaussian falls mostly in the last unit of X (struct Piece). On a long piece this is only the share 1 / extent.
   real steepest = (kDistribution == DOLP_GAUSSIAN) ? max(piece.extent, real(1.0)) : real(1.0);
@@ -184,90 +179,46 @@ real slope_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode inde
 
 // ---- Azimuth -------------------------------------------------------------------------------------------------------
 
-// Nodes per digit on an arc if the integrand is singular at the azimuth `at`. Let z = (azimuth - origin) / span. A rule
-// of section `half` (quadrature.glsl) converges like a Gauss rule in y = z^2, and of section `cluster`, in y = sqrt(z).
-real arc_cost(Arc arc, Singularity at) {
+// How far the singularity `at` is from an arc, as the gap with cosh(mu) = 1 + gap (head of this file). Let z = (azimuth -
+// origin) / span. A rule of section `half` (quadrature.glsl) converges like a Gauss rule in y = z^2, and of section
+// `cluster`, in y = sqrt(z).
+real arc_gap(Arc arc, Singularity at) {
   real re = abs(at.re - arc.origin) / arc.span;
   real im = at.im / arc.span;
   re = choose((at.re - arc.origin) * arc.extent < real(0.0), -re, re);  // < 0 beyond arc.origin, outside the arc
   real2 y = choose(arc.section == kSectionHalf, real2(re * re - im * im, real(2.0) * re * im), real2(re, im));
   y = choose(arc.section == kSectionCluster, sqrt_upper(re, im), y);
-  real mu = acosh_above_1(gap_beside_unit(y.x, y.y));
-  return nodes_per_digit(choose(arc.section == kSectionCircle, at.im, mu));
+  return choose(arc.section == kSectionCircle, at.gap, gap_beside_unit(y.x, y.y));
 }
 
-// Nodes per digit on an arc because of two singularities: the pole of R_p, and the zero of sqrt(N^2 - sin^2(beta)).
-// `facet` is (cos, sin) of the angle between the facet and the vertical, so cos(beta) = c facet.y + s cos(phi) facet.x.
-real bounce_cost(ThetaNode theta, IndexNode index, real2 facet, Arc arc) {
+// A singularity at cos(beta) = re + i im. `facet` is (cos, sin) of the angle between the facet and the vertical, so
+// cos(beta) = c facet.y + s cos(phi) facet.x.
+Singularity facet_singularity(ThetaNode theta, real re, real im, real2 facet) {
   real slant = theta.s * facet.x;
   real size = max(abs(slant), real(1e-15));
   real sign = choose(slant < real(0.0), real(-1.0), real(1.0));
-  real offset = theta.c * facet.y;
-  Singularity pole = singularity_at(sign * (index.pole_re - offset) / size, index.pole_im / size);
-  Singularity branch = singularity_at(sign * (index.branch_re - offset) / size, index.branch_im / size);
-  return max(arc_cost(arc, pole), arc_cost(arc, branch));
+  return singularity_at(sign * (re - theta.c * facet.y) / size, im / size);
 }
 
-// Nodes per digit on an arc with one end at the critical line, where total reflection begins. The arc has a Gauss rule
-// in the variable sqrt(tau / T) of quadrature.glsl, which is 0 at this end. R_p has a pole at the distance v from 0.
-real critical_cost(ThetaNode theta, IndexNode index, real t, Arc arc) {
-  real sec = sqrt(real(1.0) + t * t);
-  real2 end = choose(arc.extent < real(0.0), arc.from, arc.to);
-  real cos_beta = (theta.c + theta.s * t * cosine(end)) / sec;
-  real w2 = cos_beta * cos_beta - index.critical_cos * index.critical_cos;
-  real v = abs(index.n2m1_re + real(1.0)) * index.critical_cos / max(sqrt(abs(w2)), real(1e-15));
-  v = min(v, real(1e9));
-  real gap = choose(w2 > real(0.0), gap_beside_unit(-v, real(0.0)), gap_beside_unit(real(0.0), v));
-  return nodes_per_digit(acosh_above_1(gap));
+Singularity pole_at(ThetaNode theta, IndexNode index, real2 facet) {
+  return facet_singularity(theta, index.pole_re, index.pole_im, facet);
 }
 
-real fresnel_cost(RuleNode rule, ThetaNode theta, IndexNode index, real t, Arc arc) {
+Singularity branch_at(ThetaNode theta, IndexNode index, real2 facet) {
+  return facet_singularity(theta, index.branch_re, index.branch_im, facet);
+}
+
+real2 facet_turn(real t) {
   real r = real(1.0) / sqrt(real(1.0) + t * t);
-  real2 turn = real2(t * r, r);
-  real cost = bounce_cost(theta, index, turn, arc);
-  if (kIsMultiple) {
-    // The most costly bounce decides. The ray at the middle azimuth of the arc stands for all rays of the arc.
-    real2 step = multiply(turn, turn);
-    real2 facet = turn;
-    real2 middle = arc.from + arc.to;
-    real x = (middle.x * middle.x - middle.y * middle.y) / (middle.x * middle.x + middle.y * middle.y);
-    real least = max(theta.s * x * turn.x - theta.c * turn.y, real(0.0));
-    for (int k = 1; k <= int(rule.split_bounces) + 2; ++k) {
-      facet = multiply(facet, step);
-      if (theta.c * facet.y + theta.s * x * facet.x <= least) break;
-      cost = max(cost, bounce_cost(theta, index, facet, arc));
-    }
-  }
-  return kTotalReflection ? choose(arc.is_critical, critical_cost(theta, index, t, arc), cost) : cost;
+  return real2(t * r, r);
 }
 
-// Nodes per digit on an arc because the masking toward the reflected ray is singular. The density of in-plane slopes is
-// singular at cot(theta_r) = +- i m. For `integral`, the factor kappa (masking.glsl) has a pole at cot(theta_r) = -t.
-real masking_cost(ThetaNode theta, ShapeNode shape, real t, Arc arc, int zone) {
-  if (kMasking != DOLP_MASKING_SMITH && kMasking != DOLP_MASKING_INTEGRAL) return real(0.0);
-  real sec2 = real(1.0) + t * t;
-  real st = max(theta.s * t, real(1e-15));
-  real scale = real(0.5) * sec2 / st;
-  real offset = theta.c * scale - theta.c / st;
-  // At cot(theta_r) = i m, cos(theta_r) = i m / sqrt(1 - m^2).
-  real width = real(1.0) - shape.m * shape.m;
-  real cos_r = shape.m / sqrt(max(abs(width), real(1e-6)));
-  real scaled_cos = cos_r * scale;
-  bool is_imaginary = width > real(0.0);
-  Singularity density = singularity_at(offset + choose(is_imaginary, real(0.0), scaled_cos), choose(is_imaginary, scaled_cos, real(0.0)));
-  real cost = arc_cost(arc, density);
-  if (kMasking == DOLP_MASKING_INTEGRAL) {
-    cost = max(cost, arc_cost(arc, singularity_at(offset - t / sqrt(sec2) * scale, real(0.0))));
-    cost = choose(zone == 0, real(0.0), cost);
-  }
-  return cost;
-}
+bool has_masking_integrals() { return kMasking == DOLP_MASKING_SMITH || kMasking == DOLP_MASKING_INTEGRAL; }
 
-// Number of nodes for the cusp of smith masking at theta_r = 0, where Lambda behaves like |theta_r|^(2q - 2). Only the
-// facet with t = tan(theta/2) and phi = 0 reflects to theta_r = 0. At another slope t the cusp lies at an imaginary
-// azimuth i y, with cosh(y) = 1 + `rise`. For the gaussian y is larger: Lambda is negligible for theta_r < `zenith`.
-real cusp_nodes(ThetaNode theta, ShapeNode shape, real t, real digits, Arc arc) {
-  if (kMasking != DOLP_MASKING_SMITH) return real(0.0);
+// Smith masking has a cusp at theta_r = 0, where Lambda behaves like |theta_r|^(2q - 2). Only the facet with t =
+// tan(theta/2) and phi = 0 reflects to theta_r = 0. At another slope t the cusp lies at an imaginary azimuth i y, with
+// cosh(y) = 1 + `rise`. For the gaussian y is larger: Lambda is negligible for theta_r < `zenith`.
+Singularity cusp_at(ThetaNode theta, ShapeNode shape, real t, real digits) {
   real away = t - theta.s / (real(1.0) + theta.c);
   real beside = real(0.0);
   if (kDistribution == DOLP_GAUSSIAN) {
@@ -275,18 +226,103 @@ real cusp_nodes(ThetaNode theta, ShapeNode shape, real t, real digits, Arc arc) 
     beside = zenith / (real(1.0) + theta.c);  // difference in slope that changes theta_r by `zenith`
   }
   real rise = (real(1.0) + theta.c) * (away * away + beside * beside) / (real(2.0) * max(theta.s * t, real(1e-30)));
-  real wanted = max(digits + shape.cusp_digits, real(0.0));
-  real nodes = wanted * arc_cost(arc, Singularity(real(0.0), max(acosh_above_1(rise), real(1e-3))));
+  return Singularity(real(0.0), max(acosh_above_1(rise), real(1e-3)), rise);
+}
+
+Singularities singularities_at(ThetaNode theta, ShapeNode shape, IndexNode index, Slope slope) {
+  real t = slope.t;
+  real2 facet = facet_turn(t);
+  Singularities all;
+  all.pole = pole_at(theta, index, facet);
+  all.branch = branch_at(theta, index, facet);
+  all.density = all.kappa = all.cusp = all.pole;  // replaced if the masking has them
+  all.cusp_digits = real(0.0);
+  if (has_masking_integrals()) {
+    real st = max(theta.s * t, real(1e-15));
+    real scale = real(0.5) * (real(1.0) + t * t) / st;
+    real offset = theta.c * scale - theta.c / st;
+    // At cot(theta_r) = i m, cos(theta_r) = i m / sqrt(1 - m^2).
+    real width = real(1.0) - shape.m * shape.m;
+    real cos_r = scale * shape.m / sqrt(max(abs(width), real(1e-6)));
+    bool is_imaginary = width > real(0.0);
+    all.density =
+        singularity_at(offset + choose(is_imaginary, real(0.0), cos_r), choose(is_imaginary, cos_r, real(0.0)));
+    if (kMasking == DOLP_MASKING_INTEGRAL) all.kappa = singularity_at(offset - facet.x * scale, real(0.0));
+  }
+  if (kMasking == DOLP_MASKING_SMITH) {
+    all.cusp = cusp_at(theta, shape, t, slope.digits);
+    all.cusp_digits = max(slope.digits + shape.cusp_digits, real(0.0));
+  }
+  return all;
+}
+
+// The gap of Fresnel's reflectances on an arc with one end at the critical line, where total reflection begins. The arc
+// has a Gauss rule in the variable sqrt(tau / T) of quadrature.glsl, which is 0 at this end. R_p has a pole at the
+// distance v from 0.
+real critical_gap(ThetaNode theta, IndexNode index, real t, Arc arc) {
+  real sec = sqrt(real(1.0) + t * t);
+  real2 end = choose(arc.extent < real(0.0), arc.from, arc.to);
+  real cos_beta = (theta.c + theta.s * t * cosine(end)) / sec;
+  real w2 = cos_beta * cos_beta - index.critical_cos * index.critical_cos;
+  real v = abs(index.n2m1_re + real(1.0)) * index.critical_cos / max(sqrt(abs(w2)), real(1e-15));
+  v = min(v, real(1e9));
+  return choose(w2 > real(0.0), gap_beside_unit(-v, real(0.0)), gap_beside_unit(real(0.0), v));
+}
+
+// Number of nodes for the cusp of smith masking.
+real cusp_nodes(ShapeNode shape, Singularities at, Arc arc) {
+  if (kMasking != DOLP_MASKING_SMITH) return real(0.0);
+  real nodes = at.cusp_digits * nodes_per_digit_at(arc_gap(arc, at.cusp));
   return choose(shape.cusp_digits < real(-100.0), real(0.0), nodes);
 }
 
+CONST real kFarGap = real(1e30);  // of a singularity that an arc does not have
+
+// The gap of the singularity of Fresnel's reflectances that is nearest to an arc. With all bounces in a groove, the ray
+// at the middle azimuth of the arc stands for all rays of the arc.
+real fresnel_gap(RuleNode rule, ThetaNode theta, IndexNode index, Slope slope, Arc arc) {
+  if (!kIsMultiple) return min(arc_gap(arc, slope.singular.pole), arc_gap(arc, slope.singular.branch));
+  real2 turn = facet_turn(slope.t);
+  real2 step = multiply(turn, turn);
+  real2 facet = turn;
+  real2 middle = arc.from + arc.to;
+  real x = (middle.x * middle.x - middle.y * middle.y) / (middle.x * middle.x + middle.y * middle.y);
+  real least = max(theta.s * x * turn.x - theta.c * turn.y, real(0.0));
+  real gap = kFarGap;
+  for (int bounces = int(rule.split_bounces) + 3; bounces > 0; --bounces) {
+    gap = min(gap, min(arc_gap(arc, pole_at(theta, index, facet)), arc_gap(arc, branch_at(theta, index, facet))));
+    facet = multiply(facet, step);
+    if (theta.c * facet.y + theta.s * x * facet.x <= least) break;
+  }
+  return gap;
+}
+
+// The gap of the singularity of the masking toward the reflected ray that is nearest to an arc.
+real masking_gap(Singularities at, Arc arc, int zone) {
+  real gap = has_masking_integrals() ? arc_gap(arc, at.density) : kFarGap;
+  if (kMasking == DOLP_MASKING_INTEGRAL) gap = choose(zone == 0, kFarGap, min(gap, arc_gap(arc, at.kappa)));
+  return gap;
+}
+
+// The gap of the poles at +- i of dphi/dtau, the derivative of the map in Arc (arcs.glsl): sinh(mu) = 1/extent for a
+// rule over tau, and twice this mu for a rule of section `half`.
+real map_gap(Arc arc) {
+  real sinh2 = real(1.0) / max(arc.extent * arc.extent, real(1e-18));
+  real gap = choose(arc.section == kSectionHalf, real(2.0) * sinh2, sinh2 / (real(1.0) + sqrt(real(1.0) + sinh2)));
+  return choose(arc.section == kSectionCircle, kFarGap, gap);
+}
+
+real nodes_per_digit_on(RuleNode rule, ThetaNode theta, IndexNode index, Slope slope, Arc arc, int zone) {
+  real gap = fresnel_gap(rule, theta, index, slope, arc);
+  if (kTotalReflection) gap = choose(arc.is_critical, critical_gap(theta, index, slope.t, arc), gap);
+  return nodes_per_digit_at(min(min(gap, map_gap(arc)), masking_gap(slope.singular, arc, zone)));
+}
+
 // Clusters nodes at the beginning of the arc if it begins at a split line at which the masking is singular.
-Arc masked_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_line, real t, real digits, Arc arc,
-               int zone, bool is_first) {
-  bool has_root = is_first && has_split_line;
+Arc masked_arc(RuleNode rule, ShapeNode shape, Slope slope, Arc arc, int zone, bool is_first) {
+  bool has_root = is_first && slope.has_split_line;
   if (kMasking == DOLP_MASKING_SMITH) {
-    real wanted = max(digits + shape.cusp_digits, real(0.0));
-    bool is_cusp = cusp_nodes(theta, shape, t, digits, arc) > rule.cluster_stretch * wanted;
+    bool is_cusp = cusp_nodes(shape, slope.singular, arc) > rule.cluster_stretch * slope.singular.cusp_digits;
     return with_root(arc, false, has_root && is_cusp);
   }
   if (kMasking == DOLP_MASKING_INTEGRAL && kDistribution == DOLP_CAUCHY) {
@@ -301,7 +337,8 @@ Arc masked_arc(RuleNode rule, ThetaNode theta, ShapeNode shape, bool has_split_l
 // Clusters nodes at one end of the arc if total reflection begins there. Near this end the integrand contains the root
 // w of w^2 = cos^2(beta) - critical_cos^2 + i Im N^2. Arc::resolution tells how much absorption (Im N^2) smooths w:
 // it is |w^2| at this end, divided by the range of w^2 on the arc. If the resolution is large, nodes are not clustered.
-Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, Arc arc, bool at_end, bool is_beside) {
+Arc critical_arc(ThetaNode theta, IndexNode index, Slope slope, Arc arc, bool at_end, bool is_beside) {
+  real t = slope.t;
   real level = index.critical_cos * index.critical_cos;
   real r2 = real(1.0) / (real(1.0) + t * t);
   real e_root = theta.c + theta.s * t * cosine(choose(at_end, arc.to, arc.from));
@@ -314,7 +351,7 @@ Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, Arc arc,
   arc = with_root(arc, at_end, arc.is_critical);
   // Without absorption, w^2 is 0 at this end. But rounding may change it slightly, so a tiny resolution counts as 0.
   bool is_smoothed = resolution > kSharpResolution;
-  bool is_felt = digits + real(1.5) * kInverseLn10 * log_unit(resolution) > real(0.0);
+  bool is_felt = slope.digits + real(1.5) * kInverseLn10 * log_unit(resolution) > real(0.0);
   bool is_resolved = is_smoothed && is_felt;
   is_resolved = is_resolved && arc.is_critical;
   arc.resolution = choose(is_resolved, resolution, real(0.0));
@@ -322,10 +359,10 @@ Arc critical_arc(ThetaNode theta, IndexNode index, real t, real digits, Arc arc,
 }
 
 // Number of nodes for an arc that begins at the line b = pi/2 of arcs.glsl. There G has the term of essential_nodes().
-real line_nodes(ShapeNode shape, bool has_split_line, real digits, int zone) {
+real line_nodes(ShapeNode shape, Slope slope, int zone) {
   if (kMasking != DOLP_MASKING_INTEGRAL || kDistribution != DOLP_GAUSSIAN) return real(0.0);
-  bool is_line = has_split_line && zone == 2;
-  return choose(is_line, essential_nodes(shape, digits), real(0.0));
+  bool is_line = slope.has_split_line && zone == 2;
+  return choose(is_line, essential_nodes(shape, slope.digits), real(0.0));
 }
 
 // Number of nodes for the root w of critical_arc(), which absorption smooths. With a = asinh(1 / sqrt(resolution)) the
@@ -333,17 +370,13 @@ real line_nodes(ShapeNode shape, bool has_split_line, real digits, int zone) {
 real resolution_nodes(real digits, real resolution) {
   real wanted = max(digits + real(1.5) * kInverseLn10 * log_unit(resolution), real(0.0));
   real a = asinh_real(real(1.0) / sqrt(resolution));
-  real nodes = wanted * nodes_per_digit(acosh_above_1(gap_beside_unit(real(0.76) / a, real(0.57) / a)));
+  real nodes = wanted * nodes_per_digit_at(gap_beside_unit(real(0.76) / a, real(0.57) / a));
   return choose(resolution <= real(0.0), real(0.0), nodes);
 }
 
 // The number of nodes of an arc. An arc from 0 to pi gets at least two: with one node, cos(2 phi) does not average out.
-real arc_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, bool has_split_line, real t, real digits,
-               Arc arc, int zone) {
-  real map = nodes_per_digit(asinh_real(real(1.0) / max(abs(arc.extent), real(1e-9))));  // dphi/dtau has poles at +- i
-  map = choose(arc.section == kSectionHalf, real(0.5) * map, map);
-  map = choose(arc.section == kSectionCircle, real(0.0), map);
-  real cost = max(max(map, fresnel_cost(rule, theta, index, t, arc)), masking_cost(theta, shape, t, arc, zone));
+real arc_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index, Slope slope, Arc arc, int zone) {
+  real cost = nodes_per_digit_on(rule, theta, index, slope, arc, zone);
   // The longer an arc, the more nodes resolve cos(phi), cos(2 phi) and cos(3 phi). A rule of the section `cluster`
   // needs half a node more than other rules. If place_on_arc() moves the nodes, the rule needs `spread` nodes more.
   real base = rule.phi_nodes * arc.span + choose(arc.section == kSectionCluster, real(1.0), real(0.5));
@@ -351,9 +384,9 @@ real arc_nodes(RuleNode rule, ThetaNode theta, ShapeNode shape, IndexNode index,
     real spread = real(0.5) * asinh_real(real(1.0) / sqrt(arc.resolution));
     base += choose(arc.resolution > real(0.0), spread, real(0.0));
   }
-  real nodes = base + (digits + rule.phi_digits) * cost;
-  nodes = max(nodes, base + cusp_nodes(theta, shape, t, digits, arc));
-  if (kTotalReflection) nodes = max(nodes, base + resolution_nodes(digits, arc.resolution));
-  nodes = max(nodes, base + line_nodes(shape, has_split_line, digits, zone));
+  real nodes = base + (slope.digits + rule.phi_digits) * cost;
+  nodes = max(nodes, base + cusp_nodes(shape, slope.singular, arc));
+  if (kTotalReflection) nodes = max(nodes, base + resolution_nodes(slope.digits, arc.resolution));
+  nodes = max(nodes, base + line_nodes(shape, slope, zone));
   return choose(arc.section == kSectionCircle, max(nodes, real(2.0)), nodes);
 }

@@ -55,3 +55,34 @@ struct Piece {
   real digits;            // digits that the most demanding entry of a row requires
   int order;
 };
+
+// The position of a singularity of the integrand over the azimuths, in the upper half plane of phi.
+struct Singularity {
+  real re;
+  real im;
+  real gap;  // cosh(im) - 1
+};
+
+// The singularities at one slope. They are the same for all arcs of azimuths (arcs.glsl).
+struct Singularities {
+  Singularity pole;     // of R_p
+  Singularity branch;   // the zero of w = sqrt(N^2 - sin^2(beta))
+  Singularity density;  // of the density of in-plane slopes, at cot(theta_r) = +- i m
+  Singularity kappa;    // `integral`: the pole of kappa (masking.glsl), at cot(theta_r) = -t
+  Singularity cusp;     // smith: theta_r = 0
+  real cusp_digits;     // digits that the cusp must be accurate to
+};
+
+// One slope of the facets, with what the sum over the azimuths needs.
+struct Slope {
+  real t;
+  real digits;        // digits required of the sum over the azimuths
+  MaskingTerms masking_in;
+  bool has_split_line;
+  int most_azimuths;
+  bool is_coarse;
+  int order;          // first azimuthal order, SlopeNode::order
+  SkyPlace sky;
+  real weight[DOLP_WIDTH];  // factor of this slope in AzimuthSums::columns, for each entry of the row (row.glsl)
+  Singularities singular;
+};

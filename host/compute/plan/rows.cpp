@@ -74,11 +74,11 @@ std::uint32_t used_members(const Rows& rows, const MomentsRequest& request, cons
   return used;
 }
 
-Rows grid_chunks(const MomentsRequest& request, const KernelData& data) {
+Rows grid_chunks(const MomentsRequest& request, const KernelData& data, std::uint32_t widest) {
   Rows rows;
-  rows.width = kRowWidth;
+  rows.width = widest;
   add_grid_chunks(rows, request, data);
-  if (static_cast<double>(data.shapes.size()) > kLeastRowUse * static_cast<double>(kRowWidth * rows.chunks.size()))
+  if (static_cast<double>(data.shapes.size()) > kLeastRowUse * static_cast<double>(widest * rows.chunks.size()))
     return rows;
   rows = {};
   add_grid_chunks(rows, request, data);
@@ -109,9 +109,9 @@ Rows point_rows(const KernelData& data) {
 
 }  // namespace
 
-Rows make_rows(const MomentsRequest& request, const KernelData& data) {
+Rows make_rows(const MomentsRequest& request, const KernelData& data, std::uint32_t widest) {
   if (!data.is_grid) return point_rows(data);
-  Rows rows = grid_chunks(request, data);
+  Rows rows = grid_chunks(request, data, widest);
   add_grid_rows(rows, request, data);
   return rows;
 }

@@ -43,9 +43,10 @@ struct Rows {
   }
 };
 
-/// Kernel rows with kRowWidth places for entries. If at least half of all places would be empty, the rows have one
-/// place. Which entries share a row depends only on the shapes, not on directions, indices and wanted entries.
-Rows make_rows(const MomentsRequest& request, const KernelData& data);
+/// Kernel rows with `widest` places for entries, kRowWidth or 1. If at least half of all places would be empty, the
+/// rows have one place. Which entries share a row depends only on the shapes, not on directions, indices and wanted
+/// entries.
+Rows make_rows(const MomentsRequest& request, const KernelData& data, std::uint32_t widest);
 
 /// The pieces of `count` rows from row `first`. Each invocation of the kernel computes one piece. Pieces with about
 /// equal work are neighbours, because neighbouring invocations wait for each other.

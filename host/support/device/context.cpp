@@ -127,7 +127,7 @@ Context::Context(const DeviceSelector& wish)
   for (VkPhysicalDevice device : physical) descriptions.push_back(describe(device));
   const std::size_t index = choose_device(descriptions, wish.device, wish.needs_double);
   description_ = descriptions[index];
-  device_ = std::make_unique<Device>(physical[index], description_.has_double);
+  device_ = std::make_unique<Device>(physical[index], DeviceFeatures{.float64 = description_.has_double});
 }
 
 void Context::check_validation() const {

@@ -109,7 +109,7 @@ dolp::Device describe(VkPhysicalDevice physical) {
   return description;
 }
 
-Device::Device(VkPhysicalDevice physical, bool float64) {
+Device::Device(VkPhysicalDevice physical, DeviceFeatures features) : features_(features) {
   const std::vector<VkQueueFamilyProperties> families = queue_families(physical);
   const std::optional<std::uint32_t> family = choose_queue_family(families);
   if (!family) throw DeviceError("the Vulkan device has no compute queue");
@@ -126,12 +126,23 @@ Device::Device(VkPhysicalDevice physical, bool float64) {
                                       .queueFamilyIndex = queue_family_,
                                       .queueCount = 1,
                                       .pQueuePriorities = &priority};
-  const VkPhysicalDeviceFeatures features{.shaderFloat64 = float64 ? VK_TRUE : VK_FALSE};
+  const VkPhysicalDeviceFeatures enabled{.shaderFloat64 = features.float64 ? VK_TRUE : VK_FALSE};
+  const VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR statistics{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR,
+      .pipelineExecutableInfo = VK_TRUE};
+  const char* const extension = VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME;
   const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                                .pNext = features.statistics ? &statistics : nullptr,
                                 .queueCreateInfoCount = 1,
                                 .pQueueCreateInfos = &queue,
-                                .pEnabledFeatures = &features};
-  check(vkCreateDevice(physical, &info, nullptr, &device_), "creating the device");
+                                .enabledExtensionCount = features.statistics ? 1U : 0U,
+                                .ppEnabledExtensionNames = &extension,
+                                .pEnabledFeatures = &enabled};
+  const VkResult result = vkCreateDevice(physical, &info, nullptr, &device_);
+  if (result == VK_ERROR_EXTENSION_NOT_PRESENT) {
+    throw DeviceError(std::string("the Vulkan driver reports no statistics of kernels: it lacks ") + extension);
+  }
+  check(result, "creating the device");
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
 }
 

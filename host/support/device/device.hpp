@@ -51,11 +51,16 @@ struct MemoryType {
   VkMemoryPropertyFlags flags = 0;
 };
 
+/// What a logical device enables beyond Vulkan 1.2. The device must support it.
+struct DeviceFeatures {
+  bool float64 = false;     ///< double precision in shaders
+  bool statistics = false;  ///< VK_KHR_pipeline_executable_properties, and pipelines that keep their statistics
+};
+
 /// A logical Vulkan device with one compute queue.
 class Device {
  public:
-  /// `float64` enables double precision in shaders; the device must support it.
-  Device(VkPhysicalDevice physical, bool float64);
+  Device(VkPhysicalDevice physical, DeviceFeatures features);
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
   ~Device();
@@ -64,7 +69,8 @@ class Device {
   VkQueue queue() const { return queue_; }
   std::uint32_t queue_family() const { return queue_family_; }
   const VkPhysicalDeviceLimits& limits() const { return limits_; }
-  std::uint32_t local_size() const { return local_size_; }          ///< number of invocations in a workgroup
+  std::uint32_t local_size() const { return local_size_; }  ///< number of invocations in a workgroup
+  const DeviceFeatures& features() const { return features_; }
   std::uint32_t timestamp_bits() const { return timestamp_bits_; }  ///< valid bits of a timestamp; 0: no timestamps
 
   /// The best memory type for `use`. Bit i of `allowed` allows type i. Errors: DeviceError if no allowed type fits.
@@ -73,6 +79,7 @@ class Device {
  private:
   VkDevice device_ = VK_NULL_HANDLE;
   VkQueue queue_ = VK_NULL_HANDLE;
+  DeviceFeatures features_;
   std::uint32_t queue_family_ = 0;
   std::uint32_t timestamp_bits_ = 0;
   std::uint32_t local_size_ = 0;

@@ -18,6 +18,7 @@
 #include "evaluate/vulkan/kernels.hpp"
 #include "evaluate/vulkan/tiles.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
+#include "plan/rows.hpp"
 #include "properties_support.hpp"
 
 namespace dolp {
@@ -101,6 +102,20 @@ TEST(VulkanEvaluator, ListsThatDoNotFitTheLayout_ThrowInputError) {
   points.append({10.0, {0.3, 2.0}, {1.5, 0.0}});
   points.sigma.push_back(0.4);
   EXPECT_THROW(evaluator.evaluate(points, {}), InputError);
+}
+
+TEST(RowTiles, OnlyProcessors_ComputeSeveralEntriesAtOnce) {
+  MomentsRequest request = small_request(Distribution::kCauchy, Masking::kSmith);
+  request.q = {2.0, 2.1, 2.2, 2.3};
+  dolp::Device device = vulkan::Context({}).description();
+  for (const bool is_processor : {false, true}) {
+    device.type = is_processor ? dolp::Device::Type::kCpu : dolp::Device::Type::kDiscrete;
+    const vulkan::DispatchCount count = vulkan::RowTiles(request, device, {}).count();
+    EXPECT_EQ(count.row_width, is_processor ? kRowWidth : 1U);
+    if (!is_processor) {
+      EXPECT_EQ(count.rows, request.size());
+    }
+  }
 }
 
 TEST(VulkanEvaluator, PointsAndMasks_SayTheSameAsTheGrid) {
@@ -274,7 +289,7 @@ namespace {
 // A Vulkan instance and device with the objects for dispatches. The validation layer writes its messages to `log`.
 struct Session {
   explicit Session(ValidationLog& log)
-      : instance(&log), device(instance.physical_devices().at(0), false), kernels(device, false), stream(device) {}
+      : instance(&log), device(instance.physical_devices().at(0), {}), kernels(device, false), stream(device) {}
   Instance instance;
   Device device;
   Kernels kernels;

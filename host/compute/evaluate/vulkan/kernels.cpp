@@ -47,15 +47,23 @@ VkDescriptorType descriptor_type(std::uint32_t binding) {
   return binding < kStorageCount ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER : VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
 }
 
-UniquePipeline compile(VkDevice device, VkPipelineLayout layout, std::uint32_t local_size,
-                       std::span<const std::uint32_t> spirv, const KernelVariant& variant) {
+/// What all pipelines have in common.
+struct PipelineSetting {
+  VkDevice device = VK_NULL_HANDLE;
+  VkPipelineLayout layout = VK_NULL_HANDLE;
+  VkPipelineCreateFlags flags = 0;
+  std::uint32_t local_size = 0;
+};
+
+UniquePipeline compile(const PipelineSetting& setting, std::span<const std::uint32_t> spirv,
+                       const KernelVariant& variant) {
   const VkShaderModuleCreateInfo module_info{
       .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = spirv.size_bytes(), .pCode = spirv.data()};
   const auto shader =
-      created<UniqueShaderModule>(device, vkCreateShaderModule, module_info, "creating a shader module");
+      created<UniqueShaderModule>(setting.device, vkCreateShaderModule, module_info, "creating a shader module");
 
   // The specialization constants, in the order of DOLP_SPEC_*. The enumerations have the values of interface.glsl.
-  const std::array<std::uint32_t, 10> values{local_size,
+  const std::array<std::uint32_t, 10> values{setting.local_size,
                                              static_cast<std::uint32_t>(variant.distribution),
                                              static_cast<std::uint32_t>(variant.masking),
                                              variant.has_total_reflection ? 1U : 0U,
@@ -72,15 +80,16 @@ UniquePipeline compile(VkDevice device, VkPipelineLayout layout, std::uint32_t l
                                        .dataSize = sizeof values,
                                        .pData = values.data()};
   const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+                                         .flags = setting.flags,
                                          .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                                                    .stage = VK_SHADER_STAGE_COMPUTE_BIT,
                                                    .module = shader.get(),
                                                    .pName = "main",
                                                    .pSpecializationInfo = &constants},
-                                         .layout = layout};
+                                         .layout = setting.layout};
   VkPipeline pipeline = VK_NULL_HANDLE;
-  check(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline), "creating a pipeline");
-  return UniquePipeline(device, pipeline);
+  check(vkCreateComputePipelines(setting.device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline), "creating a pipeline");
+  return UniquePipeline(setting.device, pipeline);
 }
 
 constexpr auto kInterruptInterval = std::chrono::milliseconds(20);
@@ -211,10 +220,9 @@ VkPipeline Kernels::pipeline(const KernelVariant& variant) {
 UniquePipeline Kernels::create(std::span<const std::uint32_t> spirv, const KernelVariant& variant) const {
   const double limit_s = compilation_limit_s();
   // A compilation may never end, and nothing can stop it. So it runs in a thread that the program can abandon.
-  std::packaged_task<UniquePipeline()> compilation(
-      [device = device_.get(), layout = layout_.get(), local_size = local_size(), spirv, variant] {
-        return compile(device, layout, local_size, spirv, variant);
-      });
+  PipelineSetting setting{.device = device_.get(), .layout = layout_.get(), .local_size = local_size()};
+  if (device_.features().statistics) setting.flags = VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR;
+  std::packaged_task<UniquePipeline()> compilation([=] { return compile(setting, spirv, variant); });
   std::future<UniquePipeline> pipeline = compilation.get_future();
   std::thread(std::move(compilation)).detach();
   const auto start = std::chrono::steady_clock::now();

@@ -72,6 +72,10 @@ std::vector<std::uint32_t> in_lockstep(const SlopeBatch& batch, const KernelData
 
 Packing make_packing(Precision precision) { return Packing(precision == Precision::kDouble); }
 
+// An invocation that computes several entries evaluates the reflectances once for all, but has more values at a time.
+// A GPU has registers for too few of them, and would keep the rest in memory (bench/README.md, "Kernels on GPUs").
+std::uint32_t widest_row(const dolp::Device& device) { return device.type == dolp::Device::Type::kCpu ? kRowWidth : 1; }
+
 }  // namespace
 
 void TilePace::note(std::size_t invocations, double seconds) {
@@ -87,7 +91,7 @@ RowTiles::RowTiles(const MomentsRequest& request, const dolp::Device& device, co
                    Tables tables)
     : packing(make_packing(request.precision)),
       data(kernel_data(request, tables)),
-      rows(make_rows(request, data)),
+      rows(make_rows(request, data, widest_row(device))),
       costs{.invocation_bytes = sizeof(EntryWords) + packing.node_bytes<kernel::ThetaNode>() +
                                 packing.node_bytes<kernel::IndexNode>() +
                                 rows.width * packing.output_bytes<kernel::MomentsNode>(column_sums(data)),

@@ -117,19 +117,15 @@ TableLayout values_layout(const TableValues& table) {
   return layout;
 }
 
-ResultColumns result_columns(std::span<const PointResult> results, const Quantities& quantities,
-                             const std::vector<DerivativeColumn>& derivatives) {
+ResultColumns result_columns(std::span<const PointResult> results, const Quantities& quantities) {
   constexpr std::size_t kEntriesAtOnce = 16384;
   ResultColumns columns;
   for (const Quantity quantity : quantities) columns[quantity].resize(results.size());
   columns.status.resize(results.size());
-  columns.derivatives = derivatives;
-  for (DerivativeColumn& column : columns.derivatives) column.values.resize(results.size());
   parallel_ranges(results.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       for (const Quantity quantity : quantities) columns[quantity][i] = results[i][quantity];
       columns.status[i] = results[i].status;
-      for (std::size_t j = 0; j < derivatives.size(); ++j) columns.derivatives[j].values[i] = results[i].derivatives[j];
     }
   });
   return columns;

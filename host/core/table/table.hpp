@@ -73,9 +73,8 @@ void for_each_variable(const TableLayout& layout, const Use& use) {
         [](auto& table) -> auto& { return table.status; }, std::size_t{1});
 }
 
-/// The columns of `quantities`, the status, and `derivatives`, which have no values yet.
-ResultColumns result_columns(std::span<const PointResult> results, const Quantities& quantities,
-                             const std::vector<DerivativeColumn>& derivatives = {});
+/// The columns of `quantities` and the status.
+ResultColumns result_columns(std::span<const PointResult> results, const Quantities& quantities);
 
 /// A part of a table: on each axis, `count` values from position `first`.
 struct TableBox {

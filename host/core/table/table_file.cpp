@@ -17,8 +17,7 @@
 namespace dolp {
 namespace {
 
-constexpr std::size_t kRowsAtOnce = 4096;         // rows that a thread converts to text in one step
-constexpr std::size_t kBlock = 16 * kRowsAtOnce;  // rows whose text is in memory at a time
+constexpr std::size_t kRowsAtOnce = 4096;  // rows that a thread converts to text in one step
 
 namespace fs = std::filesystem;
 
@@ -172,19 +171,16 @@ Quantities in_csv_order(const Quantities& quantities) {
 
 ResultCsv::ResultCsv(const std::filesystem::path& path, const std::string& columns, const TableLayout& layout,
                      RowStart start)
-    : quantities_(in_csv_order(layout.quantities)), derivatives_(layout.derivatives), start_(std::move(start)) {
+    : quantities_(in_csv_order(layout.quantities)), start_(std::move(start)) {
   if (path != "-") file_.emplace(path);
-  write(columns + ',' + result_header(quantities_, derivatives_) + '\n');
+  write(columns + ',' + result_header(quantities_, layout.derivatives) + '\n');
 }
 
-void ResultCsv::append(std::span<const PointResult> results) {
-  while (!results.empty()) {
-    const std::span<const PointResult> block = results.first(std::min(kBlock, results.size()));
-    write(result_rows(result_columns(block, quantities_, derivatives_), block.size(), quantities_,
-                      [&](std::string& text, std::size_t row) { start_(text, done_ + row); }));
-    done_ += block.size();
-    results = results.subspan(block.size());
-  }
+void ResultCsv::append(const ResultColumns& results) {
+  const std::size_t rows = results.status.size();
+  write(
+      result_rows(results, rows, quantities_, [&](std::string& text, std::size_t row) { start_(text, done_ + row); }));
+  done_ += rows;
 }
 
 void ResultCsv::commit() { file_ ? file_->commit() : write_text_atomically("-", text_); }

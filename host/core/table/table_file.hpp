@@ -30,7 +30,7 @@ class ResultCsv {
   /// `columns`: names of the columns whose cells `start` appends. Errors: IoError.
   ResultCsv(const std::filesystem::path& path, const std::string& columns, const TableLayout& layout, RowStart start);
   /// Adds the results of the next points. Errors: IoError; Cancelled when interrupted().
-  void append(std::span<const PointResult> results);
+  void append(const ResultColumns& results);
   /// Completes the file. Errors: IoError; Cancelled when interrupted().
   void commit();
 
@@ -38,7 +38,6 @@ class ResultCsv {
   void write(const std::string& text);
 
   Quantities quantities_;
-  std::vector<DerivativeColumn> derivatives_;
   RowStart start_;
   std::optional<AtomicFile> file_;  ///< nullopt for standard output
   std::string text_;                ///< rows for standard output

@@ -20,17 +20,15 @@ struct PointResult {
   /// Estimated error of DOLP (from 0 to 1) due to the same light. The status has kModelInaccurate if it is above
   /// kLargestModelChange times DOLP and above kLeastModelChangeDolp. Estimates below 1e-4 may count as 0.
   double model_change_dolp = 0.0;
-  /// For each key in RunOptions::derivatives the derivatives of dolp and q_over_i per unit of the key, and the bound of
-  /// their errors. NaN where a step leaves the domain of the key.
-  std::vector<double> derivatives = {};
 
   PointResult() { values.fill(std::numeric_limits<double>::quiet_NaN()); }
   double& operator[](Quantity quantity) { return values[quantity]; }
   double operator[](Quantity quantity) const { return values[quantity]; }
 };
 
-/// The values of one member of PointResult::derivatives. The name is, for the key surface.n, d_dolp__surface_n,
-/// d_q_over_i__surface_n or derivative_error__surface_n.
+/// Derivatives of dolp or of q_over_i by a key, per unit of the key, or the bound of their errors, for many entries.
+/// The name is, for the key surface.n, d_dolp__surface_n, d_q_over_i__surface_n or derivative_error__surface_n. The
+/// values are NaN where a step leaves the domain of the key.
 struct DerivativeColumn {
   std::string name, long_name, units;
   std::vector<double> values = {};
@@ -59,7 +57,6 @@ struct ResultColumns {
       if (has(quantity)) result[quantity] = columns[quantity][position];
     }
     if (!status.empty()) result.status = status[position];
-    for (const DerivativeColumn& column : derivatives) result.derivatives.push_back(column.values[position]);
     return result;
   }
 };

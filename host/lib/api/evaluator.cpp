@@ -118,8 +118,8 @@ void Evaluator::table_parts(const Scene& scene, const std::function<void(const T
     TableLayout layout = table_layout(values, run);
     choose_variables(layout, options.quantities);
     const std::function<void(const Table&)> guarded = impl_->guard_reentry(take);
-    CallbackSink parts([&](const SceneEntries& part, const std::vector<PointResult>& results) {
-      TableValues table = table_part(layout, part, results);
+    CallbackSink parts([&](const SceneEntries& part, RunResults results) {
+      TableValues table = table_part(layout, part, std::move(results));
       table.stokes_units = layout.head.stokes_units;
       guarded(Table(std::make_shared<const Table::Impl>(Table::Impl{std::move(table)})));
     });
@@ -136,7 +136,8 @@ Results Evaluator::evaluate(const Scene& scene, const std::vector<Column>& point
     TableLayout layout = table_layout(values, run);
     layout.quantities = output_quantities(values);
     layout.head.attributes = all_attributes(values, layout, outcome, options.history);
-    Results results = make_results(collected.take(), layout);
+    Results results{
+        {run_columns(layout, collected.take())}, layout.quantities, layout.head.stokes_units, layout.head.attributes};
     results.integrand_evaluations = outcome.evaluation.evaluations;
     return results;
   });

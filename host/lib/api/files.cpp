@@ -129,12 +129,12 @@ Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& 
     SceneEntries entries = point_entries(values, points);
     check_writable(path);
     Run run(values, std::move(entries), options, impl_->maker(values));
-    ResultCsv csv =
-        points_csv(path, points, {.quantities = output_quantities(values), .derivatives = run.derivatives()});
+    const TableLayout layout{.quantities = output_quantities(values), .derivatives = run.derivatives()};
+    ResultCsv csv = points_csv(path, points, layout);
     double rows_s = 0.0;
-    CallbackSink rows([&](const SceneEntries&, const std::vector<PointResult>& results) {
+    CallbackSink rows([&](const SceneEntries&, RunResults results) {
       const Clock::time_point start = Clock::now();
-      csv.append(results);
+      csv.append(run_columns(layout, std::move(results)));
       rows_s += seconds_since(start);
     });
     RunOutcome outcome = run.compute(rows);

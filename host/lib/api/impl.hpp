@@ -40,7 +40,6 @@ std::vector<std::string> scene_files(const SceneValues& scene);
 void check_output_is_no_input(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
 /// The results at points of a scene. `layout`: of a table of this scene, with the quantities that the results have.
-Results make_results(const std::vector<PointResult>& points, const TableLayout& layout);
 
 /// Makes points from columns. If a column has one value, all points use it. Errors: InputError for a wrong column.
 Points points_of_columns(const std::vector<Column>& columns, PointsKind kind);

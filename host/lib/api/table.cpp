@@ -102,13 +102,6 @@ std::vector<Attribute> Table::file_attributes() const {
 
 void Table::write(const std::filesystem::path& path) const { write_table(impl_->table, path); }
 
-Results make_results(const std::vector<PointResult>& points, const TableLayout& layout) {
-  return {{result_columns(points, layout.quantities, layout.derivatives)},
-          layout.quantities,
-          layout.head.stokes_units,
-          layout.head.attributes};
-}
-
 std::string to_csv(const std::vector<Column>& points, const Results& results) {
   const Quantities quantities = in_csv_order(results.given);
   const std::size_t count = results.status.size();

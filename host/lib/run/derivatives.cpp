@@ -167,35 +167,36 @@ std::vector<DerivativeColumn> scene_derivatives(const SceneValues& scene, const 
 }
 
 void add_derivatives(const SceneValues& scene, const SceneEntries& entries, const std::string& key,
-                     ModelEvaluator& evaluator, const Progress& progress, std::span<PointResult> results) {
+                     ModelEvaluator& evaluator, const Progress& progress, RunResults& results) {
   Steps steps(scene, entries, key);
   std::optional<StepResults> at = steps.results(evaluator, progress);
   if (!at && steps.is_on_axis()) {
     steps.stay_on_axis();
     at = steps.results(evaluator, progress);
   }
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    std::vector<double>& derivatives = results[i].derivatives;
+  constexpr std::array kDerived = {Quantity::kDolp, Quantity::kQOverI};
+  static_assert(kDerived.size() + 1 == kDerivativesPerKey);
+  const std::size_t first = results.derivatives.size();
+  results.derivatives.resize(first + kDerivativesPerKey,
+                             std::vector<double>(entries.size(), std::numeric_limits<double>::quiet_NaN()));
+  for (std::size_t i = 0; i < entries.size(); ++i) {
     const double step = at ? steps.step(entries[i]) : 0.0;
-    if (!(step > 0.0)) {
-      derivatives.insert(derivatives.end(), kDerivativesPerKey, std::numeric_limits<double>::quiet_NaN());
-      continue;
-    }
+    if (!(step > 0.0)) continue;
     double change = 0.0;
-    for (const Quantity quantity : {Quantity::kDolp, Quantity::kQOverI}) {
-      const auto value = [&](std::size_t j) { return (*at)[j][i][quantity]; };
+    for (std::size_t j = 0; j < kDerived.size(); ++j) {
+      const auto value = [&](std::size_t k) { return (*at)[k][i][kDerived[j]]; };
       const double wide = (value(1) - value(0)) / (2.0 * step);
       const double narrow = (value(3) - value(2)) / step;
-      derivatives.push_back((4.0 * narrow - wide) / 3.0);
+      results.derivatives[first + j][i] = (4.0 * narrow - wide) / 3.0;
       const double own = std::abs(narrow - wide) / 3.0;
       change = std::isnan(own) ? own : std::max(change, own);
     }
-    const auto bound = [&](std::size_t j) { return (*at)[j][i][Quantity::kErrorEstimate]; };
-    derivatives.push_back(change + ((bound(0) + bound(1)) / 6.0 + (bound(2) + bound(3)) * (4.0 / 3.0)) / step);
+    const auto bound = [&](std::size_t k) { return (*at)[k][i][Quantity::kErrorEstimate]; };
+    results.derivatives.back()[i] = change + ((bound(0) + bound(1)) / 6.0 + (bound(2) + bound(3)) * (4.0 / 3.0)) / step;
   }
 }
 
-void WithDerivatives::write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary& so_far) {
+void WithDerivatives::write(const SceneEntries& part, RunResults results, const RunSummary& so_far) {
   done_ += part.size();
   if (!keys_.empty()) {
     const auto busy_s = [&] {

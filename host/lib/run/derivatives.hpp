@@ -19,14 +19,14 @@ namespace dolp {
 std::vector<DerivativeColumn> scene_derivatives(const SceneValues& scene, const SceneEntries& entries,
                                                 const std::vector<std::string>& keys);
 
-/// Adds to each result its derivatives by a number x of the scene. With D(h) = (f(x + h) - f(x - h)) / (2 h), a
+/// Adds the columns of the derivatives by a number x of the scene. With D(h) = (f(x + h) - f(x - h)) / (2 h), a
 /// derivative is (4 D(h / 2) - D(h)) / 3 with an error of order h^4. The four results come from scenes in double
 /// precision with a tolerance of at most 1e-8.
 /// The stated error is the difference from D(h / 2), which errs by the order h^2, plus what the bounds of the four
 /// results can contribute. Derivatives and error are NaN where a step leaves the domain of the scene.
 /// Domain: scene_derivatives() accepts `key`. Errors: errors of the evaluator; Cancelled.
 void add_derivatives(const SceneValues& scene, const SceneEntries& entries, const std::string& key,
-                     ModelEvaluator& evaluator, const Progress& progress, std::span<PointResult> results);
+                     ModelEvaluator& evaluator, const Progress& progress, RunResults& results);
 
 /// Adds derivatives to the results before they go to another sink.
 class WithDerivatives final : public Sink {
@@ -39,7 +39,7 @@ class WithDerivatives final : public Sink {
 
   std::size_t parts_done() const override { return sink_.parts_done(); }
   RunSummary summary_of_done() const override { return sink_.summary_of_done(); }
-  void write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary& so_far) override;
+  void write(const SceneEntries& part, RunResults results, const RunSummary& so_far) override;
   double time_s() const { return time_s_; }  ///< without the time that the report of the evaluator contains
 
  private:

@@ -380,23 +380,30 @@ std::vector<PointResult> part_results(const RunContext& context, const SceneEntr
          std::span(results).subspan(direction * part.entries_per_direction(), part.entries_per_direction()))
       result.status |= kAnyToleranceNotMet;
   }
-  return results;
+  return std::move(first.results);
 }
 
 }  // namespace
 
-void CollectedResults::write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary&) {
+void CollectedResults::write(const SceneEntries& part, RunResults results, const RunSummary&) {
   if (part.size() == entries_.size()) {
     results_ = std::move(results);
-  } else if (part.is_grid()) {
-    results_.resize(entries_.size());
-    for_each_run(part.first_in(entries_), part.counts(), entries_.counts(), [&](const GridRun& run) {
-      std::copy_n(results.begin() + static_cast<std::ptrdiff_t>(run.in_part), run.count,
-                  results_.begin() + static_cast<std::ptrdiff_t>(run.in_whole));
-    });
-  } else {
-    results_.insert(results_.end(), results.begin(), results.end());
+    return;
   }
+  const auto add = [&](auto& all, const auto& more) {
+    if (!part.is_grid()) {
+      all.insert(all.end(), more.begin(), more.end());
+      return;
+    }
+    all.resize(entries_.size());
+    for_each_run(part.first_in(entries_), part.counts(), entries_.counts(), [&](const GridRun& run) {
+      std::copy_n(more.begin() + static_cast<std::ptrdiff_t>(run.in_part), run.count,
+                  all.begin() + static_cast<std::ptrdiff_t>(run.in_whole));
+    });
+  };
+  add(results_.entries, results.entries);
+  results_.derivatives.resize(results.derivatives.size());
+  for (std::size_t i = 0; i < results.derivatives.size(); ++i) add(results_.derivatives[i], results.derivatives[i]);
 }
 
 std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spectral_samples) {
@@ -480,8 +487,8 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
       const Spectra spectra(scene, plan, part.variants(), evaluator);
       summary.radiometry_s += seconds_since(spectra_start);
       const RunContext context{scene, plan, spectra, evaluator, basis, summary, grooves};
-      std::vector<PointResult> results = part_results(context, part, checked, summary.check, part_progress);
-      summary.add(scene, part, results);
+      RunResults results{part_results(context, part, checked, summary.check, part_progress)};
+      summary.add(scene, part, results.entries);
       sink.write(part, std::move(results), with_evaluation());
     }
     before += part.size();
@@ -494,7 +501,7 @@ std::vector<PointResult> evaluate_scene(const SceneValues& scene, const SceneEnt
                                         const std::optional<EffectPlan>& plan) {
   CollectedResults results(entries);
   run_scene(scene, entries, plan ? *plan : keep_everything(scene), &evaluator, results, progress);
-  return results.take();
+  return results.take().entries;
 }
 
 }  // namespace dolp

@@ -35,6 +35,12 @@ void check_surface(const SceneValues& scene, const Points& points);
 /// Throws InputError if the scene's grid has several materials or bands, and no column of the points chooses one.
 void check_labels_chosen(const SceneValues& scene, const Points& points = {});
 
+/// The results of some entries, and for each column of Run::derivatives() one value per entry.
+struct RunResults {
+  std::vector<PointResult> entries;
+  std::vector<std::vector<double>> derivatives = {};
+};
+
 /// A receiver of the results of a run, part by part.
 class Sink {
  public:
@@ -44,26 +50,26 @@ class Sink {
   virtual RunSummary summary_of_done() const { return {}; }  ///< summary of the finished parts
   /// Receives the results of `part`. Parts of a list of points come in the order of the points. `so_far` is the summary
   /// of all parts up to this one.
-  virtual void write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary& so_far) = 0;
+  virtual void write(const SceneEntries& part, RunResults results, const RunSummary& so_far) = 0;
 };
 
 class CollectedResults final : public Sink {
  public:
   explicit CollectedResults(const SceneEntries& entries) : entries_(entries) {}
-  void write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary& so_far) override;
-  std::vector<PointResult> take() { return std::move(results_); }
+  void write(const SceneEntries& part, RunResults results, const RunSummary& so_far) override;
+  RunResults take() { return std::move(results_); }
 
  private:
   const SceneEntries& entries_;
-  std::vector<PointResult> results_;
+  RunResults results_;
 };
 
 class CallbackSink final : public Sink {
  public:
-  using Take = std::function<void(const SceneEntries& part, const std::vector<PointResult>& results)>;
+  using Take = std::function<void(const SceneEntries& part, RunResults results)>;
   explicit CallbackSink(Take take) : take_(std::move(take)) {}
-  void write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary&) override {
-    take_(part, results);
+  void write(const SceneEntries& part, RunResults results, const RunSummary&) override {
+    take_(part, std::move(results));
   }
 
  private:

@@ -242,11 +242,19 @@ std::string run_identity(const SceneValues& scene, const std::string& evaluator,
       data_hash(scene));
 }
 
-TableValues table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results) {
+ResultColumns run_columns(const TableLayout& layout, RunResults results) {
+  ResultColumns columns = result_columns(results.entries, layout.quantities);
+  columns.derivatives = layout.derivatives;
+  for (std::size_t i = 0; i < columns.derivatives.size(); ++i)
+    columns.derivatives[i].values = std::move(results.derivatives[i]);
+  return columns;
+}
+
+TableValues table_part(const TableLayout& layout, const SceneEntries& part, RunResults results) {
   TableValues table;
   table.axes = part.axes();
   table.labels = layout.head.labels;
-  static_cast<ResultColumns&>(table) = result_columns(results, layout.quantities, layout.derivatives);
+  static_cast<ResultColumns&>(table) = run_columns(layout, std::move(results));
   if (!layout.has_status) table.status.clear();
   return table;
 }

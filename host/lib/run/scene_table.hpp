@@ -34,7 +34,9 @@ void fill_used(TableHead& head, const SceneValues& scene);
 inline constexpr const char* kIdentity = "identity";
 std::string run_identity(const SceneValues& scene, const std::string& evaluator, const RunOptions& options);
 
-TableValues table_part(const TableLayout& layout, const SceneEntries& part, const std::vector<PointResult>& results);
+/// The columns of the layout's quantities and derivatives, and the status.
+ResultColumns run_columns(const TableLayout& layout, RunResults results);
+TableValues table_part(const TableLayout& layout, const SceneEntries& part, RunResults results);
 
 struct RunRecord {
   EvaluationReport evaluation;

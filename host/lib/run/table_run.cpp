@@ -79,8 +79,8 @@ class TableSink final : public Sink {
   std::size_t parts_done() const override { return parts_done_; }
   RunSummary summary_of_done() const override { return done_; }
 
-  void write(const SceneEntries& part, std::vector<PointResult> results, const RunSummary& so_far) override {
-    TableValues table = table_part(layout_, part, results);
+  void write(const SceneEntries& part, RunResults results, const RunSummary& so_far) override {
+    TableValues table = table_part(layout_, part, std::move(results));
     finish();
     pending_ = std::async(std::launch::async,
                           [this, first = part.first_in(entries_), values = std::move(table),

@@ -69,7 +69,7 @@ TableCheck check_with(std::optional<double> dolp) {
   CpuEvaluator evaluator;
   const SceneEntries grid = grid_entries(scene);
   TableValues table = table_part(table_layout(scene, keep_everything(scene), scene.grid), grid,
-                                 evaluate_scene(scene, grid, evaluator, {}));
+                                 {evaluate_scene(scene, grid, evaluator, {})});
   if (dolp) table[Quantity::kDolp][0] = *dolp;
   return check_table({std::move(table), {0, 1, 2}}, scene, "bands", {});
 }

@@ -41,17 +41,17 @@ wavelength_um = 10
 theta_deg = [20, 70]
 )toml";
 
-/// The results at the scene's grid or at points, with the derivatives by `keys`.
-std::vector<PointResult> results_with(const SceneValues& scene, const SceneEntries& entries,
-                                      const std::vector<std::string>& keys, ModelEvaluator& evaluator) {
+/// The derivatives by `keys` at the scene's grid or at points: columns of one value per entry.
+std::vector<std::vector<double>> derivatives_with(const SceneValues& scene, const SceneEntries& entries,
+                                                  const std::vector<std::string>& keys, ModelEvaluator& evaluator) {
   Run run(scene, entries, {.derivatives = keys}, [&] { return &evaluator; });
   CollectedResults results(run.entries());
   run.compute(results);
-  return results.take();
+  return results.take().derivatives;
 }
-std::vector<PointResult> results_with(const SceneValues& scene, const std::vector<std::string>& keys) {
+std::vector<std::vector<double>> derivatives_with(const SceneValues& scene, const std::vector<std::string>& keys) {
   CpuEvaluator evaluator;
-  return results_with(scene, grid_entries(scene), keys, evaluator);
+  return derivatives_with(scene, grid_entries(scene), keys, evaluator);
 }
 
 /// Q/I of the emission of a smooth surface with a real index.
@@ -66,16 +66,15 @@ std::complex<double> smooth_q_over_i(std::complex<double> n, double theta_deg) {
 TEST(Derivatives, OfASmoothSurfaceByN_AreThoseOfFresnelsEquations) {
   const SceneValues scene = parse(kScene, {"surface.sigma=0", "surface.k=0", "surface.diffuse=0", "surface.specular=1",
                                            "surroundings=none", "grid.sigma=[0]"});
-  const std::vector<PointResult> results = results_with(scene, {"surface.n"});
+  const std::vector<std::vector<double>> found = derivatives_with(scene, {"surface.n"});
+  ASSERT_EQ(found.size(), 3U);
   constexpr double kImaginaryStep = 1e-20;  // Im f(n + ih) / h is the derivative without cancellation
-  for (std::size_t i = 0; i < results.size(); ++i) {
+  for (std::size_t i = 0; i < found[0].size(); ++i) {
     const double theta_deg = scene.grid[Axis::kTheta][i];
     const double right = smooth_q_over_i({1.5, kImaginaryStep}, theta_deg).imag() / kImaginaryStep;
-    const std::vector<double>& found = results[i].derivatives;
-    ASSERT_EQ(found.size(), 3U);
-    EXPECT_LE(std::abs(found[1] - right), found[2]) << theta_deg;
-    EXPECT_LE(std::abs(found[0] + right), found[2]) << "Q < 0, so DOLP = -Q/I";
-    EXPECT_LT(found[2], 1e-4 * std::abs(right));
+    EXPECT_LE(std::abs(found[1][i] - right), found[2][i]) << theta_deg;
+    EXPECT_LE(std::abs(found[0][i] + right), found[2][i]) << "Q < 0, so DOLP = -Q/I";
+    EXPECT_LT(found[2][i], 1e-4 * std::abs(right));
   }
 }
 
@@ -92,7 +91,7 @@ TEST(Derivatives, OfARoughSurface_AgreeWithDifferencesOfTheReference) {
   const SceneValues scene = parse(kScene);
   std::vector<std::string> keys;
   for (const auto& [key, value] : values) keys.push_back(key);
-  const std::vector<PointResult> results = results_with(scene, keys);
+  const std::vector<std::vector<double>> found = derivatives_with(scene, keys);
   constexpr double kShare = 1e-3;  // the difference then errs by 1e-6 and by the reference's 1e-10 over the step
   ReferenceEvaluator reference;
   for (std::size_t j = 0; j < values.size(); ++j) {
@@ -102,12 +101,12 @@ TEST(Derivatives, OfARoughSurface_AgreeWithDifferencesOfTheReference) {
       return evaluate_scene(changed, grid_entries(changed), reference, {});
     };
     const std::vector<PointResult> above = moved(kShare), below = moved(-kShare);
-    for (std::size_t i = 0; i < results.size(); ++i) {
+    for (std::size_t i = 0; i < found[0].size(); ++i) {
       const double right = (above[i][Quantity::kQOverI] - below[i][Quantity::kQOverI]) / (2.0 * kShare * value);
-      const std::vector<double>& found = results[i].derivatives;
       const double change_per_value = 1e-5 / value;  // error of the difference of the reference, in practice
-      EXPECT_LE(std::abs(found[3 * j + 1] - right), found[3 * j + 2] + change_per_value) << key << ", entry " << i;
-      EXPECT_LT(found[3 * j + 2], 1e-4 / value) << key;
+      EXPECT_LE(std::abs(found[3 * j + 1][i] - right), found[3 * j + 2][i] + change_per_value)
+          << key << ", entry " << i;
+      EXPECT_LT(found[3 * j + 2][i], 1e-4 / value) << key;
     }
   }
 }
@@ -115,21 +114,20 @@ TEST(Derivatives, OfARoughSurface_AgreeWithDifferencesOfTheReference) {
 TEST(Derivatives, OnAxesAndAtPoints_AreThoseOfTheScene) {
   const std::vector<std::string> keys = {"surface.sigma", "surface.n", "emission.temperature_K"};
   const SceneValues grid = parse(kScene, {"grid.sigma=[0.2, 0.4]", "grid.n=[1.4, 1.5]", "grid.temperature_K=[300]"});
-  const std::vector<PointResult> right = results_with(parse(kScene), keys);
-  const std::vector<PointResult> on_axes = results_with(grid, keys);
+  const std::vector<std::vector<double>> right = derivatives_with(parse(kScene), keys);
+  const std::vector<std::vector<double>> on_axes = derivatives_with(grid, keys);
   CpuEvaluator evaluator;
   const SceneValues scene = parse(kScene);
   const SceneEntries points = point_entries(
       scene,
       parse_points("theta_deg,sigma,n\n20,0.2,1.5\n70,0.2,1.5\n70,0.4,1.4\n", "p.csv", PointsKind::kDirections, {}));
-  const std::vector<PointResult> at_points = results_with(scene, points, keys, evaluator);
+  const std::vector<std::vector<double>> at_points = derivatives_with(scene, points, keys, evaluator);
   for (std::size_t theta = 0; theta < 2; ++theta) {
     const std::size_t entry = 4 + 2 * theta;  // n varies slower than theta, which varies slower than sigma
-    for (std::size_t i = 0; i < right[theta].derivatives.size(); ++i) {
-      const std::size_t of_error = i / 3 * 3 + 2;
-      const double bound = 2.0 * right[theta].derivatives[of_error];
-      EXPECT_NEAR(on_axes[entry].derivatives[i], right[theta].derivatives[i], bound);
-      EXPECT_NEAR(at_points[theta].derivatives[i], right[theta].derivatives[i], bound);
+    for (std::size_t i = 0; i < right.size(); ++i) {
+      const double bound = 2.0 * right[i / 3 * 3 + 2][theta];
+      EXPECT_NEAR(on_axes[i][entry], right[i][theta], bound);
+      EXPECT_NEAR(at_points[i][theta], right[i][theta], bound);
     }
   }
 }
@@ -141,35 +139,34 @@ TEST(Derivatives, ByTheWind_FollowFromThoseBySigma) {
   std::vector<std::string> calm = sea;
   calm[0] = "surface.sigma=" + std::to_string(windy.surface.sigma);
   calm[1] = "surface.wind_m_s={}";
-  const std::vector<PointResult> by_wind = results_with(windy, {"surface.wind_m_s"});
-  const std::vector<PointResult> by_sigma = results_with(parse(kScene, calm), {"surface.sigma"});
+  const std::vector<double> by_wind = derivatives_with(windy, {"surface.wind_m_s"})[1];
+  const std::vector<double> by_sigma = derivatives_with(parse(kScene, calm), {"surface.sigma"})[1];
   const double sigma_per_wind = 0.25 * 0.00512 / windy.surface.sigma;  // sigma^2 = (0.003 + 0.00512 U) / 2
-  for (std::size_t i = 0; i < by_wind.size(); ++i)
-    EXPECT_NEAR(by_wind[i].derivatives[1], by_sigma[i].derivatives[1] * sigma_per_wind, 1e-6);
+  for (std::size_t i = 0; i < by_wind.size(); ++i) EXPECT_NEAR(by_wind[i], by_sigma[i] * sigma_per_wind, 1e-6);
 }
 
 TEST(Derivatives, AtAnEndOfTheDomain_AreNan) {
   const SceneValues scene = parse(kScene, {"surface.k=0", "surface.specular=0.9", "grid.theta_deg=[0, 40, 90]"});
-  const std::vector<PointResult> results =
-      results_with(scene, {"surface.k", "surface.diffuse", "surface.specular", "grid.theta_deg"});
-  for (const PointResult& result : results) {
-    ASSERT_EQ(result.derivatives.size(), 12U);
-    for (std::size_t i = 0; i < 3; ++i) EXPECT_TRUE(std::isnan(result.derivatives[i])) << "k = 0";
+  const std::vector<std::vector<double>> found =
+      derivatives_with(scene, {"surface.k", "surface.diffuse", "surface.specular", "grid.theta_deg"});
+  ASSERT_EQ(found.size(), 12U);
+  for (std::size_t j = 0; j < 3; ++j) {
+    for (const double value : found[j]) EXPECT_TRUE(std::isnan(value)) << "k = 0";
   }
-  EXPECT_TRUE(std::isnan(results[0].derivatives[9])) << "theta = 0";
-  EXPECT_TRUE(std::isfinite(results[1].derivatives[9]));
-  EXPECT_TRUE(std::isnan(results[2].derivatives[9])) << "theta = 90";
+  EXPECT_TRUE(std::isnan(found[9][0])) << "theta = 0";
+  EXPECT_TRUE(std::isfinite(found[9][1]));
+  EXPECT_TRUE(std::isnan(found[9][2])) << "theta = 90";
 }
 
 // The mean slope of smith masking is infinite at q = 1.5, so a step must not reach this value.
 TEST(Derivatives, NearTheLeastQOfSmith_StayAboveIt) {
-  const PointResult near = results_with(parse(kScene, {"surface.q=1.51"}), {"surface.q"}).back();
+  const std::vector<std::vector<double>> near = derivatives_with(parse(kScene, {"surface.q=1.51"}), {"surface.q"});
   const double right =
       (results_of(parse(kScene, {"surface.q=1.511", "accuracy.tolerance=1e-9"})).back()[Quantity::kQOverI] -
        results_of(parse(kScene, {"surface.q=1.509", "accuracy.tolerance=1e-9"})).back()[Quantity::kQOverI]) /
       0.002;
-  EXPECT_NEAR(near.derivatives[1], right, 0.02 * std::abs(right));  // the difference errs by the share (0.001 / 0.01)^2
-  EXPECT_LT(near.derivatives[2], 0.01 * std::abs(right));
+  EXPECT_NEAR(near[1].back(), right, 0.02 * std::abs(right));  // the difference errs by the share (0.001 / 0.01)^2
+  EXPECT_LT(near[2].back(), 0.01 * std::abs(right));
 }
 
 TEST(Derivatives, ByWavelengthsAtTheEndsOfATable_AreNanOnlyThere) {
@@ -177,23 +174,23 @@ TEST(Derivatives, ByWavelengthsAtTheEndsOfATable_AreNanOnlyThere) {
   const SceneValues scene =
       parse(kScene, {"surface.n={}", "surface.k={}", "surface.material_file=" + file.path(),
                      "spectrum.wavelength_um={}", "grid.wavelength_um=[9, 10, 12]", "grid.theta_deg=[60]"});
-  const std::vector<PointResult> results = results_with(scene, {"spectrum.wavelength_um"});
-  ASSERT_EQ(results.size(), 3U);
-  EXPECT_TRUE(std::isnan(results[0].derivatives[0]) && std::isnan(results[0].derivatives[2]));
-  EXPECT_LT(results[1].derivatives[2], 1e-3 * std::abs(results[1].derivatives[0]));
-  EXPECT_TRUE(std::isnan(results[2].derivatives[0]));
+  const std::vector<std::vector<double>> found = derivatives_with(scene, {"spectrum.wavelength_um"});
+  ASSERT_EQ(found[0].size(), 3U);
+  EXPECT_TRUE(std::isnan(found[0][0]) && std::isnan(found[2][0]));
+  EXPECT_LT(found[2][1], 1e-3 * std::abs(found[0][1]));
+  EXPECT_TRUE(std::isnan(found[0][2]));
 }
 
 TEST(Derivatives, ByWhatIsNoNumberOfTheScene_AreRefused) {
   const SceneValues scene = parse(kScene);
   for (const char* key :
        {"surface.masking", "accuracy.tolerance", "path.transmittance", "surface.wind_m_s", "n", "grid.n"}) {
-    const std::string error = error_text([&] { results_with(scene, {key}); });
+    const std::string error = error_text([&] { derivatives_with(scene, {key}); });
     EXPECT_NE(error.find(std::string("derivatives: ") + key + ": is no number of this scene"), std::string::npos)
         << error;
   }
   EXPECT_NE(error_text([&] {
-              results_with(scene, {"surface.n", "surface.n"});
+              derivatives_with(scene, {"surface.n", "surface.n"});
             }).find("appears twice"),
             std::string::npos);
 }
@@ -225,9 +222,10 @@ TEST_F(DerivativeFiles, OfAllFormatsAndOfShards_HaveTheSameValues) {
   EXPECT_EQ(table.derivatives[5].name, "derivative_error__emission_temperature_K");
   const TableValues merged = read_table(at("m.nc"));
   ASSERT_EQ(merged.derivatives.size(), 6U);
-  const std::vector<PointResult> right = results_with(parse(kScene), {"surface.n", "emission.temperature_K"});
+  const std::vector<std::vector<double>> right =
+      derivatives_with(parse(kScene), {"surface.n", "emission.temperature_K"});
   for (std::size_t j = 0; j < 6; ++j) {
-    for (std::size_t i = 0; i < right.size(); ++i) EXPECT_EQ(table.derivatives[j].values[i], right[i].derivatives[j]);
+    EXPECT_EQ(table.derivatives[j].values, right[j]);
     EXPECT_EQ(merged.derivatives[j].values, table.derivatives[j].values);
   }
   std::ifstream file(at("t.csv"));

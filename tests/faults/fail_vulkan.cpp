@@ -3,7 +3,8 @@
 //                        vkQueueSubmit:3:-4 loses the device at the third submission. With N+ instead of N all later
 //                        calls fail, too. If RESULT is the word `never`, the call does not return.
 //   DOLP_VULKAN_MEMORY   bytes: larger pieces of device memory are refused
-//   DOLP_VULKAN_WITHOUT  float64, compute or version: devices lack double precision, compute queues or Vulkan 1.2
+//   DOLP_VULKAN_WITHOUT  float64, compute or version: devices lack double precision, compute queues or Vulkan 1.2.
+//                        processor: devices say that they are discrete GPUs
 //   DOLP_VULKAN_TEXELS   the devices allow only this number of texels in a buffer; views of larger buffers fail
 //   DOLP_VULKAN_DISPATCH a submission with a dispatch of more workgroups than this number loses the device
 //   DOLP_COUNT_SUBMISSIONS a file that receives the number of submissions when the program ends
@@ -167,6 +168,7 @@ extern "C" VKAPI_ATTR void VKAPI_CALL vkGetPhysicalDeviceProperties(VkPhysicalDe
                                                                     VkPhysicalDeviceProperties* properties) {
   next<PFN_vkGetPhysicalDeviceProperties>("vkGetPhysicalDeviceProperties")(device, properties);
   if (lacks("version")) properties->apiVersion = VK_API_VERSION_1_1;
+  if (lacks("processor")) properties->deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
   properties->limits.maxTexelBufferElements = std::min(properties->limits.maxTexelBufferElements, most_texels());
 }
 

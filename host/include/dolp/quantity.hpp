@@ -59,9 +59,6 @@ struct QuantityDescription {
   const char* units;      ///< null: the units of Stokes parameters, which depend on the scene
   const char* ancillary;  ///< names of the variables with the quantity's error bound and status; "" if none
   QuantityNeeds needs;
-
-  /// True if the quantity depends on what the scene has. Only then can results at points lack the quantity.
-  constexpr bool is_optional() const { return needs >= QuantityNeeds::kEmission; }
 };
 
 inline constexpr const char* kDolpQualifiers = "error_estimate status";

@@ -18,7 +18,9 @@ DRIVERS = pathlib.Path("/usr/share/vulkan/icd.d")
 
 def measure(bench, family, *options):
     """The JSON of `dolp-bench kernels` for a family of GPUs; None if the driver does not know the family."""
-    driver = next(DRIVERS.glob("radeon_icd*.json"))
+    driver = next(DRIVERS.glob("radeon_icd*.json"), None)
+    if driver is None:
+        sys.exit(f"kernels.py: {DRIVERS} has no radeon_icd*.json; install mesa-vulkan-drivers")
     environment = os.environ | {"RADV_FORCE_FAMILY": family, "VK_DRIVER_FILES": str(driver), "VK_ICD_FILENAMES": str(driver)}
     done = subprocess.run([bench, "kernels", "--json", "-", "--quiet", *options], env=environment, text=True,
                           stdout=subprocess.PIPE, stderr=subprocess.PIPE)
@@ -32,7 +34,9 @@ def measure(bench, family, *options):
 def measured(bench):
     results = {}
     for name, families in FAMILIES.items():
-        results[name] = next(filter(None, (measure(bench, family) for family in families)))
+        results[name] = next(filter(None, (measure(bench, family) for family in families)), None)
+        if results[name] is None:
+            sys.exit(f"kernels.py: the driver knows none of the families {', '.join(families)}")
     return {"study": "kernels", "context": results["RX 6000"]["context"],
             "results": {name: result["results"] for name, result in results.items()}}
 

@@ -33,28 +33,29 @@ std::vector<NamedKernel> named_kernels() {
   constexpr EntryPoint kSlopes = EntryPoint::kSlopes;
   constexpr std::uint32_t kSky = DOLP_SKY_FUNCTIONS;
   constexpr std::uint32_t kResponses = DOLP_COLUMNS;
-  constexpr std::uint32_t kKind = DOLP_COLUMNS_RESPONSE;
+  constexpr std::uint32_t kResponseKind = DOLP_COLUMNS_RESPONSE;
   return {{"integral", {.masking = kIntegral}},
           {"integral, total reflection", {.masking = kIntegral, .has_total_reflection = true}},
           {"integral, films", {.masking = kIntegral, .has_curves = true}},
           {"integral, direct emission", {.masking = kIntegral, .has_direct = true}},
           {"integral, sky", {.masking = kIntegral, .columns = kSky}},
-          {"integral, responses", {.masking = kIntegral, .columns = kResponses, .column_kind = kKind}},
+          {"integral, responses", {.masking = kIntegral, .columns = kResponses, .column_kind = kResponseKind}},
           {"integral, responses, total reflection",
-           {.masking = kIntegral, .has_total_reflection = true, .columns = kResponses, .column_kind = kKind}},
+           {.masking = kIntegral, .has_total_reflection = true, .columns = kResponses, .column_kind = kResponseKind}},
           {"smith", {.masking = kSmith}},
-          {"smith, responses", {.masking = kSmith, .columns = kResponses, .column_kind = kKind}},
+          {"smith, responses", {.masking = kSmith, .columns = kResponses, .column_kind = kResponseKind}},
           {"rows of four, integral", {.masking = kIntegral, .width = kRowWidth}},
           {"rows of four, smith", {.masking = kSmith, .width = kRowWidth}},
           {"rows of four, integral, sky", {.masking = kIntegral, .columns = kSky, .width = kRowWidth}},
           {"rows of four, integral, responses",
-           {.masking = kIntegral, .columns = kResponses, .column_kind = kKind, .width = kRowWidth}},
+           {.masking = kIntegral, .columns = kResponses, .column_kind = kResponseKind, .width = kRowWidth}},
           {"masking table", {.entry = EntryPoint::kMaskingTable, .masking = kIntegral}},
           {"none", {.entry = kSlopes}},
           {"v-cavity", {.entry = kSlopes, .masking = kVCavity}},
           {"v-cavity, total reflection", {.entry = kSlopes, .masking = kVCavity, .has_total_reflection = true}},
           {"v-cavity, sky", {.entry = kSlopes, .masking = kVCavity, .columns = kSky}},
-          {"v-cavity, responses", {.entry = kSlopes, .masking = kVCavity, .columns = kResponses, .column_kind = kKind}},
+          {"v-cavity, responses",
+           {.entry = kSlopes, .masking = kVCavity, .columns = kResponses, .column_kind = kResponseKind}},
           {"v-cavity, orders", {.entry = kSlopes, .masking = kVCavity, .has_orders = true}},
           {"all bounces", {.entry = kSlopes, .masking = kVCavity, .is_multiple = true}},
           {"all bounces, orders", {.entry = kSlopes, .masking = kVCavity, .is_multiple = true, .has_orders = true}},
@@ -70,7 +71,7 @@ struct NamedPrecision {
 const std::vector<NamedPrecision> kPrecisions = {{"float", false}, {"double", true}};
 
 template <class Function>
-Function function_of(const vulkan::Device& device, const char* name) {
+Function device_function(const vulkan::Device& device, const char* name) {
   return reinterpret_cast<Function>(vkGetDeviceProcAddr(device.get(), name));
 }
 
@@ -91,7 +92,7 @@ double number(const VkPipelineExecutableStatisticKHR& statistic) {
 /// for example with other subgroups; the first executable counts.
 ordered_json statistics(const vulkan::Device& device, VkPipeline pipeline) {
   const auto list =
-      function_of<PFN_vkGetPipelineExecutableStatisticsKHR>(device, "vkGetPipelineExecutableStatisticsKHR");
+      device_function<PFN_vkGetPipelineExecutableStatisticsKHR>(device, "vkGetPipelineExecutableStatisticsKHR");
   const VkPipelineExecutableInfoKHR info{.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR, .pipeline = pipeline};
   std::uint32_t count = 0;
   vulkan::check(list(device.get(), &info, &count, nullptr), "listing the statistics of a pipeline");

@@ -63,16 +63,16 @@ real2 order_factors(int k, real2 at) {
 
 // order_factors() of each entry of the row: 1 and 0 without azimuthal orders.
 struct OrderFactors {
-  real2 of[DOLP_WIDTH];
+  real2 value[DOLP_WIDTH];
 };
 
 OrderFactors row_factors(int first, Azimuth at) {
   OrderFactors factors;
-  for (int g = 0; g < DOLP_WIDTH; ++g) factors.of[g] = real2(real(1.0), real(0.0));
+  for (int g = 0; g < DOLP_WIDTH; ++g) factors.value[g] = real2(real(1.0), real(0.0));
   if (kHasOrders) {
     real2 phi = real2(at.x, at.sin_phi);
-    factors.of[0] = order_factors(first, phi);
-    for (int g = 1; g < DOLP_WIDTH; ++g) factors.of[g] = turned_by(factors.of[g - 1], turned_by(phi, phi));
+    factors.value[0] = order_factors(first, phi);
+    for (int g = 1; g < DOLP_WIDTH; ++g) factors.value[g] = turned_by(factors.value[g - 1], turned_by(phi, phi));
   }
   return factors;
 }
@@ -80,7 +80,7 @@ OrderFactors row_factors(int first, Azimuth at) {
 // Adds light that leaves a groove, `light` = (r_i, r_q) and `u`, to the columns with these values.
 AzimuthSums add_groove_columns(AzimuthSums sums, OrderFactors weights, ColumnValues values, real2 light, real u) {
   for (int g = 0; g < DOLP_ORDER_WIDTH; ++g) {
-    real2 weight = weights.of[g];
+    real2 weight = weights.value[g];
     sums.columns[g] = add_columns(sums.columns[g], values, weight.x * light.x, weight.x * light.y);
     if (kHasOrders) sums.columns[g] = add_u_columns(sums.columns[g], values, weight.y * u);
   }
@@ -97,10 +97,10 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, S
     if (kIsMultiple) {
       GrooveLight light = reflected_in_groove(rule, theta, index, slope.t, at.x, at.sin_phi);
       OrderFactors weights;
-      for (int g = 0; g < DOLP_WIDTH; ++g) weights.of[g] = at.weight * factors.of[g];
+      for (int g = 0; g < DOLP_WIDTH; ++g) weights.value[g] = at.weight * factors.value[g];
       for (int g = 0; g < DOLP_ORDER_WIDTH; ++g) {
-        sums.member[g] += weights.of[g].x * light.moments;
-        if (kHasOrders) sums.u[g].x += weights.of[g].y * (light.before_u + light.last_u);
+        sums.member[g] += weights.value[g].x * light.moments;
+        if (kHasOrders) sums.u[g].x += weights.value[g].y * (light.before_u + light.last_u);
       }
       sums = add_groove_columns(sums, weights, sky_at(slope.sky, light.cos_before), light.before, light.before_u);
       sums = add_groove_columns(sums, weights, sky_at(slope.sky, light.cos_last), light.last, light.last_u);
@@ -111,7 +111,7 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, S
       real2 per_projection = column_factors(slope, f);
       for (int g = 0; g < DOLP_WIDTH; ++g) {
         Projection part = project(theta, f, zone, slope.masking_in.value[g], masking_out.value[g]);
-        real turned = at.weight * factors.of[g].x;
+        real turned = at.weight * factors.value[g].x;
         real leaving = leaves ? turned : real(0.0);
         sums.member[g] += leaving * reflected(f, part);
         real projection = leaving * part.visible;
@@ -120,14 +120,14 @@ AzimuthSums arc_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, S
         sums.columns[g] =
             add_columns(sums.columns[g], values, projection * per_projection.x, projection * per_projection.y);
         if (kHasOrders) {
-          real tilted = at.weight * factors.of[g].y * f.m02;
+          real tilted = at.weight * factors.value[g].y * f.m02;
           real reflected_u = leaves ? tilted * part.visible : real(0.0);
           sums.u[g] += real2(reflected_u, -tilted * seen_directly(theta, f));
           sums.columns[g] = add_u_columns(sums.columns[g], values, slope.weight[g] * reflected_u);
         }
       }
       for (int g = 0; g < DOLP_ORDER_WIDTH; ++g) {
-        if (kHasDirect) sums.direct[g] += at.weight * factors.of[g].x * emitted(theta, f);
+        if (kHasDirect) sums.direct[g] += at.weight * factors.value[g].x * emitted(theta, f);
       }
     }
   }

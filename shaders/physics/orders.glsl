@@ -276,7 +276,7 @@ real cusp_nodes(ShapeNode shape, Singularities at, Arc arc) {
   return choose(shape.cusp_digits < real(-100.0), real(0.0), nodes);
 }
 
-CONST real kFarGap = real(1e30);  // of a singularity that an arc does not have
+CONST real kFarGap = real(1e30);  // gap of a singularity that is too far away to count
 
 // The gap of the singularity of Fresnel's reflectances that is nearest to an arc. With all bounces in a groove, the ray
 // at the middle azimuth of the arc stands for all rays of the arc.

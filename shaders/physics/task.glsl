@@ -65,11 +65,11 @@ struct Singularity {
 
 // The singularities at one slope. They are the same for all arcs of azimuths (arcs.glsl).
 struct Singularities {
-  Singularity pole;     // of R_p
-  Singularity branch;   // the zero of w = sqrt(N^2 - sin^2(beta))
-  Singularity density;  // of the density of in-plane slopes, at cot(theta_r) = +- i m
-  Singularity kappa;    // `integral`: the pole of kappa (masking.glsl), at cot(theta_r) = -t
-  Singularity cusp;     // smith: theta_r = 0
+  Singularity pole;     // pole of R_p
+  Singularity branch;   // zero of w = sqrt(N^2 - sin^2(beta))
+  Singularity density;  // the density of in-plane slopes is singular at cot(theta_r) = +- i m
+  Singularity kappa;    // `integral`: pole of kappa (masking.glsl), at cot(theta_r) = -t
+  Singularity cusp;     // smith: cusp of Lambda, at theta_r = 0
   real cusp_digits;     // digits that the cusp must be accurate to
 };
 

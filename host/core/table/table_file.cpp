@@ -17,7 +17,8 @@
 namespace dolp {
 namespace {
 
-constexpr std::size_t kRowsAtOnce = 4096;  // rows that a thread converts to text in one step
+constexpr std::size_t kRowsAtOnce = 4096;         // rows that a thread converts to text in one step
+constexpr std::size_t kBlock = 16 * kRowsAtOnce;  // rows whose text is in memory at a time
 
 namespace fs = std::filesystem;
 
@@ -69,7 +70,7 @@ std::string csv_header(const TableLayout& layout) {
 }
 
 std::string csv_rows(const TableValues& part, const TableLayout& layout) {
-  return result_rows(part, part.size(), layout.quantities, [&](std::string& text, std::size_t position) {
+  return result_rows(part, 0, part.size(), layout.quantities, [&](std::string& text, std::size_t position) {
     each_coordinate(part.axes, position, [&](Axis axis, double value) {
       if (describe(axis).has_labels) {
         text += '"' + layout.head.label(axis, value) + '"';
@@ -138,12 +139,12 @@ std::string result_header(const Quantities& quantities, const std::vector<Deriva
   return header.substr(0, header.size() - 1);
 }
 
-std::string result_rows(const ResultColumns& results, std::size_t rows, const Quantities& quantities,
+std::string result_rows(const ResultColumns& results, std::size_t first, std::size_t last, const Quantities& quantities,
                         const RowStart& start) {
-  std::vector<std::string> pieces((rows + kRowsAtOnce - 1) / kRowsAtOnce);
-  parallel_ranges(rows, kRowsAtOnce, [&](std::size_t first, std::size_t last) {
-    std::string& text = pieces[first / kRowsAtOnce];
-    for (std::size_t row = first; row < last; ++row) {
+  std::vector<std::string> pieces((last - first + kRowsAtOnce - 1) / kRowsAtOnce);
+  parallel_ranges(last - first, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    std::string& text = pieces[begin / kRowsAtOnce];
+    for (std::size_t row = first + begin; row < first + end; ++row) {
       start(text, row);
       for (const Quantity quantity : quantities) {
         append_number(text, results[quantity][row]);
@@ -178,8 +179,9 @@ ResultCsv::ResultCsv(const std::filesystem::path& path, const std::string& colum
 
 void ResultCsv::append(const ResultColumns& results) {
   const std::size_t rows = results.status.size();
-  write(
-      result_rows(results, rows, quantities_, [&](std::string& text, std::size_t row) { start_(text, done_ + row); }));
+  const RowStart start = [&](std::string& text, std::size_t row) { start_(text, done_ + row); };
+  for (std::size_t first = 0; first < rows; first += kBlock)
+    write(result_rows(results, first, std::min(first + kBlock, rows), quantities_, start));
   done_ += rows;
 }
 

@@ -18,8 +18,9 @@ using RowStart = std::function<void(std::string& text, std::size_t row)>;
 std::string result_header(const Quantities& quantities, const std::vector<DerivativeColumn>& derivatives = {},
                           bool has_status = true);
 
-/// CSV rows. A row has the cells that `start` appends, the quantities in the given order, the derivatives, the status.
-std::string result_rows(const ResultColumns& results, std::size_t rows, const Quantities& quantities,
+/// CSV rows `first` to `last` - 1 of the results. A row has the cells that `start` appends, the quantities in the given
+/// order, the derivatives, the status.
+std::string result_rows(const ResultColumns& results, std::size_t first, std::size_t last, const Quantities& quantities,
                         const RowStart& start);
 
 Quantities in_csv_order(const Quantities& quantities);

@@ -39,8 +39,6 @@ std::vector<std::string> scene_files(const SceneValues& scene);
 /// Refuses an output file that would overwrite an input file; "-" (stdin, stdout) is no file. Errors: InputError.
 void check_output_is_no_input(const std::filesystem::path& output, const std::vector<std::string>& inputs);
 
-/// The results at points of a scene. `layout`: of a table of this scene, with the quantities that the results have.
-
 /// Makes points from columns. If a column has one value, all points use it. Errors: InputError for a wrong column.
 Points points_of_columns(const std::vector<Column>& columns, PointsKind kind);
 

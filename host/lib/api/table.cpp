@@ -115,7 +115,7 @@ std::string to_csv(const std::vector<Column>& points, const Results& results) {
   for (const Column& column : points) header += column.name + ',';
   for (const DerivativeColumn& column : results.derivatives) check(column.name, column.values.size(), false);
   return header + result_header(quantities, results.derivatives) + '\n' +
-         result_rows(results, count, quantities, [&](std::string& text, std::size_t row) {
+         result_rows(results, 0, count, quantities, [&](std::string& text, std::size_t row) {
            for (const Column& column : points) {
              append_number(text, column.values[column.values.size() == 1 ? 0 : row]);
              text += ',';

@@ -51,7 +51,7 @@ struct MemoryType {
   VkMemoryPropertyFlags flags = 0;
 };
 
-/// What a logical device enables beyond Vulkan 1.2. The device must support it.
+/// Features that a logical device enables beyond those of Vulkan 1.2. The device must support them.
 struct DeviceFeatures {
   bool float64 = false;     ///< double precision in shaders
   bool statistics = false;  ///< VK_KHR_pipeline_executable_properties, and pipelines that keep their statistics

@@ -47,7 +47,7 @@ VkDescriptorType descriptor_type(std::uint32_t binding) {
   return binding < kStorageCount ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER : VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
 }
 
-/// What all pipelines have in common.
+/// Members that all pipelines share.
 struct PipelineSetting {
   VkDevice device = VK_NULL_HANDLE;
   VkPipelineLayout layout = VK_NULL_HANDLE;

@@ -209,4 +209,20 @@ TEST_F(TableFiles, WriteText_RelativeName_GoesToTheCurrentFolder) {
   fs::current_path(before);
   EXPECT_EQ(read_file(at("here.csv")), "text");
 }
+
+// The rows of a part are converted to text in blocks of 65,536.
+TEST_F(TableFiles, ResultCsv_PartsOfManyRows_KeepTheirOrder) {
+  ResultCsv csv(at("p.csv"), "row", {.quantities = {Quantity::kDolp}},
+                [](std::string& text, std::size_t row) { text += std::to_string(row) + ','; });
+  for (const std::size_t rows : {70'000U, 3U}) {
+    ResultColumns part;
+    part[Quantity::kDolp].assign(rows, 0.5);
+    part.status.assign(rows, 32);
+    csv.append(part);
+  }
+  csv.commit();
+  std::string expected = "row,dolp,status\n";
+  for (std::size_t row = 0; row < 70'003; ++row) expected += std::to_string(row) + ",0.5,32\n";
+  EXPECT_TRUE(read_file(at("p.csv")) == expected);
+}
 }  // namespace

@@ -22,12 +22,12 @@ class EvaluatorSolver final : public Solver {
     wanted.may_interpolate = may_interpolate_;
     const EvaluationReport before = evaluator_->report();
     Work host_work;
-    const std::vector<Moments> moments = planned_moments(MomentsPlan(wanted), *evaluator_, nullptr, host_work);
+    const PlannedMoments moments = planned_moments(MomentsPlan(wanted), *evaluator_, nullptr, host_work);
     const EvaluationReport after = evaluator_->report();
     Solution solution;
     solution.kernel_s = after.kernel_s + after.sums_s + host_work.sums_s - (before.kernel_s + before.sums_s);
     solution.evaluations = after.evaluations - before.evaluations;
-    for (const Moments& entry : moments) {
+    for (const Moments& entry : moments.all()) {
       solution.answers.push_back({entry.r_i, entry.r_q, std::max(entry.r_i_error, entry.r_q_error) / entry.r_i});
     }
     return solution;

@@ -63,10 +63,10 @@ std::vector<GridSize> grids_up_to(std::size_t entries) {
 }
 
 /// The largest error estimate of a run, over the entries without a status bit.
-double stated_error(const std::vector<PointResult>& results) {
+double stated_error(const RunResults& results) {
   double largest = 0.0;
-  for (const PointResult& result : results) {
-    if (result.status == 0) largest = std::max(largest, result[Quantity::kRhoErrorEstimate]);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    if (results.status[i] == 0) largest = std::max(largest, results[Quantity::kRhoErrorEstimate][i]);
   }
   return largest;
 }

@@ -52,7 +52,7 @@ Work TimedScene::run() {
   plan_ = plan_effects(scene_, entries_, keep_all_);
   CollectedResults results(entries_);
   const Work work = run_scene(scene_, entries_, plan_, &evaluator_, results, nullptr).work;
-  results_ = results.take().entries;
+  results_ = results.take();
   return work;
 }
 

@@ -20,7 +20,7 @@ class TimedScene {
   const SceneValues& scene() const { return scene_; }
   const SceneEntries& entries() const { return entries_; }
   const EffectPlan& plan() const { return plan_; }
-  const std::vector<PointResult>& results() const { return results_; }
+  const RunResults& results() const { return results_; }
   const Work& work() const { return work_; }  ///< evaluations and times of the last call
   /// Raw times of whole runs, per entry, in seconds.
   std::vector<double> times_s() const;
@@ -36,7 +36,7 @@ class TimedScene {
   bool keep_all_;
   ModelEvaluator& evaluator_;
   EffectPlan plan_;
-  std::vector<PointResult> results_;
+  RunResults results_;
   Work work_;
   double first_s_ = 0.0;
   std::size_t calls_ = 0;

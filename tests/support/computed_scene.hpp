@@ -16,7 +16,10 @@ inline std::vector<PointResult> results_of(const SceneValues& scene) { return re
 inline TableValues table_of(const SceneValues& scene) {
   const SceneEntries entries = grid_entries(scene);
   const TableLayout layout = table_layout(scene, plan_effects(scene, entries, false), scene.grid);
-  TableValues table = table_part(layout, entries, {results_of(scene, entries)});
+  CpuEvaluator evaluator;
+  CollectedResults results(entries);
+  run_scene(scene, entries, keep_everything(scene), &evaluator, results, {});
+  TableValues table = table_part(layout, entries, results.take());
   static_cast<TableHead&>(table) = layout.head;
   return table;
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <span>
 #include <utility>
 
 #include "base/parallel_ranges.hpp"
@@ -14,60 +13,45 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr std::size_t kInterpolatedAtOnce = 1024;  // entries; their moments fit into the cache of a core
+
 bool is_finite(const Moments& m) {
   return std::isfinite(m.r_i + m.r_q + m.albedo + m.deficit) &&
          std::isfinite(m.r_i_error + m.r_q_error + m.albedo_error + m.deficit_error);
 }
 
-/// Interpolates over the slope distributions, for each wanted pair of a direction and an index. `nodes` has the known
-/// moments. A pair with infinite or NaN known moments is left out. Returns a flag per entry: 1 if its pair is left out.
-std::vector<char> interpolate_all(const ShapePlan& plan, std::span<const Moments> nodes, const MomentsRequest& request,
-                                  std::span<Moments> moments) {
-  const std::size_t nodes_per_pair = plan.nodes_of_a_direction();
-  const std::size_t shapes = request.shapes();
-  std::vector<char> is_left(request.size(), 0);
-  parallel_ranges(request.size() / shapes, 1, [&](std::size_t first, std::size_t last) {
+/// The blocks of the wanted pairs of an index and a direction. Pairs with infinite or NaN moments have an empty block.
+std::vector<ShapeBlock> shape_blocks(const MomentsStep& step, std::span<const Moments> nodes) {
+  const std::size_t nodes_per_pair = step.shapes->nodes_of_a_direction();
+  std::vector<ShapeBlock> blocks(nodes.size() / nodes_per_pair);
+  parallel_ranges(blocks.size(), 16, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
-      if (!request.is_wanted(i * shapes)) continue;
       const std::span<const Moments> pair_nodes = nodes.subspan(i * nodes_per_pair, nodes_per_pair);
-      if (std::ranges::all_of(pair_nodes, is_finite)) {
-        interpolate(plan, pair_nodes, moments.subspan(i * shapes, shapes));
-      } else {
-        std::ranges::fill(std::span(is_left).subspan(i * shapes, shapes), char{1});
-      }
+      const bool is_wanted = step.request.is_wanted(i * step.request.shapes());
+      if (is_wanted && std::ranges::all_of(pair_nodes, is_finite)) blocks[i] = shape_block(*step.shapes, pair_nodes);
     }
   });
-  return is_left;
+  return blocks;
 }
 
-class PlannedMoments {
+/// Calls the evaluator for the requests of a plan, with one progress and one record of the work for all of them.
+class Calls {
  public:
-  PlannedMoments(const MomentsPlan& plan, ModelEvaluator& evaluator, const Progress& progress, Work& work)
-      : plan_(plan), evaluator_(evaluator), progress_(progress), work_(work), kernel_moments_(plan.kernel_moments()) {
-    work_.interpolated += plan.saved_entries();
-    work_.interpolation_nodes += plan.nodes_of_saved();
-  }
+  Calls(const MomentsPlan& plan, ModelEvaluator& evaluator, const Progress& progress, Work& work)
+      : plan_(plan), evaluator_(evaluator), progress_(progress), work_(work), kernel_moments_(plan.kernel_moments()) {}
 
-  std::vector<Moments> all() {
-    const std::span<const MomentsStep> steps = plan_.steps();
-    if (steps.size() == 1) return evaluate_step(steps.front());
-    std::vector<Moments> moments(plan_.size());
-    for (const MomentsStep& step : steps) {
-      std::vector<Moments> step_moments = evaluate_step(step);
-      const std::size_t shapes = step.request.shapes();
-      const std::size_t directions = plan_.directions();
-      for (std::size_t i = 0; i < step_moments.size(); ++i) {
-        const std::size_t pair = i / shapes;
-        const std::size_t index = pair / step.directions.size();
-        const std::size_t direction = step.directions[pair % step.directions.size()];
-        moments[(index * directions + direction) * shapes + i % shapes] = std::move(step_moments[i]);
-      }
-    }
-    return moments;
+  PlannedMoments::Step step(const MomentsStep& step) {
+    std::vector<Moments> nodes = step.responses ? combined_nodes(step) : planned(step.nodes());
+    if (!step.shapes) return {std::move(nodes), {}};
+    const Clock::time_point start = Clock::now();
+    std::vector<ShapeBlock> blocks = shape_blocks(step, nodes);
+    work_.sums_s += seconds_since(start);
+    std::vector<Moments> left = left_moments(step.request, blocks);
+    return {std::move(left), std::move(blocks)};
   }
 
  private:
-  std::vector<Moments> from_kernel(const MomentsRequest& request) {
+  std::vector<Moments> planned(const MomentsRequest& request) {
     const std::size_t count = request.wanted_count();
     const Progress plan_progress = [&](std::size_t done, std::size_t all) {
       const std::size_t so_far = done_ + count * done / std::max<std::size_t>(all, 1);
@@ -86,39 +70,29 @@ class PlannedMoments {
     return moments;
   }
 
-  std::vector<Moments> evaluate_nodes(const MomentsStep& step) {
-    if (!step.responses) return from_kernel(step.nodes());
+  std::vector<Moments> combined_nodes(const MomentsStep& step) {
     std::vector<std::vector<Moments>> passes;
-    for (const MomentsRequest& pass : step.responses->passes) passes.push_back(from_kernel(pass));
+    for (const MomentsRequest& pass : step.responses->passes) passes.push_back(planned(pass));
     std::vector<Moments> others;
-    if (step.responses->others) others = from_kernel(*step.responses->others);
+    if (step.responses->others) others = planned(*step.responses->others);
     const Clock::time_point start = Clock::now();
     std::vector<Moments> moments = combined(step.nodes(), *step.responses, passes, others);
     work_.sums_s += seconds_since(start);
     return moments;
   }
 
-  std::vector<Moments> evaluate_step(const MomentsStep& step) {
-    std::vector<Moments> nodes = evaluate_nodes(step);
-    if (!step.shapes) return nodes;
-    const Clock::time_point start = Clock::now();
-    std::vector<Moments> moments(step.request.size());
-    std::vector<char> is_left = interpolate_all(*step.shapes, nodes, step.request, moments);
-    work_.sums_s += seconds_since(start);
-    if (std::ranges::find(is_left, 1) != is_left.end()) compute_left(step.request, std::move(is_left), moments);
-    return moments;
-  }
-
-  void compute_left(const MomentsRequest& request, std::vector<char> is_left, std::span<Moments> moments) {
-    MomentsRequest direct = request;
-    direct.basis = nullptr;
-    direct.wanted = std::move(is_left);
-    work_.interpolated -= direct.wanted_count();
-    const Progress is_wanted = [&](std::size_t, std::size_t) { return !progress_ || progress_(1, 1); };
-    const std::vector<Moments> computed = evaluated(direct, is_wanted);
-    for (std::size_t i = 0; i < computed.size(); ++i) {
-      if (direct.wanted[i] != 0) moments[i] = computed[i];
-    }
+  /// The moments of wanted pairs that have no block; nothing if all have one.
+  std::vector<Moments> left_moments(const MomentsRequest& request, std::span<const ShapeBlock> blocks) {
+    std::vector<char> is_left(blocks.size());
+    for (std::size_t i = 0; i < blocks.size(); ++i)
+      is_left[i] = blocks[i].is_empty() && request.is_wanted(i * request.shapes()) ? 1 : 0;
+    if (std::ranges::find(is_left, 1) == is_left.end()) return {};
+    MomentsRequest left = request;
+    left.basis = nullptr;
+    left.wanted.clear();
+    for (const char flag : is_left) left.wanted.insert(left.wanted.end(), request.shapes(), flag);
+    work_.interpolated -= left.wanted_count();
+    return evaluated(left, [&](std::size_t, std::size_t) { return !progress_ || progress_(1, 1); });
   }
 
   const MomentsPlan& plan_;
@@ -131,9 +105,52 @@ class PlannedMoments {
 
 }  // namespace
 
-std::vector<Moments> planned_moments(const MomentsPlan& plan, ModelEvaluator& evaluator, const Progress& progress,
-                                     Work& work) {
-  return plan.size() == 0 ? std::vector<Moments>{} : PlannedMoments(plan, evaluator, progress, work).all();
+PlannedMoments::PlannedMoments(MomentsPlan plan, std::vector<Step> steps)
+    : plan_(std::move(plan)), steps_(std::move(steps)), places_(plan_.directions()) {
+  for (std::size_t i = 0; i < steps_.size(); ++i) {
+    const std::vector<std::size_t>& directions = plan_.steps()[i].directions;
+    for (std::size_t j = 0; j < directions.size(); ++j) places_[directions[j]] = {i, j};
+  }
+}
+
+PlannedMoments::Range PlannedMoments::read(std::size_t entry, std::vector<Moments>& buffer) const {
+  if (steps_.size() == 1 && steps_.front().blocks.empty()) return {0, steps_.front().moments};
+  const std::size_t shapes = plan_.steps().front().request.shapes();
+  const std::size_t pair = entry / shapes;
+  const Place& place = places_[pair % places_.size()];
+  const Step& step = steps_[place.step];
+  const MomentsStep& planned = plan_.steps()[place.step];
+  const std::size_t own_pair = pair / places_.size() * planned.directions.size() + place.position;
+  if (step.blocks.empty() || step.blocks[own_pair].is_empty())
+    return {pair * shapes, std::span(step.moments).subspan(own_pair * shapes, shapes)};
+  const std::size_t qs = planned.request.q.size(), sigma = entry % shapes / qs, q = entry % qs;
+  ShapeRange range{.first_q = q - q % kInterpolatedAtOnce};
+  range.qs = std::min(kInterpolatedAtOnce, qs - range.first_q);
+  const std::size_t sigmas_at_once = std::max<std::size_t>(kInterpolatedAtOnce / qs, 1);
+  range.first_sigma = sigma - sigma % sigmas_at_once;
+  range.sigmas = std::min(sigmas_at_once, planned.request.sigma.size() - range.first_sigma);
+  buffer.resize(range.sigmas * range.qs);
+  interpolate(*planned.shapes, step.blocks[own_pair], range, buffer);
+  return {pair * shapes + range.first_sigma * qs + range.first_q, buffer};
+}
+
+std::vector<Moments> PlannedMoments::all() const {
+  std::vector<Moments> all, buffer;
+  while (all.size() < plan_.size()) {
+    const std::span<const Moments> more = read(all.size(), buffer).moments;
+    all.insert(all.end(), more.begin(), more.end());
+  }
+  return all;
+}
+
+PlannedMoments planned_moments(MomentsPlan plan, ModelEvaluator& evaluator, const Progress& progress, Work& work) {
+  if (plan.size() == 0) return {};
+  work.interpolated += plan.saved_entries();
+  work.interpolation_nodes += plan.nodes_of_saved();
+  Calls calls(plan, evaluator, progress, work);
+  std::vector<PlannedMoments::Step> steps;
+  for (const MomentsStep& step : plan.steps()) steps.push_back(calls.step(step));
+  return {std::move(plan), std::move(steps)};
 }
 
 }  // namespace dolp

@@ -25,6 +25,7 @@ struct MomentsStep {
 /// The plan depends only on the request. The moments of an entry do not depend on other directions of the request.
 class MomentsPlan {
  public:
+  MomentsPlan() = default;
   explicit MomentsPlan(const MomentsRequest& request);
 
   std::size_t size() const { return size_; }              ///< entries of the request

@@ -13,11 +13,10 @@
 #include "model/sky_basis.hpp"
 #include "plan/constants.hpp"
 #include "plan/kernel_data.hpp"
+#include "plan/weighted_sums.hpp"
 
 namespace dolp {
 namespace {
-
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// The mask `wanted` of a second request, with other indices. Its index j must have each entry (direction and shape)
 /// that `request` wants at any of its own indices in needed_by[j].
@@ -55,24 +54,13 @@ struct Responses {
   std::vector<double> relative_error;  ///< ColumnMoments::relative_error of each shape
 };
 
-/// Matrix product with a fixed order of sums. With Eigen's order, results would depend on how a grid is divided.
-RowMajor product(const RowMajor& weights, const RowMajor& part) {
-  RowMajor sums = RowMajor::Zero(weights.rows(), part.cols());
-  for (Eigen::Index i = 0; i < weights.rows(); ++i) {
-    for (Eigen::Index j = 0; j < weights.cols(); ++j) {  // skips weights of 0, because 0 times an infinite bound is NaN
-      if (weights(i, j) != 0.0) sums.row(i) += weights(i, j) * part.row(j);
-    }
-  }
-  return sums;
-}
-
 /// Weighted sums of responses, with a row for each index that has weights and a column for each shape. The error bounds
 /// cover the errors of the responses, but not the difference between a reflectance curve and its sum of polynomials.
 struct Sums {
   Sums(const Responses& responses, Responses::Part of, Responses::Part apart, const RowMajor& weights)
-      : value(product(weights, responses.all[of])),
-        error(product(weights, responses.all[apart]).cwiseAbs() +
-              product(weights.cwiseAbs(), responses.all[Responses::kError])) {
+      : value(weighted_sums(weights, responses.all[of])),
+        error(weighted_sums(weights, responses.all[apart]).cwiseAbs() +
+              weighted_sums(weights.cwiseAbs(), responses.all[Responses::kError])) {
     for (Eigen::Index shape = 0; shape < error.cols(); ++shape)
       error.col(shape) += responses.relative_error[static_cast<std::size_t>(shape)] * value.col(shape).cwiseAbs();
   }

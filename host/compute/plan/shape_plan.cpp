@@ -1,8 +1,8 @@
 #include "plan/shape_plan.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <functional>
 
 #include "model/chebyshev.hpp"
 #include "model/choices.hpp"
@@ -11,18 +11,9 @@
 namespace dolp {
 namespace {
 
-using Values = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-template <class ValueOf>
-Values at_nodes(const ShapePlan& plan, std::span<const Moments> nodes, const ValueOf& node_value) {
-  Values values(static_cast<Eigen::Index>(plan.sigma.nodes.size()), static_cast<Eigen::Index>(plan.q.nodes.size()));
-  for (Eigen::Index i = 0; i < values.size(); ++i) values.data()[i] = node_value(nodes[static_cast<std::size_t>(i)]);
-  return values;
-}
-
 /// Estimated interpolation error of each column of `values`: the sum of the omitted Chebyshev coefficients. The
 /// estimate assumes that the omitted coefficients fall as fast as the last known ones.
-Eigen::RowVectorXd tails(const ShapeAxis& axis, const Values& values) {
+Eigen::RowVectorXd tails(const ShapeAxis& axis, const RowMajor& values) {
   if (!axis.is_interpolated()) return Eigen::RowVectorXd::Zero(values.cols());
   const Eigen::MatrixXd sizes = (axis.coefficients.bottomRows(2 * kLastShapeCoefficients) * values).cwiseAbs();
   const Eigen::RowVectorXd before = sizes.topRows(kLastShapeCoefficients).colwise().maxCoeff();
@@ -35,42 +26,11 @@ Eigen::RowVectorXd tails(const ShapeAxis& axis, const Values& values) {
   return bounds;
 }
 
-class Interpolation {
- public:
-  explicit Interpolation(const ShapePlan& plan)
-      : plan_(plan), sigma_(plan.sigma.cardinal), q_(plan.q.cardinal.transpose()) {}
-  struct Result {
-    Values value;
-    Values error;
-  };
-  Result operator()(const Values& at, Values bound) const {
-    bound.rowwise() += tails(plan_.sigma, at);
-    bound.colwise() += tails(plan_.q, at.transpose()).transpose();
-    return {sigma_ * at * q_, sigma_.cwiseAbs() * bound * q_.cwiseAbs()};
-  }
+constexpr std::array kColumnParts = {&ColumnMoments::i, &ColumnMoments::q};
+constexpr auto kPartsOfAColumn = static_cast<std::ptrdiff_t>(kColumnParts.size());
 
- private:
-  const ShapePlan& plan_;
-  Values sigma_;
-  Values q_;
-};
-
-void interpolate_column(const ShapePlan& plan, const Interpolation& interpolated, std::span<const Moments> nodes,
-                        std::size_t k, std::span<Moments> moments) {
-  for (Moments& entry : moments) entry.columns.resize(k + 1);
-  for (double ColumnMoments::*component : {&ColumnMoments::i, &ColumnMoments::q}) {
-    const auto node_value = [&](const Moments& node) { return node.columns[k].*component; };
-    const auto node_bound = [&](const Moments& node) {
-      const ColumnMoments& column = node.columns[k];
-      return column.error + std::max(std::abs(column.i_apart), std::abs(column.q_apart)) +
-             column.relative_error * std::abs(column.*component);
-    };
-    const auto [value, error] = interpolated(at_nodes(plan, nodes, node_value), at_nodes(plan, nodes, node_bound));
-    for (std::size_t i = 0; i < moments.size(); ++i) {
-      moments[i].columns[k].*component = value.data()[i];
-      moments[i].columns[k].error = std::max(moments[i].columns[k].error, error.data()[i]);
-    }
-  }
+std::span<const MomentMember> interpolated_members(const ShapePlan& plan) {
+  return std::span(kMomentMembers).first(kMomentMembers.size() - (plan.nodes.wants_direct ? 0 : kDirectMembers));
 }
 
 /// True if the request wants, for each pair of direction and index, either all entries or no entry.
@@ -102,7 +62,7 @@ double nodes_needed(const ShapeParameter& parameter, double half_length, double 
 
 ShapeAxis without_interpolation(const std::vector<double>& values) {
   const auto count = static_cast<Eigen::Index>(values.size());
-  return {values, Eigen::MatrixXd::Identity(count, count), {}};
+  return {values, RowMajor::Identity(count, count), {}};
 }
 
 ShapeParameter sigma_parameter(Distribution distribution) {
@@ -136,10 +96,10 @@ ShapeAxis shape_axis(const ShapeParameter& parameter, const std::vector<double>&
   }
   axis.nodes.front() = *largest;
   axis.nodes.back() = *least;
-  axis.cardinal.resize(static_cast<Eigen::Index>(values.size()), nodes);
+  axis.weights.resize(nodes, static_cast<Eigen::Index>(values.size()));
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double x = (std::log(values[i] - parameter.origin) - 0.5 * (start + end)) / half_length;
-    axis.cardinal.row(static_cast<Eigen::Index>(i)) = cardinal_values(points, std::clamp(x, -1.0, 1.0));
+    axis.weights.col(static_cast<Eigen::Index>(i)) = cardinal_values(points, std::clamp(x, -1.0, 1.0)).transpose();
   }
   axis.coefficients = chebyshev_coefficients(nodes);
   return axis;
@@ -178,22 +138,69 @@ std::optional<ShapePlan> shape_plan(const MomentsRequest& request) {
   return plan;
 }
 
-void interpolate(const ShapePlan& plan, std::span<const Moments> nodes, std::span<Moments> moments) {
-  const Interpolation interpolated(plan);
-  const std::size_t unwanted = plan.nodes.wants_direct ? 0 : kDirectMembers;
-  for (const auto& [member, member_error] : std::span(kMomentMembers).first(kMomentMembers.size() - unwanted)) {
-    const auto [value, error] =
-        interpolated(at_nodes(plan, nodes, std::mem_fn(member)), at_nodes(plan, nodes, std::mem_fn(member_error)));
-    for (std::size_t i = 0; i < moments.size(); ++i) {
-      moments[i].*member = value.data()[i];
-      moments[i].*member_error = error.data()[i];
+ShapeBlock shape_block(const ShapePlan& plan, std::span<const Moments> nodes) {
+  const auto sigma_nodes = static_cast<Eigen::Index>(plan.sigma.nodes.size());
+  const auto q_nodes = static_cast<Eigen::Index>(plan.q.nodes.size());
+  const std::size_t columns = nodes.front().columns.size();
+  const auto moments = static_cast<Eigen::Index>(interpolated_members(plan).size() + kPartsOfAColumn * columns);
+  ShapeBlock block{RowMajor(sigma_nodes, moments * q_nodes), RowMajor(sigma_nodes, moments * q_nodes)};
+  Eigen::Index first = 0;
+  const auto add = [&](const auto& node_value, const auto& node_bound) {
+    RowMajor values(sigma_nodes, q_nodes), bounds(sigma_nodes, q_nodes);
+    std::ranges::transform(nodes, values.data(), node_value);
+    std::ranges::transform(nodes, bounds.data(), node_bound);
+    bounds.rowwise() += tails(plan.sigma, values);
+    bounds.colwise() += tails(plan.q, values.transpose()).transpose();
+    block.values.middleCols(first, q_nodes) = values;
+    block.bounds.middleCols(first, q_nodes) = bounds;
+    first += q_nodes;
+  };
+  for (const auto& [value, error] : interpolated_members(plan)) add(value, error);
+  for (std::size_t k = 0; k < columns; ++k) {
+    for (double ColumnMoments::*part : kColumnParts) {
+      const auto bound = [&](const Moments& node) {
+        const ColumnMoments& column = node.columns[k];
+        return column.error + std::max(std::abs(column.i_apart), std::abs(column.q_apart)) +
+               column.relative_error * std::abs(column.*part);
+      };
+      add([&](const Moments& node) { return node.columns[k].*part; }, bound);
     }
   }
-  for (std::size_t k = 0; k < nodes.front().columns.size(); ++k)
-    interpolate_column(plan, interpolated, nodes, k, moments);
-  double evaluations = 0.0;
-  for (const Moments& node : nodes) evaluations += node.evaluations;
-  for (Moments& entry : moments) entry.evaluations = evaluations / static_cast<double>(moments.size());
+  return block;
+}
+
+void interpolate(const ShapePlan& plan, const ShapeBlock& block, const ShapeRange& range, std::span<Moments> moments) {
+  const auto own_weights = [](const ShapeAxis& axis, std::size_t first, std::size_t count) {
+    return axis.weights.middleCols(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count));
+  };
+  const auto sigma_weights = own_weights(plan.sigma, range.first_sigma, range.sigmas).transpose();
+  const auto q_weights = own_weights(plan.q, range.first_q, range.qs);
+  const RowMajor values = weighted_sums(sigma_weights, block.values);
+  const RowMajor bounds = weighted_sums(sigma_weights.cwiseAbs(), block.bounds);
+  const Eigen::Index q_nodes = q_weights.rows();
+  Eigen::Index first = 0;
+  const auto next = [&](const auto& take) {
+    const RowMajor value = weighted_sums(values.middleCols(first, q_nodes), q_weights);
+    const RowMajor bound = weighted_sums(bounds.middleCols(first, q_nodes), q_weights.cwiseAbs());
+    for (std::size_t i = 0; i < moments.size(); ++i) take(moments[i], value.data()[i], bound.data()[i]);
+    first += q_nodes;
+  };
+  for (const auto& [member, error] : interpolated_members(plan)) {
+    next([&](Moments& entry, double value, double bound) {
+      entry.*member = value;
+      entry.*error = bound;
+    });
+  }
+  const auto columns = static_cast<std::size_t>((values.cols() - first) / (q_nodes * kPartsOfAColumn));
+  for (Moments& entry : moments) entry.columns.assign(columns, {});
+  for (std::size_t k = 0; k < columns; ++k) {
+    for (double ColumnMoments::*part : kColumnParts) {
+      next([&](Moments& entry, double value, double bound) {
+        entry.columns[k].*part = value;
+        entry.columns[k].error = std::max(entry.columns[k].error, bound);
+      });
+    }
+  }
 }
 
 }  // namespace dolp

@@ -10,6 +10,7 @@
 
 #include "model/choices.hpp"
 #include "model/moments.hpp"
+#include "plan/weighted_sums.hpp"
 
 namespace dolp {
 
@@ -19,7 +20,7 @@ std::vector<std::vector<std::size_t>> split_grazing_directions(const MomentsRequ
 
 struct ShapeAxis {
   std::vector<double> nodes;     ///< values at which moments are computed; without interpolation all values
-  Eigen::MatrixXd cardinal;      ///< for each value a row of weights, one for each node
+  RowMajor weights;              ///< for each node a row of weights, one for each value of the axis
   Eigen::MatrixXd coefficients;  ///< converts moments at nodes to Chebyshev coefficients; empty without interpolation
   bool is_interpolated() const { return coefficients.size() > 0; }
 };
@@ -36,8 +37,27 @@ struct ShapePlan {
 /// save little or is impossible, for example if the request wants only some pairs of sigma and q of a direction.
 std::optional<ShapePlan> shape_plan(const MomentsRequest& request);
 
-/// Interpolates the moments of one direction and index to all sigma and q of the request. The error bound is the
-/// sum of |weight| * (error bound + estimated interpolation error) over the nodes.
-void interpolate(const ShapePlan& plan, std::span<const Moments> nodes, std::span<Moments> moments);
+/// The known moments of one direction and index. `bounds` has their error bounds and the estimated errors of
+/// interpolation. Shape: nodes of sigma x (moments x nodes of q). The moments are those of kMomentMembers, without the
+/// direct emission if the request does not want it, then i and q of each column.
+struct ShapeBlock {
+  RowMajor values, bounds;
+  bool is_empty() const { return values.size() == 0; }
+};
+
+/// `nodes`: moments at all nodes of the plan for one direction and index.
+ShapeBlock shape_block(const ShapePlan& plan, std::span<const Moments> nodes);
+
+/// Some neighbouring values of sigma and q: `sigmas` values from number `first_sigma`, and so on.
+struct ShapeRange {
+  std::size_t first_sigma = 0;
+  std::size_t sigmas = 0;
+  std::size_t first_q = 0;
+  std::size_t qs = 0;
+};
+
+/// Interpolates the moments of a block to a range of sigma and q. The error bound is the sum of |weight| * bound over
+/// the nodes. Shape: `moments` has range.sigmas x range.qs elements.
+void interpolate(const ShapePlan& plan, const ShapeBlock& block, const ShapeRange& range, std::span<Moments> moments);
 
 }  // namespace dolp

@@ -16,7 +16,7 @@ namespace dolp {
 struct Work {
   double evaluations = 0.0;  ///< number of evaluations of the integrand
   double kernel_s = 0.0;     ///< time of the kernels, from timestamps of the device or from a clock on the CPU
-  double sums_s = 0.0;       ///< host time to sum over slopes, interpolate, and add up responses (response_basis.hpp)
+  double sums_s = 0.0;       ///< host time to sum over slopes, and to add up responses (response_basis.hpp)
   double curves_s = 0.0;     ///< host time to compute tables of reflectances (plan/reflectance_curve.hpp)
   double beams_s = 0.0;      ///< host time to compute beams
   double transfer_s = 0.0;   ///< host time to make the other inputs of the kernels and to read their results

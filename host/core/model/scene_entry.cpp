@@ -140,9 +140,7 @@ OpticalConstants SceneEntries::index_at(const PerAxis& on_axes) const {
   return {at(Axis::kN, index_.n), at(Axis::kK, index_.k)};
 }
 
-SceneEntry SceneEntries::operator[](std::size_t entry) const {
-  if (!is_grid_) return points_[entry];
-  const PerAxis at = axis_positions(entry);
+SceneEntry SceneEntries::grid_entry(const PerAxis& at) const {
   SceneEntry result;
   result.theta_deg = theta_deg()[at[Axis::kTheta]];
   result.shape = slopes_.shape(sigma()[at[Axis::kSigma]], q()[at[Axis::kQ]]);
@@ -281,6 +279,21 @@ std::vector<SceneEntries> SceneEntries::parts(std::size_t most) const {
   };
   cut_along({}, counts_, 0);
   return parts;
+}
+
+const SceneEntry& EntryReader::operator[](std::size_t position) {
+  if (!entries_.is_grid()) return entry_ = entries_[position];
+  const PerAxis& counts = entries_.counts();
+  const bool is_q_fastest = counts[Axis::kSigmaCross] * counts[Axis::kSurfaceAzimuth] == 1;
+  const bool is_next = position_ && position == *position_ + 1;
+  if (is_next && is_q_fastest && on_axes_[Axis::kQ] + 1 < counts[Axis::kQ]) {
+    entry_.shape.q = entries_.q()[++on_axes_[Axis::kQ]];
+  } else {
+    on_axes_ = entries_.axis_positions(position);
+    entry_ = entries_.grid_entry(on_axes_);
+  }
+  position_ = position;
+  return entry_;
 }
 
 void for_each_run(const PerAxis& first, const PerAxis& count, const PerAxis& whole,

@@ -90,7 +90,9 @@ class SceneEntries {
   bool is_grid() const { return is_grid_; }
   std::size_t size() const { return is_grid_ ? grid_size(counts_) : points_.size(); }
   bool empty() const { return size() == 0; }
-  SceneEntry operator[](std::size_t entry) const;
+  SceneEntry operator[](std::size_t entry) const {
+    return is_grid_ ? grid_entry(axis_positions(entry)) : points_[entry];
+  }
   auto all() const {
     return std::views::iota(std::size_t{0}, size()) |
            std::views::transform([this](std::size_t i) { return (*this)[i]; });
@@ -100,6 +102,7 @@ class SceneEntries {
   const std::vector<SceneVariant>& variants() const { return variants_; }
 
   // The functions from here to index_at() need a grid.
+  SceneEntry grid_entry(const PerAxis& on_axes) const;
   const Axes& axes() const { return axes_; }
   const PerAxis& counts() const { return counts_; }
   const std::vector<double>& theta_deg() const { return axes_[Axis::kTheta]; }
@@ -152,6 +155,22 @@ class SceneEntries {
   std::shared_ptr<const Axes> whole_axes_;
   std::vector<SceneVariant> variants_ = {{}};
   std::vector<SceneEntry> points_;
+};
+
+/// Reads entries one by one. In a grid, reading an entry that follows the one before it and differs from it only in q
+/// is faster than SceneEntries::operator[].
+class EntryReader {
+ public:
+  explicit EntryReader(const SceneEntries& entries) : entries_(entries) {}
+  /// The entry number `position`. The reference is valid until the next call.
+  const SceneEntry& operator[](std::size_t position);
+  const PerAxis& on_axes() const { return on_axes_; }  ///< axis positions of the last entry of a grid
+
+ private:
+  const SceneEntries& entries_;
+  std::optional<std::size_t> position_;
+  PerAxis on_axes_ = {};
+  SceneEntry entry_;
 };
 
 /// Calls `use` for each GridRun of a part of a grid. The grid has whole[axis] values on each axis. The part has

@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "base/hash.hpp"
-#include "base/parallel_ranges.hpp"
 #include "base/text.hpp"
 
 namespace dolp {
@@ -115,20 +114,6 @@ TableLayout values_layout(const TableValues& table) {
   for (const DerivativeColumn& column : table.derivatives)
     layout.derivatives.push_back({column.name, column.long_name, column.units});
   return layout;
-}
-
-ResultColumns result_columns(std::span<const PointResult> results, const Quantities& quantities) {
-  constexpr std::size_t kEntriesAtOnce = 16384;
-  ResultColumns columns;
-  for (const Quantity quantity : quantities) columns[quantity].resize(results.size());
-  columns.status.resize(results.size());
-  parallel_ranges(results.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      for (const Quantity quantity : quantities) columns[quantity][i] = results[i][quantity];
-      columns.status[i] = results[i].status;
-    }
-  });
-  return columns;
 }
 
 std::vector<TableBox> boxes_in_order(const PerAxis& counts, std::size_t most) {

@@ -73,9 +73,6 @@ void for_each_variable(const TableLayout& layout, const Use& use) {
         [](auto& table) -> auto& { return table.status; }, std::size_t{1});
 }
 
-/// The columns of `quantities` and the status.
-ResultColumns result_columns(std::span<const PointResult> results, const Quantities& quantities);
-
 /// A part of a table: on each axis, `count` values from position `first`.
 struct TableBox {
   PerAxis first = {};

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/interrupt.hpp"
+#include "base/parallel_ranges.hpp"
 #include "base/text.hpp"
 #include "table/netcdf_file.hpp"
 
@@ -276,12 +277,19 @@ TableStore::TableStore(const TableLayout& layout, AtomicFile& file, Earlier earl
 TableStore::~TableStore() = default;
 
 ValueSums TableStore::write(const TableValues& part, const PerAxis& first) {
-  impl_->each_variable(part, {first, part.counts()}, [&](int variable, const Hyperslab& at, const auto& values) {
-    if (interrupted()) throw Cancelled();
-    impl_->check(put_values(impl_->file, variable, at, values.data()));
+  ValueSums sums;
+  const auto write_values = [&] {
+    impl_->each_variable(part, {first, part.counts()}, [&](int variable, const Hyperslab& at, const auto& values) {
+      if (interrupted()) throw Cancelled();
+      impl_->check(put_values(impl_->file, variable, at, values.data()));
+    });
+    impl_->call(nc_sync);
+  };
+  parallel_ranges(2, 1, [&](std::size_t task, std::size_t) {
+    if (task == 0) write_values();
+    if (task == 1) sums = value_sums(part, impl_->layout, first);
   });
-  impl_->call(nc_sync);
-  return value_sums(part, impl_->layout, first);
+  return sums;
 }
 
 TableValues TableStore::read(const TableBox& box) const {

@@ -136,8 +136,10 @@ Results Evaluator::evaluate(const Scene& scene, const std::vector<Column>& point
     TableLayout layout = table_layout(values, run);
     layout.quantities = output_quantities(values);
     layout.head.attributes = all_attributes(values, layout, outcome, options.history);
-    Results results{
-        {run_columns(layout, collected.take())}, layout.quantities, layout.head.stokes_units, layout.head.attributes};
+    Results results{{run_columns(layout.quantities, collected.take())},
+                    layout.quantities,
+                    layout.head.stokes_units,
+                    layout.head.attributes};
     results.integrand_evaluations = outcome.evaluation.evaluations;
     return results;
   });

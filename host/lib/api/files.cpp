@@ -134,7 +134,7 @@ Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& 
     double rows_s = 0.0;
     CallbackSink rows([&](const SceneEntries&, RunResults results) {
       const Clock::time_point start = Clock::now();
-      csv.append(run_columns(layout, std::move(results)));
+      csv.append(run_columns(layout.quantities, std::move(results)));
       rows_s += seconds_since(start);
     });
     RunOutcome outcome = run.compute(rows);

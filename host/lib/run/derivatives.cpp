@@ -166,8 +166,8 @@ std::vector<DerivativeColumn> scene_derivatives(const SceneValues& scene, const 
   return columns;
 }
 
-void add_derivatives(const SceneValues& scene, const SceneEntries& entries, const std::string& key,
-                     ModelEvaluator& evaluator, const Progress& progress, RunResults& results) {
+void compute_derivatives(const SceneValues& scene, const SceneEntries& entries, const std::string& key,
+                         ModelEvaluator& evaluator, const Progress& progress, std::span<DerivativeColumn> columns) {
   Steps steps(scene, entries, key);
   std::optional<StepResults> at = steps.results(evaluator, progress);
   if (!at && steps.is_on_axis()) {
@@ -176,9 +176,8 @@ void add_derivatives(const SceneValues& scene, const SceneEntries& entries, cons
   }
   constexpr std::array kDerived = {Quantity::kDolp, Quantity::kQOverI};
   static_assert(kDerived.size() + 1 == kDerivativesPerKey);
-  const std::size_t first = results.derivatives.size();
-  results.derivatives.resize(first + kDerivativesPerKey,
-                             std::vector<double>(entries.size(), std::numeric_limits<double>::quiet_NaN()));
+  for (DerivativeColumn& column : columns)
+    column.values.assign(entries.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const double step = at ? steps.step(entries[i]) : 0.0;
     if (!(step > 0.0)) continue;
@@ -187,12 +186,12 @@ void add_derivatives(const SceneValues& scene, const SceneEntries& entries, cons
       const auto value = [&](std::size_t k) { return (*at)[k][i][kDerived[j]]; };
       const double wide = (value(1) - value(0)) / (2.0 * step);
       const double narrow = (value(3) - value(2)) / step;
-      results.derivatives[first + j][i] = (4.0 * narrow - wide) / 3.0;
+      columns[j].values[i] = (4.0 * narrow - wide) / 3.0;
       const double own = std::abs(narrow - wide) / 3.0;
       change = std::isnan(own) ? own : std::max(change, own);
     }
     const auto bound = [&](std::size_t k) { return (*at)[k][i][Quantity::kErrorEstimate]; };
-    results.derivatives.back()[i] = change + ((bound(0) + bound(1)) / 6.0 + (bound(2) + bound(3)) * (4.0 / 3.0)) / step;
+    columns.back().values[i] = change + ((bound(0) + bound(1)) / 6.0 + (bound(2) + bound(3)) * (4.0 / 3.0)) / step;
   }
 }
 
@@ -206,7 +205,11 @@ void WithDerivatives::write(const SceneEntries& part, RunResults results, const 
     const Progress is_wanted = [&](std::size_t, std::size_t) { return progress_(done_, done_); };
     const double before_s = busy_s();
     const auto start = std::chrono::steady_clock::now();
-    for (const std::string& key : keys_) add_derivatives(scene_, part, key, *evaluator_, is_wanted, results);
+    results.derivatives = columns_;
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
+      compute_derivatives(scene_, part, keys_[i], *evaluator_, is_wanted,
+                          std::span(results.derivatives).subspan(i * kDerivativesPerKey, kDerivativesPerKey));
+    }
     time_s_ += std::max(0.0, seconds_since(start) - (busy_s() - before_s));
   }
   sink_.write(part, std::move(results), so_far);

@@ -7,6 +7,7 @@
 
 #include "model/further_light.hpp"
 #include "model/scene_entry.hpp"
+#include "plan/weighted_sums.hpp"
 #include "scene/scene.hpp"
 #include "spectrum/spectral_rules.hpp"
 
@@ -47,8 +48,6 @@ class GrooveTable {
 
  private:
   static constexpr std::array kOuterAxes = {Axis::kWavelength, Axis::kN, Axis::kK, Axis::kTheta};
-
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
   /// ln(i / (1 - i)) and q / (i (1 - i)) for one material and band. Shape: nodes of kOuterAxes x groups x sigma x q.
   struct Block {

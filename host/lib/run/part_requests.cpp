@@ -252,20 +252,20 @@ void PartRequests::request_indices(const SceneEntries& grid, const std::vector<c
 
 void PartRequests::mark_wanted(const Selection& selection) {
   moments_.wanted.assign(moments_.size(), 0);
+  EntryReader reader(selection.part);
   for (std::size_t i = 0; i < selection.size(); ++i) {
-    const SceneEntry entry = selection[i];
+    const SceneEntry& entry = reader[selection.position(i)];
     if (!wants_moments(scene_, entry, plan_)) continue;
-    const MomentsSpan span = member_moments(i);
+    const MomentsSpan span = member_moments(i, reader.on_axes());
     const std::size_t samples = span.stride == 0 ? 1 : samples_[entry.variant].size();
     for (std::size_t j = 0; j < samples; ++j) moments_.wanted[span.first + j * span.stride] = 1;
   }
   if (moments_.wanted_count() == moments_.size()) moments_.wanted.clear();
 }
 
-PartRequests::MomentsSpan PartRequests::member_moments(std::size_t member) const {
+PartRequests::MomentsSpan PartRequests::member_moments(std::size_t member, const PerAxis& on_axes) const {
   if (!spans_of_points_.empty()) return spans_of_points_[member];
   const SceneEntries& grid = selection_.part;
-  const PerAxis on_axes = grid.axis_positions(selection_.position(member));
   const std::size_t entries_per_index = moments_.theta_deg.size() * moments_.shapes();
   std::size_t shape = sigma_at_[on_axes[Axis::kSigma]] * moments_.q.size() + q_at_[on_axes[Axis::kQ]];
   shape = shape * moments_.sigma_cross.size() + on_axes[Axis::kSigmaCross] % moments_.sigma_cross.size();

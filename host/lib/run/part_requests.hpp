@@ -67,7 +67,8 @@ class PartRequests {
     std::size_t first = 0;
     std::size_t stride = 0;
   };
-  MomentsSpan member_moments(std::size_t member) const;
+  /// `on_axes`: axis positions of the member's entry, if the entries are a grid.
+  MomentsSpan member_moments(std::size_t member, const PerAxis& on_axes) const;
   /// For a grid: the direction whose moments a member uses, as a position in moments().theta_deg. Nullopt if nothing is
   /// requested for its zenith.
   std::optional<std::size_t> requested_direction(std::size_t member) const;

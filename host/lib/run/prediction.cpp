@@ -232,10 +232,9 @@ RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries,
       }
     }
     run.beams += beams;
-    // Table columns (values and status) take memory twice, because the previous part is still being written.
-    const std::size_t columns = part.size() * (kQuantityCount * sizeof(double) + sizeof(std::uint32_t));
-    largest = std::max(largest, part.size() * sizeof(PointResult) + columns + columns_before +
-                                    first.moments.size() * sizeof(Moments) + largest_step +
+    // Columns of results take memory twice, because the previous part is still being written.
+    const std::size_t columns = part.size() * sizeof(PointResult);
+    largest = std::max(largest, columns + columns_before + first.moments.size() * sizeof(Moments) + largest_step +
                                     beams * (sizeof(ScatteringEntry) + sizeof(ScatteringMatrix)));
     columns_before = columns;
   }

@@ -264,12 +264,14 @@ EntryResponses compute_responses(MomentsRequest request, const Accuracy& accurac
       };
       return planned_moments(MomentsPlan(pass), evaluator, pass_progress, host_work);
     };
-    const std::vector<Moments> reflected = evaluated(Response::Of::kReflected);
-    const std::vector<Moments> direct = wants_direct ? evaluated(Response::Of::kDirect) : std::vector<Moments>();
-    for (std::size_t i = 0; i < reflected.size(); ++i) {
+    const PlannedMoments reflected = evaluated(Response::Of::kReflected);
+    const PlannedMoments direct = wants_direct ? evaluated(Response::Of::kDirect) : PlannedMoments();
+    MomentsReader reflected_reader(reflected), direct_reader(direct);
+    for (std::size_t i = 0; i < request.size(); ++i) {
       if (!request.is_wanted(i)) continue;
       const double cosine = cos_sin_deg(request[i].theta_deg).cos;
-      take_better(reflected[i], wants_direct ? &direct[i] : nullptr, cosine, i, all);
+      const Moments* const own_direct = wants_direct ? &direct_reader.read(i, 1).front() : nullptr;
+      take_better(reflected_reader.read(i, 1).front(), own_direct, cosine, i, all);
       request.wanted[i] = misses(all, i, accuracy.tolerance) ? 1 : 0;
     }
     if (accuracy.precision != Precision::kFloat && evaluator.has_double()) request.precision = Precision::kDouble;

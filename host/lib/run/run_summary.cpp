@@ -72,17 +72,24 @@ void raise(std::optional<double>& worst, const std::optional<double>& error) {
   if (error) worst = std::max(worst.value_or(0.0), *error);
 }
 
-void add_result(RunSummary& summary, double theta_deg, double sigma, const PointResult& result) {
-  for (std::size_t bit = 0; bit < kStatusBits.size(); ++bit)
-    summary.status[bit] += (result.status & kStatusBits[bit].mask) != 0 ? 1 : 0;
-  if ((result.status & kNoDolpPromised) == 0) raise(summary.worst_error, result[Quantity::kErrorEstimate]);
-  if ((result.status & kOutsideModelDomain) == 0) raise(summary.worst_rho_error, result[Quantity::kRhoErrorEstimate]);
-  summary.model_change.add(result);
-  if (std::isnan(result[Quantity::kAlbedo])) return;
-  widen(summary.albedo, summary.albedos++ == 0, {result[Quantity::kAlbedo], result[Quantity::kAlbedo]});
+void add_result(RunSummary& summary, const RunResults& results, std::size_t i) {
+  const std::uint32_t status = results.status[i];
+  for (std::size_t bit = 0; status != 0 && bit < kStatusBits.size(); ++bit)
+    summary.status[bit] += (status & kStatusBits[bit].mask) != 0 ? 1 : 0;
+  if ((status & kNoDolpPromised) == 0) raise(summary.worst_error, results[Quantity::kErrorEstimate][i]);
+  const std::vector<double>& rho_errors = results[Quantity::kRhoErrorEstimate];
+  if ((status & kOutsideModelDomain) == 0 && !rho_errors.empty()) raise(summary.worst_rho_error, rho_errors[i]);
+  if (promises_dolp(status)) {
+    summary.model_change.add(
+        {results.model_change[i], kPointsInAll * results.model_change_dolp[i], status & kModelInaccurate});
+  }
+}
+
+void add_albedo(RunSummary& summary, double albedo, double theta_deg, double sigma) {
+  widen(summary.albedo, summary.albedos++ == 0, {albedo, albedo});
   const EnergyRange here{1, {theta_deg, theta_deg}, {sigma, sigma}};
-  if (result[Quantity::kAlbedo] < kAlbedoMin) add_range(summary.loses, here);
-  if (result[Quantity::kAlbedo] > kAlbedoMax) add_range(summary.gains, here);
+  if (albedo < kAlbedoMin) add_range(summary.loses, here);
+  if (albedo > kAlbedoMax) add_range(summary.gains, here);
 }
 
 }  // namespace
@@ -126,14 +133,18 @@ std::vector<std::size_t> checked_positions(std::size_t size, std::size_t count, 
   return {positions.begin(), positions.end()};
 }
 
-void RunSummary::add(const SceneValues& scene, const SceneEntries& part, std::span<const PointResult> results) {
+void RunSummary::add(const SceneValues& scene, const SceneEntries& part, const RunResults& results) {
   std::vector<RunSummary> summaries((results.size() + kSummaryEntriesAtOnce - 1) / kSummaryEntriesAtOnce);
   parallel_ranges(results.size(), kSummaryEntriesAtOnce, [&](std::size_t first, std::size_t last) {
     RunSummary& summary = summaries[first / kSummaryEntriesAtOnce];
     summary.entries = last - first;
-    for (std::size_t i = first; i < last; ++i) {
-      const SceneEntry entry = part[i];
-      add_result(summary, moment_zenith_deg(scene, entry), entry.shape.sigma, results[i]);
+    for (std::size_t i = first; i < last; ++i) add_result(summary, results, i);
+    const std::vector<double>& albedo_column = results[Quantity::kAlbedo];
+    EntryReader reader(part);
+    for (std::size_t i = first; i < last && !albedo_column.empty(); ++i) {
+      const SceneEntry& entry = reader[i];
+      if (!std::isnan(albedo_column[i]))
+        add_albedo(summary, albedo_column[i], moment_zenith_deg(scene, entry), entry.shape.sigma);
     }
   });
   for (const RunSummary& summary : summaries) add(summary);

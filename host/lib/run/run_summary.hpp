@@ -8,11 +8,11 @@
 #include <utility>
 
 #include <cstdint>
-#include <dolp/results.hpp>
 #include <dolp/status.hpp>
 #include <vector>
 #include "model/evaluator.hpp"
 #include "model/scene_entry.hpp"
+#include "run/run_results.hpp"
 #include "scene/scene.hpp"
 
 namespace dolp {
@@ -67,7 +67,7 @@ struct RunSummary {
   double check_s = 0.0;  ///< time of the check, which the other times do not contain
   Work work;
 
-  void add(const SceneValues& scene, const SceneEntries& part, std::span<const PointResult> results);
+  void add(const SceneValues& scene, const SceneEntries& part, const RunResults& results);
   void add(const RunSummary& other);
 
   std::size_t count(std::uint32_t bit) const;

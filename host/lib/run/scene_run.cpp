@@ -19,6 +19,7 @@
 #include "run/derivatives.hpp"
 #include "run/groove_table.hpp"
 #include "run/part_requests.hpp"
+#include "run/scene_table.hpp"
 #include "run/table_scene.hpp"
 
 namespace dolp {
@@ -51,12 +52,13 @@ struct RunContext {
   const Spectra& spectra;
   ModelEvaluator* evaluator;
   std::shared_ptr<const ResponseBasis> basis;
+  Quantities quantities;                       ///< those that the run computes
   RunSummary& summary;                         ///< summary of the run so far
   std::shared_ptr<const GrooveTable> grooves;  ///< null for a list of points
 };
 
 struct EvaluatorResults {
-  std::vector<Moments> moments;
+  PlannedMoments moments;
   std::vector<ScatteringMatrix> beams;
 };
 
@@ -67,17 +69,18 @@ class MemberResults {
  public:
   MemberResults(const RunContext& context, const Selection& selection, const PartRequests& requests,
                 const EvaluatorResults& evaluated)
-      : context_(context), selection_(selection), requests_(requests), evaluated_(evaluated) {
+      : context_(context), selection_(selection), requests_(requests), evaluated_(evaluated), entries_(selection.part) {
     if (context.grooves) grooves_.emplace(*context.grooves, selection.part);
   }
 
   PointResult operator()(std::size_t member) {
-    const SceneEntry entry = selection_[member];
+    const SceneEntry& entry = entries_[selection_.position(member)];
     const Direction direction = view_direction(entry);
     const std::vector<FacetOptics>& samples = context_.spectra.indices[entry.variant];
     if (moments_.size() != samples.size()) {
       moments_.assign(samples.size(), {});
       beams_.resize(samples.size());
+      readers_.resize(samples.size(), MomentsReader(evaluated_.moments));
     }
     const Radiometry& radiometry = context_.spectra.radiometries[entry.variant];
     if (entry.index && (entry.index != index_ || entry.variant != variant_)) {
@@ -133,11 +136,12 @@ class MemberResults {
       }
       return moments_;
     }
-    const PartRequests::MomentsSpan span = requests_.member_moments(member);
-    if (span.stride == 1 || moments_.size() == 1) {
-      return std::span(evaluated_.moments).subspan(span.first, moments_.size());
+    const PartRequests::MomentsSpan span = requests_.member_moments(member, entries_.on_axes());
+    if (span.stride == 1 || moments_.size() == 1) return readers_.front().read(span.first, moments_.size());
+    for (std::size_t j = 0; j < moments_.size(); ++j) {
+      MomentsReader& reader = readers_[span.stride == 0 ? 0 : j];
+      moments_[j] = reader.read(span.first + j * span.stride, 1).front();
     }
-    for (std::size_t j = 0; j < moments_.size(); ++j) moments_[j] = evaluated_.moments[span.first + j * span.stride];
     return moments_;
   }
 
@@ -155,7 +159,9 @@ class MemberResults {
   const Selection& selection_;
   const PartRequests& requests_;
   const EvaluatorResults& evaluated_;
+  EntryReader entries_;
   std::vector<Moments> moments_;
+  std::vector<MomentsReader> readers_;  ///< one for each spectral sample
   std::vector<Scattered> beams_;
   std::optional<GrooveTable::Reader> grooves_;
   std::vector<FurtherLight> further_;
@@ -171,7 +177,7 @@ Progress offset_progress(const Progress& progress, std::size_t before, std::size
   return [&progress, before, total](std::size_t done, std::size_t) { return progress(before + done, total); };
 }
 
-EvaluatorResults run_requests(const RunContext& context, const PartRequests& requests, const MomentsPlan& plan,
+EvaluatorResults run_requests(const RunContext& context, const PartRequests& requests, MomentsPlan plan,
                               const Progress& progress) {
   const std::size_t moments = requests.moments().wanted_count();
   const std::size_t beams = requests.beams().entries.size();
@@ -180,7 +186,7 @@ EvaluatorResults run_requests(const RunContext& context, const PartRequests& req
   EvaluatorResults evaluated;
   if (moments > 0) {
     evaluated.moments =
-        planned_moments(plan, *context.evaluator, offset_progress(progress, 0, total), context.summary.work);
+        planned_moments(std::move(plan), *context.evaluator, offset_progress(progress, 0, total), context.summary.work);
   }
   if (beams == 0) return evaluated;
   const EvaluationReport before = context.evaluator->report();
@@ -190,27 +196,26 @@ EvaluatorResults run_requests(const RunContext& context, const PartRequests& req
   return evaluated;
 }
 
-std::vector<PointResult> selection_results(const RunContext& context, const Selection& selection,
-                                           const PartRequests& requests, const MomentsPlan& plan,
-                                           const Progress& progress) {
-  const EvaluatorResults evaluated = run_requests(context, requests, plan, progress);
+RunResults selection_results(const RunContext& context, const Selection& selection, const PartRequests& requests,
+                             MomentsPlan plan, const Progress& progress) {
+  const EvaluatorResults evaluated = run_requests(context, requests, std::move(plan), progress);
   const auto start = std::chrono::steady_clock::now();
-  std::vector<PointResult> results(selection.size());
+  RunResults results(context.quantities, {}, selection.size());
   parallel_ranges(results.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
     MemberResults member_result(context, selection, requests, evaluated);
-    for (std::size_t i = first; i < last; ++i) results[i] = member_result(i);
+    for (std::size_t i = first; i < last; ++i) results.set(i, member_result(i));
   });
   context.summary.radiometry_s += seconds_since(start);
   return results;
 }
 
-std::vector<PointResult> computed_at(const RunContext& context, const Selection& selection,
-                                     const RefinementLevel& level, const Progress& progress) {
+RunResults computed_at(const RunContext& context, const Selection& selection, const RefinementLevel& level,
+                       const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const PartRequests requests(context.scene, context.spectra.indices, context.plan, selection, level);
-  const MomentsPlan plan(requests.moments());
+  MomentsPlan plan(requests.moments());
   context.summary.response_basis_s += seconds_since(start);
-  return selection_results(context, selection, requests, plan, progress);
+  return selection_results(context, selection, requests, std::move(plan), progress);
 }
 
 bool is_better(const PointResult& a, const PointResult& b) {
@@ -246,11 +251,12 @@ RefinementLevel level_of_direction(RefinementLevel next, const RunContext& conte
 /// kWholeDirectionMissRatio entries miss the tolerance, all entries are queued for one level that may interpolate too.
 /// Otherwise each entry that misses the tolerance is queued for its own level, without interpolation.
 void queue_refinement(const RunContext& context, const SceneEntries& part, const RefinementLevel& last,
-                      std::span<const std::size_t> members, std::span<const PointResult> results,
+                      std::span<const std::size_t> members, const RunResults& results, std::size_t first,
                       EntriesByLevel& by_level) {
   std::vector<std::pair<RefinementLevel, std::size_t>> missed;
   for (std::size_t j = 0; j < members.size(); ++j) {
-    const auto next = next_level(last, results[j], context.scene.accuracy, context.evaluator->has_double());
+    if ((results.status[first + j] & kAnyToleranceNotMet) == 0) continue;
+    const auto next = next_level(last, results.at(first + j), context.scene.accuracy, context.evaluator->has_double());
     if (next && would_improve(context, part[members[j]])) missed.emplace_back(*next, members[j]);
   }
   if (last.may_interpolate && missed.size() * kWholeDirectionMissRatio > members.size()) {
@@ -265,7 +271,7 @@ void queue_refinement(const RunContext& context, const SceneEntries& part, const
 
 struct FirstResults {
   RefinementLevel level;
-  std::vector<PointResult> results;
+  RunResults results;
   std::vector<char> is_interpolated;  ///< one flag per direction of the part
 };
 
@@ -276,10 +282,10 @@ FirstResults first_results(const RunContext& context, const SceneEntries& part, 
   if (first.level.may_interpolate) first.level.basis = context.basis;
   const auto start = std::chrono::steady_clock::now();
   const PartRequests requests(context.scene, context.spectra.indices, context.plan, {part}, first.level);
-  const MomentsPlan plan(requests.moments());
+  MomentsPlan plan(requests.moments());
   context.summary.response_basis_s += seconds_since(start);
-  first.results = selection_results(context, {part}, requests, plan, progress);
   const std::vector<char> saves = plan.saving_directions();
+  first.results = selection_results(context, {part}, requests, std::move(plan), progress);
   for (std::size_t i = 0; !saves.empty() && i < part.size(); i += part.entries_per_direction()) {
     const std::optional<std::size_t> direction = requests.requested_direction(i);
     first.is_interpolated.push_back(direction ? saves[*direction] : char{0});
@@ -291,16 +297,16 @@ FirstResults first_results(const RunContext& context, const SceneEntries& part, 
 void refine(const RunContext& context, const SceneEntries& part, FirstResults& first, const Progress& progress) {
   const Progress is_wanted = [&](std::size_t, std::size_t) { return progress(1, 1); };
   const std::size_t entries_per_direction = part.is_grid() ? part.entries_per_direction() : 1;
-  std::vector<PointResult>& results = first.results;
+  RunResults& results = first.results;
   EntriesByLevel by_level;
   // The entries of one direction are neighbours in `members`.
-  const auto plan = [&](RefinementLevel last, std::span<const std::size_t> members, std::span<const PointResult> found,
+  const auto plan = [&](RefinementLevel last, std::span<const std::size_t> members, const RunResults& found,
                         std::span<const char> is_interpolated) {
     for (std::size_t i = 0, end = 0; i < members.size(); i = end) {
       const std::size_t direction = members[i] / entries_per_direction;
       while (end < members.size() && members[end] / entries_per_direction == direction) ++end;
       if (!is_interpolated.empty()) last.may_interpolate = is_interpolated[direction] != 0;
-      queue_refinement(context, part, last, members.subspan(i, end - i), found.subspan(i, end - i), by_level);
+      queue_refinement(context, part, last, members.subspan(i, end - i), found, i, by_level);
     }
   };
   std::vector<std::size_t> all(results.size());
@@ -313,22 +319,23 @@ void refine(const RunContext& context, const SceneEntries& part, FirstResults& f
     const std::vector<std::size_t> members = std::move(by_level.begin()->second);
     by_level.erase(by_level.begin());
     if (level.may_interpolate) level.basis = context.basis;
-    const std::vector<PointResult> better = computed_at(context, {part, members}, level, is_wanted);
+    const RunResults better = computed_at(context, {part, members}, level, is_wanted);
     for (std::size_t j = 0; j < members.size(); ++j) {
-      if (is_better(better[j], results[members[j]])) results[members[j]] = better[j];
+      const PointResult result = better.at(j);
+      if (is_better(result, results.at(members[j]))) results.set(members[j], result);
     }
     plan(level, members, better, {});
   }
 }
 
-std::vector<PointResult> recompute_for_check(const RunContext& context, const SceneEntries& part,
-                                             const RefinementLevel& first, std::span<const std::size_t> positions) {
+RunResults recompute_for_check(const RunContext& context, const SceneEntries& part, const RefinementLevel& first,
+                               std::span<const std::size_t> positions) {
   if (positions.empty()) return {};
   const Progress none = [](std::size_t, std::size_t) { return true; };
   const RunSummary before = context.summary;
   const EvaluationReport evaluated_before = context.evaluator->report();
   const auto start = std::chrono::steady_clock::now();
-  std::vector<PointResult> results = computed_at(context, {part, positions}, check_level(first), none);
+  RunResults results = computed_at(context, {part, positions}, check_level(first), none);
   // The times of the check become one time, so that they do not count twice.
   const EvaluationReport evaluated = context.evaluator->report();
   RunSummary& summary = context.summary;
@@ -357,28 +364,27 @@ bool wants_evaluator(const SceneValues& scene, const SceneEntries& entries, cons
   });
 }
 
-std::vector<PointResult> part_results(const RunContext& context, const SceneEntries& part,
-                                      std::span<const std::size_t> checked, SelfCheck& check,
-                                      const Progress& progress) {
+RunResults part_results(const RunContext& context, const SceneEntries& part, std::span<const std::size_t> checked,
+                        SelfCheck& check, const Progress& progress) {
   if (!wants_evaluator(context.scene, part, context.plan)) {
-    std::vector<PointResult> results = computed_at(context, {part}, {}, progress);
+    RunResults results = computed_at(context, {part}, {}, progress);
     if (!progress(1, 1)) throw Cancelled();
     return results;
   }
   FirstResults first = first_results(context, part, progress);
-  std::vector<PointResult>& results = first.results;
+  RunResults& results = first.results;
   const std::vector<std::size_t> positions = positions_in(context, part, checked);
-  const std::vector<PointResult> again = recompute_for_check(context, part, first.level, positions);
+  const RunResults again = recompute_for_check(context, part, first.level, positions);
   refine(context, part, first, progress);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     SelfCheck entry_check;
-    entry_check.add(results[positions[i]], again[i]);
+    entry_check.add(results.at(positions[i]), again.at(i));
     check.add(entry_check);
     if (entry_check.worst_ratio <= 1.0) continue;
     const std::size_t direction = positions[i] / part.entries_per_direction();
-    for (PointResult& result :
-         std::span(results).subspan(direction * part.entries_per_direction(), part.entries_per_direction()))
-      result.status |= kAnyToleranceNotMet;
+    for (std::uint32_t& status :
+         std::span(results.status).subspan(direction * part.entries_per_direction(), part.entries_per_direction()))
+      status |= kAnyToleranceNotMet;
   }
   return std::move(first.results);
 }
@@ -390,20 +396,13 @@ void CollectedResults::write(const SceneEntries& part, RunResults results, const
     results_ = std::move(results);
     return;
   }
-  const auto add = [&](auto& all, const auto& more) {
-    if (!part.is_grid()) {
-      all.insert(all.end(), more.begin(), more.end());
-      return;
-    }
-    all.resize(entries_.size());
-    for_each_run(part.first_in(entries_), part.counts(), entries_.counts(), [&](const GridRun& run) {
-      std::copy_n(more.begin() + static_cast<std::ptrdiff_t>(run.in_part), run.count,
-                  all.begin() + static_cast<std::ptrdiff_t>(run.in_whole));
-    });
-  };
-  add(results_.entries, results.entries);
-  results_.derivatives.resize(results.derivatives.size());
-  for (std::size_t i = 0; i < results.derivatives.size(); ++i) add(results_.derivatives[i], results.derivatives[i]);
+  if (collected_ == 0) results_ = RunResults(results.quantities(), results.derivatives, entries_.size());
+  if (!part.is_grid()) results_.copy(results, 0, collected_, part.size());
+  if (part.is_grid()) {
+    for_each_run(part.first_in(entries_), part.counts(), entries_.counts(),
+                 [&](const GridRun& run) { results_.copy(results, run.in_part, run.in_whole, run.count); });
+  }
+  collected_ += part.size();
 }
 
 std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spectral_samples) {
@@ -442,7 +441,7 @@ RunOutcome Run::compute(Sink& sink) {
   const Progress counted = [&](std::size_t done, std::size_t) {
     return !progress_ || progress_(done, entries_.size());
   };
-  WithDerivatives all(scene_, derivative_keys_, evaluator_, sink, counted);
+  WithDerivatives all(scene_, derivative_keys_, derivatives_, evaluator_, sink, counted);
   outcome_.summary = run_scene(scene_, entries_, outcome_.plan, evaluator_, all, progress_);
   outcome_.derivatives_s = all.time_s();
   if (evaluator_) {
@@ -458,6 +457,7 @@ double Run::wall_s() const { return seconds_since(start_); }
 RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& given,
                      ModelEvaluator* evaluator, Sink& sink, const Progress& progress) {
   const EffectPlan plan = with_spectra(given, scene, entries);
+  const Quantities quantities = output_quantities(scene, &plan);
   const std::size_t samples = plan.rules->most_samples(entries);
   const std::size_t whole = entries.is_grid() ? grid_size(entries.whole()) : entries.size();
   const bool has_moments = entries.is_grid() && plan.kept.moments;
@@ -486,9 +486,9 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
       const auto spectra_start = std::chrono::steady_clock::now();
       const Spectra spectra(scene, plan, part.variants(), evaluator);
       summary.radiometry_s += seconds_since(spectra_start);
-      const RunContext context{scene, plan, spectra, evaluator, basis, summary, grooves};
-      RunResults results{part_results(context, part, checked, summary.check, part_progress)};
-      summary.add(scene, part, results.entries);
+      const RunContext context{scene, plan, spectra, evaluator, basis, quantities, summary, grooves};
+      RunResults results = part_results(context, part, checked, summary.check, part_progress);
+      summary.add(scene, part, results);
       sink.write(part, std::move(results), with_evaluation());
     }
     before += part.size();
@@ -501,7 +501,7 @@ std::vector<PointResult> evaluate_scene(const SceneValues& scene, const SceneEnt
                                         const std::optional<EffectPlan>& plan) {
   CollectedResults results(entries);
   run_scene(scene, entries, plan ? *plan : keep_everything(scene), &evaluator, results, progress);
-  return results.take().entries;
+  return results.take().list();
 }
 
 }  // namespace dolp

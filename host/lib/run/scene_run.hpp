@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include <dolp/results.hpp>
 #include "model/evaluator.hpp"
 #include "model/scene_entry.hpp"
 #include "plan/effects.hpp"
+#include "run/run_results.hpp"
 #include "run/run_summary.hpp"
 #include "scene/points.hpp"
 #include "scene/scene.hpp"
@@ -35,12 +35,6 @@ void check_surface(const SceneValues& scene, const Points& points);
 /// Throws InputError if the scene's grid has several materials or bands, and no column of the points chooses one.
 void check_labels_chosen(const SceneValues& scene, const Points& points = {});
 
-/// The results of some entries, and for each column of Run::derivatives() one value per entry.
-struct RunResults {
-  std::vector<PointResult> entries;
-  std::vector<std::vector<double>> derivatives = {};
-};
-
 /// A receiver of the results of a run, part by part.
 class Sink {
  public:
@@ -62,6 +56,7 @@ class CollectedResults final : public Sink {
  private:
   const SceneEntries& entries_;
   RunResults results_;
+  std::size_t collected_ = 0;
 };
 
 class CallbackSink final : public Sink {

@@ -242,11 +242,13 @@ std::string run_identity(const SceneValues& scene, const std::string& evaluator,
       data_hash(scene));
 }
 
-ResultColumns run_columns(const TableLayout& layout, RunResults results) {
-  ResultColumns columns = result_columns(results.entries, layout.quantities);
-  columns.derivatives = layout.derivatives;
-  for (std::size_t i = 0; i < columns.derivatives.size(); ++i)
-    columns.derivatives[i].values = std::move(results.derivatives[i]);
+ResultColumns run_columns(const Quantities& quantities, RunResults results) {
+  const std::size_t size = results.size();
+  ResultColumns columns{.status = std::move(results.status), .derivatives = std::move(results.derivatives)};
+  for (const Quantity quantity : quantities) {
+    columns[quantity] = std::move(results[quantity]);
+    columns[quantity].resize(size, std::numeric_limits<double>::quiet_NaN());
+  }
   return columns;
 }
 
@@ -254,7 +256,7 @@ TableValues table_part(const TableLayout& layout, const SceneEntries& part, RunR
   TableValues table;
   table.axes = part.axes();
   table.labels = layout.head.labels;
-  static_cast<ResultColumns&>(table) = run_columns(layout, std::move(results));
+  static_cast<ResultColumns&>(table) = run_columns(layout.quantities, std::move(results));
   if (!layout.has_status) table.status.clear();
   return table;
 }

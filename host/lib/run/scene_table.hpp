@@ -34,8 +34,8 @@ void fill_used(TableHead& head, const SceneValues& scene);
 inline constexpr const char* kIdentity = "identity";
 std::string run_identity(const SceneValues& scene, const std::string& evaluator, const RunOptions& options);
 
-/// The columns of the layout's quantities and derivatives, and the status.
-ResultColumns run_columns(const TableLayout& layout, RunResults results);
+/// The columns of `quantities`, the derivatives and the status. Values are NaN if the run has not computed them.
+ResultColumns run_columns(const Quantities& quantities, RunResults results);
 TableValues table_part(const TableLayout& layout, const SceneEntries& part, RunResults results);
 
 struct RunRecord {

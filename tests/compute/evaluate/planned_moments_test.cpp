@@ -69,7 +69,7 @@ TEST(PlannedMoments, MomentsWithAKink_StateALargeError) {
   Invented invented(kinked);
   Work work;
   constexpr double kRounding = 1e-14;
-  const std::vector<Moments> moments = planned_moments(MomentsPlan(request), invented, {}, work);
+  const std::vector<Moments> moments = planned_moments(MomentsPlan(request), invented, {}, work).all();
   double largest_bound = 0.0;
   for (std::size_t i = 0; i < moments.size(); ++i) {
     const double r = kinked(request[i].shape);
@@ -87,7 +87,7 @@ TEST(PlannedMoments, NodeWithoutABound_ItsDirectionIsComputedEntryByEntry) {
   const MomentsRequest request = dense_request();
   Invented invented(infinite);
   Work work;
-  const std::vector<Moments> moments = planned_moments(MomentsPlan(request), invented, {}, work);
+  const std::vector<Moments> moments = planned_moments(MomentsPlan(request), invented, {}, work).all();
   ASSERT_EQ(invented.requests.size(), 2U);
   EXPECT_EQ(invented.requests[1].size(), request.size());
   EXPECT_EQ(invented.requests[1].tolerance, request.tolerance);

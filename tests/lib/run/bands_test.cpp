@@ -68,8 +68,9 @@ TableCheck check_with(std::optional<double> dolp) {
   scene.grid[Axis::kQ] = {3.0};
   CpuEvaluator evaluator;
   const SceneEntries grid = grid_entries(scene);
-  TableValues table = table_part(table_layout(scene, keep_everything(scene), scene.grid), grid,
-                                 {evaluate_scene(scene, grid, evaluator, {})});
+  CollectedResults results(grid);
+  run_scene(scene, grid, keep_everything(scene), &evaluator, results, {});
+  TableValues table = table_part(table_layout(scene, keep_everything(scene), scene.grid), grid, results.take());
   if (dolp) table[Quantity::kDolp][0] = *dolp;
   return check_table({std::move(table), {0, 1, 2}}, scene, "bands", {});
 }

@@ -47,7 +47,9 @@ std::vector<std::vector<double>> derivatives_with(const SceneValues& scene, cons
   Run run(scene, entries, {.derivatives = keys}, [&] { return &evaluator; });
   CollectedResults results(run.entries());
   run.compute(results);
-  return results.take().derivatives;
+  std::vector<std::vector<double>> columns;
+  for (const DerivativeColumn& column : results.take().derivatives) columns.push_back(column.values);
+  return columns;
 }
 std::vector<std::vector<double>> derivatives_with(const SceneValues& scene, const std::vector<std::string>& keys) {
   CpuEvaluator evaluator;

@@ -78,7 +78,7 @@ SelfCheck checked(Contradicts& evaluator, std::vector<PointResult>& results, con
   const SceneEntries grid = SceneEntries::grid(theta_deg, sigma, {2.0});
   CollectedResults collected(grid);
   const SelfCheck check = run_scene(of, grid, keep_everything(of), &evaluator, collected, {}).check;
-  results = collected.take().entries;
+  results = collected.take().list();
   return check;
 }
 

@@ -34,7 +34,7 @@ std::vector<PointResult> in_parts(const SceneValues& scene, const std::vector<Sc
     if (parts.size() <= kFewParts) evaluator = evaluator_on(device);
     run_scene(scene, part, plan, evaluator.get(), results, {});
   }
-  return results.take().entries;
+  return results.take().list();
 }
 
 TEST(ChosenEntries, OfAGrid_HaveTheWavelengthsAmongThemAlone) {

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace dolp {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Sums of the rows of known results, with one row of weights for each sum. This is a matrix product with a fixed order
+/// of terms. With Eigen's order, results would depend on how a grid is divided.
+template <class Weights, class Rows>
+RowMajor weighted_sums(const Weights& weights, const Rows& rows) {
+  RowMajor sums = RowMajor::Zero(weights.rows(), rows.cols());
+  for (Eigen::Index i = 0; i < weights.rows(); ++i) {
+    for (Eigen::Index j = 0; j < weights.cols(); ++j) {  // skips weights of 0, because 0 times an infinite bound is NaN
+      if (weights(i, j) != 0.0) sums.row(i) += weights(i, j) * rows.row(j);
+    }
+  }
+  return sums;
+}
+
+}  // namespace dolp

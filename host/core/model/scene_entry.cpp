@@ -283,16 +283,14 @@ std::vector<SceneEntries> SceneEntries::parts(std::size_t most) const {
 
 const SceneEntry& EntryReader::operator[](std::size_t position) {
   if (!entries_.is_grid()) return entry_ = entries_[position];
-  const PerAxis& counts = entries_.counts();
-  const bool is_q_fastest = counts[Axis::kSigmaCross] * counts[Axis::kSurfaceAzimuth] == 1;
   const bool is_next = position_ && position == *position_ + 1;
-  if (is_next && is_q_fastest && on_axes_[Axis::kQ] + 1 < counts[Axis::kQ]) {
-    entry_.shape.q = entries_.q()[++on_axes_[Axis::kQ]];
-  } else {
-    on_axes_ = entries_.axis_positions(position);
-    entry_ = entries_.grid_entry(on_axes_);
-  }
   position_ = position;
+  const PerAxis& counts = entries_.counts();
+  std::size_t axis = kAxisCount;  // the slowest axis on which the position changes
+  while (is_next && axis-- > 0 && ++on_axes_[axis] == counts[axis]) on_axes_[axis] = 0;
+  if (!is_next) on_axes_ = entries_.axis_positions(position);
+  if (axis != static_cast<std::size_t>(Axis::kQ)) return entry_ = entries_.grid_entry(on_axes_);
+  entry_.shape.q = entries_.q()[on_axes_[axis]];
   return entry_;
 }
 

@@ -157,8 +157,7 @@ class SceneEntries {
   std::vector<SceneEntry> points_;
 };
 
-/// Reads entries one by one. In a grid, reading an entry that follows the one before it and differs from it only in q
-/// is faster than SceneEntries::operator[].
+/// Reads entries one by one. In a grid, reading the next entry is faster than SceneEntries::operator[].
 class EntryReader {
  public:
   explicit EntryReader(const SceneEntries& entries) : entries_(entries) {}

@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/functional/hash.hpp>
 #include <limits>
-#include <map>
 #include <set>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 
 namespace dolp {
@@ -285,7 +286,8 @@ std::optional<std::size_t> PartRequests::requested_direction(std::size_t member)
 void PartRequests::request_points(const Selection& selection) {
   moments_.layout = MomentsRequest::Layout::kList;
   spans_of_points_.reserve(selection.size());
-  std::map<std::array<double, 8>, MomentsSpan> known;
+  using PointKey = std::array<double, 8>;
+  std::unordered_map<PointKey, MomentsSpan, boost::hash<PointKey>> known(selection.size());
   for (std::size_t i = 0; i < selection.size(); ++i) {
     const SceneEntry entry = selection[i];
     if (!wants_moments(scene_, entry, plan_)) {

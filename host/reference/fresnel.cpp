@@ -1,10 +1,12 @@
 #include "reference/fresnel.hpp"
 
-#include "reference/film_spread.hpp"
-
 #include <algorithm>
 #include <cmath>
+#include <dolp/errors.hpp>
 #include <numbers>
+
+#include "base/interrupt.hpp"
+#include "reference/film_spread.hpp"
 
 namespace dolp::reference {
 namespace {
@@ -50,6 +52,7 @@ FresnelCoefficients measured_coefficients(const MeasuredReflectance& measured, d
 }  // namespace
 
 FresnelCoefficients fresnel(const FacetOptics& optics, double cos_beta) {
+  if (interrupted()) throw Cancelled();  // one entry may take minutes
   if (optics.measured) return measured_coefficients(*optics.measured, cos_beta);
   if (optics.films.empty()) return bare_coefficients(optics.index, cos_beta);
   if (has_spread(optics)) return mean_coefficients(optics, cos_beta);

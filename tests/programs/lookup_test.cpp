@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cli_support.hpp"
+#include "table/table_file.hpp"
 
 namespace {
 
@@ -147,6 +148,18 @@ TEST_F(TableAsScene, VerifyBetween_ReportsWhatInterpolationCosts) {
   EXPECT_NEAR(found[0]["largest"], std::abs(linear - right[0]), kTwoTolerances);
   expect_refused(dolp({"verify", "t.nc", "--between", "9", "--quantities", "dolps"}),
                  "t.nc: has no quantity \"dolps\"; it has dolp, ");
+}
+
+// The angle 179 differs from 1 by 2. Slopes along and across turn it through 0.
+TEST_F(TableAsScene, VerifyBetween_AnglesDifferByAtMostARightAngle) {
+  make_table({"--set", "surface.masking=v-cavity", "--set", "surface.sigma_cross=0.4", "--set", "grid.theta_deg=[40]",
+              "--set", "grid.surface_azimuth_deg={from=-60,to=60,count=5}", "--set", "grid.sigma=[0.2]", "--set",
+              "grid.q=[3]", "--evaluator", "cpu"});
+  const auto [least, most] = std::ranges::minmax(dolp::read_table(at("t.nc"))[dolp::Quantity::kAolp]);
+  ASSERT_GT(most - least, 90.0);
+  const json found = report({"verify", "t.nc", "--between", "50", "--quantities", "aolp_deg"})["between"];
+  EXPECT_GT(found[0]["largest"], 1.0);
+  EXPECT_LE(found[0]["largest"], 90.0);
 }
 
 // On an axis with logarithmic spacing the interpolation is linear in the logarithm, so two more values in each decade

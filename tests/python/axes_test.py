@@ -56,6 +56,14 @@ class Axes(PackageCase):
         with self.assertRaisesRegex(dolp.InputError, "are the same"):
             dolp.evaluate(glint, theta_deg=3, view_zenith_deg=3, **{"geometry.view_zenith_deg": 4})
 
+    def test_a_key_that_an_axis_replaces_is_refused(self):
+        warm = self.scene.with_({"grid.temperature_K": [280, 300]})
+        with self.assertRaisesRegex(dolp.InputError, "axes: emission.temperature_K and temperature_K are the same"):
+            dolp.table(warm, **{"emission.temperature_K": [250, 310]}, **AXES)
+        for call in (dolp.table, dolp.evaluate):
+            with self.assertRaisesRegex(dolp.InputError, "grid.sigma is a list of the grid; the name of this argument is sigma"):
+                call(self.scene, **{"grid.sigma": [0.1, 0.2]}, theta_deg=20)
+
     def test_a_key_is_looked_up_between_its_values(self):
         key = "surroundings.temperature_K"
         table = dolp.table(self.scene, **{key: [200, 240, 280]}, **AXES)

@@ -24,6 +24,9 @@ class Lookup(PackageCase):
             np.testing.assert_array_equal(found.dolp, exact.dolp)
             self.assertEqual((found.attrs["evaluator"], int(found.status.max())), ("cpu", int(exact.status.max())))
             self.assertEqual(dolp.lookup(source, evaluator="reference", **POINTS).attrs["evaluator"], "reference")
+            slopes = dolp.lookup(source, derivatives=["surface.sigma"], **POINTS).d_dolp__surface_sigma
+            np.testing.assert_array_equal(slopes, dolp.evaluate(self.scene, q=3, evaluator="cpu", derivatives=["surface.sigma"],
+                                                                **POINTS).d_dolp__surface_sigma)
 
     def test_only_attributes_and_single_values_of_a_dataset_count(self):
         table = dolp.table(self.scene, **AXES)

@@ -200,9 +200,10 @@ std::vector<double> label_positions(const Points& points, Axis axis, const AxisL
   for (std::size_t row = 0; row < points.size(); ++row) {
     const std::optional<double> position = label_position((*points[axis])[row]);
     if (!position) {
-      throw InputError(fmt::format("{}: {} = {}: must be one of {}", points.where(row), describe(axis).column,
-                                   points.text_at(axis, row),
-                                   labels.empty() ? "none: the grid has no such axis" : join(labels)));
+      const std::string column = describe(axis).column;
+      throw InputError(fmt::format(
+          "{}: {} = {}: {}", points.where(row), column, points.text_at(axis, row),
+          labels.empty() ? "the scene has no grid." + column + " to choose from" : "must be one of " + join(labels)));
     }
     positions.push_back(*position);
   }

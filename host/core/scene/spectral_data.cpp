@@ -127,7 +127,7 @@ double SpectralTable::at(double asked_um) const {
 
 SpectralTable parse_response(std::string_view text, const std::string& name) {
   std::vector<SpectralRow> rows =
-      read_rows(text, name, {{"wavelength_um", kWavelengthUmRange, true}, {"response", kNonNegativeRange, true}});
+      read_rows(text, name, {{"wavelength_um", kWavelengthUmRange, true}, {"response", kResponseRange, true}});
   const auto fail = [&](std::size_t line, const std::string& what) {
     throw InputError(fmt::format("{}:{}: {}", name, line, what));
   };
@@ -143,7 +143,7 @@ SpectralTable parse_response(std::string_view text, const std::string& name) {
   if (std::ranges::all_of(rows, [](const SpectralRow& row) { return row.value == 0.0; }))
     fail(rows.front().line, "response = 0 in all rows: must be greater than 0 in one row");
   SpectralTable table;
-  append_rows(table, std::move(rows), {"response", 0.0, kNonNegativeRange}, name);
+  append_rows(table, std::move(rows), {"response", 0.0, kResponseRange}, name);
   return table;
 }
 

@@ -23,6 +23,7 @@ inline constexpr NumberRange kAirTemperatureRange{180.0, 330.0};
 inline constexpr NumberRange kNonNegativeRange{0.0, std::numeric_limits<double>::infinity()};
 inline constexpr NumberRange kPositiveRange{0.0, std::numeric_limits<double>::infinity(),
                                             NumberRange::Ends::kOpenBelow};
+inline constexpr NumberRange kResponseRange{0.0, 1e100};
 inline constexpr NumberRange kWavelengthUmRange{0.1, 1e4};
 /// If all wavelengths in um are above this number, they are probably in nm.
 inline constexpr double kLikelyNanometres = 1000.0;

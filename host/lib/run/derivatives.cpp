@@ -56,6 +56,7 @@ bool is_number_of(const SceneValues& scene, const SceneEntries& entries, const s
   if (known->description.layer > 0 && std::ranges::any_of(entries.variants(), has_films)) return false;
   if (key == kWindKey) return has_wind(scene);
   if (key == "surface.sigma") return !has_wind(scene);
+  if (key == "surface.sigma_cross" && scene.surface.sigma_cross == 0.0) return key_axis(entries, key).has_value();
   if (key == "surface.q" && scene.surface.distribution == Distribution::kGaussian) return false;
   return key_axis(entries, key) || known->value(scene);
 }
@@ -150,13 +151,13 @@ std::string per_unit(const std::string& unit) {
 std::vector<DerivativeColumn> scene_derivatives(const SceneValues& scene, const SceneEntries& entries,
                                                 const std::vector<std::string>& keys) {
   for (const std::string& key : keys) {
+    if (!is_number_of(scene, entries, key))
+      throw InputError(fmt::format(
+          "derivatives: {}: is no number of this scene; must be a key with a number that the scene has, such as "
+          "surface.sigma, or grid.theta_deg (see dolp keys)",
+          one_line(key)));
     if (std::ranges::count(keys, key) > 1)
       throw InputError(fmt::format("derivatives: {}: appears twice", one_line(key)));
-    if (is_number_of(scene, entries, key)) continue;
-    throw InputError(fmt::format(
-        "derivatives: {}: is no number of this scene; must be a key with a number that the scene has, such as "
-        "surface.sigma, or grid.theta_deg (see dolp keys)",
-        one_line(key)));
   }
   std::vector<DerivativeColumn> columns = derivative_columns(keys);
   for (std::size_t i = 0; i < columns.size(); ++i) {

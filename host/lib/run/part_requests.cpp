@@ -318,9 +318,7 @@ void PartRequests::request_beams(const Selection& selection) {
   if (is_grid) {
     for (std::size_t i = 0; i < selection.part.directions(); ++i)
       beams_.angles.push_back(requested_angles(scene_, selection.part[i * shapes]));
-    for (const double sigma : selection.part.sigma()) {
-      for (const double q : selection.part.q()) beams_.shapes.push_back({sigma, q});
-    }
+    for (std::size_t i = 0; i < shapes; ++i) beams_.shapes.push_back(selection.part[i].shape);
   }
   std::vector<std::uint32_t> first_index;
   for (const std::vector<FacetOptics>& wavelength_optics : samples_) {

@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t kMostCells = 16;  // cells of an axis that a forecast examines
 constexpr std::size_t kLeastCells = 2;
 constexpr std::size_t kMostNeeded = 10'000;
+constexpr double kAolpPeriod_deg = 180.0;
 
 /// The values of an axis in ascending order, and their positions on the axis of the table.
 struct SortedAxis {
@@ -219,7 +220,8 @@ std::vector<InterpolationError> PointsBetween::errors(const TableValues& entries
           const auto entry = std::ranges::lower_bound(known, weight.position) - known.begin();
           value += weight.value * entries[quantity][static_cast<std::size_t>(entry)];
         }
-        errors.push_back(std::abs(value - computed[point][quantity]));
+        const double error = std::abs(value - computed[point][quantity]);
+        errors.push_back(quantity == Quantity::kAolp ? std::min(error, kAolpPeriod_deg - error) : error);
       }
       InterpolationError& error = all.emplace_back(InterpolationError{quantity, method.name, summary(errors), {}});
       for (const Axis axis : kAllAxes) {

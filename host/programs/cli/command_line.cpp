@@ -79,7 +79,7 @@ CLI::Validator not_negative() {
 
 std::vector<OptionRow> option_rows() {
   constexpr const char* kPointColumns =
-      "CSV with any of theta_deg, sigma or wind_m_s, q, n, k, wavelength_um; - is stdin";
+      "CSV with any of theta_deg, sigma or wind_m_s, q, n, k and the other axes of tables; - is stdin";
   return {
       {"table! response! eval! mueller! plan! fit!", "SCENE", &Options::scene_path,
        "scene file (TOML), or table (.nc), whose scene counts; - is stdin"},

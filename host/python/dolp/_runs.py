@@ -55,7 +55,8 @@ def table(scene: Scene, *, evaluator: str | None = None, device: str = "", keep_
         warn_of_model(scene, whole.get("status", 0), whole.attrs)
         return whole
     optional = ("temperature_K", "view_zenith_deg", "relative_azimuth_deg", "sigma_cross", "surface_azimuth_deg")
-    columns = [column for column, *_ in _native.axes() if column not in optional or column in axes]
+    columns = [column for column, *_ in _native.axes()
+               if column not in optional or column in axes or scene[f"grid.{column}"] is not None]
     _check_varied("axes", [key], columns)
     others = {name: values for name, values in axes.items() if name != key}
     values = np.array(axis_values(key, axes[key]))
@@ -140,13 +141,14 @@ def _warn_of_radians(theta_deg: np.ndarray) -> None:
                       stacklevel=4)
 
 
-def lookup(table: Path | xr.Dataset, *, evaluator: str | None = None, device: str = "", **points: Array) -> xr.Dataset:
+def lookup(table: Path | xr.Dataset, *, evaluator: str | None = None, device: str = "",
+           derivatives: Iterable[str] = (), **points: Array) -> xr.Dataset:
     """Values between the entries of a table: computed from the table's scene, with error bounds as from `evaluate`.
 
     `table`: the file of a table (.nc), or a Dataset with a table or a part of one. Only its attributes and the values of
     its axes count, so it may be a slice, or may be interpolated, averaged or edited.
-    `points`: as for `evaluate`. An axis with one value in the table, such as q in `t.sel(q=8)`, gives the value of
-    points that do not name it.
+    `points` and `derivatives`: as for `evaluate`. An axis with one value in the table, such as q in `t.sel(q=8)`, gives
+    the value of points that do not name it.
 
     >>> t = dolp.table(scene, theta_deg=[0, 40, 80], sigma=[0.1, 0.2])
     >>> bool(dolp.lookup(t.sel(sigma=0.2), theta_deg=33).dolp == dolp.evaluate(scene, theta_deg=33, sigma=0.2).dolp)
@@ -160,7 +162,7 @@ def lookup(table: Path | xr.Dataset, *, evaluator: str | None = None, device: st
     for key in KEY_ATTRIBUTES.keys() & table.dims if isinstance(table, xr.Dataset) else ():
         if key not in points:
             raise InputError(f"points: {key} is missing; the table has {table.sizes[key]} values of it")
-    return _evaluated(scene.for_points(), evaluator, device, False, points)
+    return _evaluated(scene.for_points(), evaluator, device, False, points, derivatives)
 
 
 def mueller(scene: Scene, *, evaluator: str | None = None, device: str = "", **points: Array) -> np.ndarray:
@@ -256,6 +258,8 @@ def _check_varied(what: str, keys: Iterable[str], columns: Iterable[str]) -> Non
     """Errors: InputError if one of `keys` and one of `columns` name the same number, such as surface.n and n."""
     for key in keys:
         table, _, column = key.partition(".")
+        if table == "grid":
+            raise InputError(f"{what}: {key} is a list of the grid; the name of this argument is {column}")
         if column in columns and table in ("surface", "spectrum", "emission", "geometry"):
             raise InputError(f"{what}: {key} and {column} are the same")
 

@@ -15,9 +15,11 @@ std::string response_error(const std::string& text) {
 TEST(ResponseFile_WithAFault, IsRefusedWithFileLineAndValue) {
   const std::string header = "wavelength_um,response\n";
   EXPECT_EQ(response_error(header + "8,1\n9,-0.1\n"),
-            "r.csv:3: response = -0.1: out of range; must be a number in [0, inf)");
+            "r.csv:3: response = -0.1: out of range; must be a number in [0, 1e100]");
+  EXPECT_EQ(response_error(header + "8,1\n9,1e308\n"),
+            "r.csv:3: response = 1e308: out of range; must be a number in [0, 1e100]");
   EXPECT_EQ(response_error(header + "8,1\n9,nan\n"),
-            "r.csv:3: response = nan: not a number; must be a number in [0, inf)");
+            "r.csv:3: response = nan: not a number; must be a number in [0, 1e100]");
   EXPECT_EQ(response_error(header + "8,1\n"), "r.csv:1: 1 rows; a response has at least 2 rows");
   EXPECT_EQ(response_error(header + "8,0\n9,0\n"),
             "r.csv:2: response = 0 in all rows: must be greater than 0 in one row");

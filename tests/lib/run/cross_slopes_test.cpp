@@ -109,6 +109,45 @@ TEST(CrossSlopes, GridAndPoints_AgreeWithSingleScenes) {
   }
 }
 
+TEST(CrossSlopes, SourceOfAGrid_IsReflectedLikeThatOfPoints) {
+  const std::vector<Setting> bistatic = {{"geometry.mode", "bistatic"},
+                                         {"geometry.view_zenith_deg", 40.0},
+                                         {"geometry.relative_azimuth_deg", 150.0},
+                                         {"geometry.surface_azimuth_deg", 40.0},
+                                         {"source.irradiance", 10.0}};
+  const std::vector<std::vector<Setting>> cases = {
+      {},
+      {{"surface.masking", "none"}, {"surface.scattering", "single"}},
+      {{"grid.sigma_cross", std::vector{0.1, 0.3}}, {"grid.sigma", std::vector{0.1, 0.2}}},
+      {{"grid.surface_azimuth_deg", std::vector{0.0, 90.0}}, {"grid.relative_azimuth_deg", std::vector{90.0, 150.0}}},
+      {{"surface.sigma", Value()},
+       {"surface.sigma_cross", Value()},
+       {"surface.wind_model", "directional"},
+       {"surface.wind_m_s", 10.0}}};
+  for (const std::vector<Setting>& changes : cases) {
+    std::vector<Setting> settings = bistatic;
+    settings.insert(settings.end(), changes.begin(), changes.end());
+    const SceneValues scene = brushed(settings);
+    const SceneEntries grid = grid_entries(scene);
+    std::vector<SceneEntry> points;
+    for (const SceneEntry& entry : grid.all()) points.push_back(entry);
+    CpuEvaluator evaluator;
+    const auto table = results(scene);
+    const auto list = evaluate_scene(scene, {points, grid.variants()}, evaluator, {});
+    SceneValues round = scene;
+    round.surface.sigma_cross = 0.0;
+    round.surface.wind_model = WindModel::kIsotropic;
+    round.grid[Axis::kSigmaCross] = round.grid[Axis::kSurfaceAzimuth] = {};
+    const double isotropic_i = results(round).back()[kStokesI];
+    ASSERT_EQ(table.size(), list.size());
+    for (std::size_t i = 0; i < table.size(); ++i) {
+      EXPECT_NEAR(table[i][kStokesI], list[i][kStokesI], 1e-3 * list[i][kErrorEstimate] + 1e-9 * list[i][kStokesI]);
+      EXPECT_NEAR(table[i][kDolp], list[i][kDolp], table[i][kErrorEstimate] + list[i][kErrorEstimate]);
+    }
+    EXPECT_GT(std::abs(table.back()[kStokesI] / isotropic_i - 1.0), 1e-3);
+  }
+}
+
 // Without masking, reflectances of heavy tails diverge at 90 degrees, and the limit of elliptic slopes is not known.
 TEST(CrossSlopes, DivergentLimit_IsOutsideTheModel) {
   const PointResult limit = results(brushed({{"surface.distribution", "cauchy"},

@@ -185,8 +185,8 @@ TEST(Derivatives, ByWavelengthsAtTheEndsOfATable_AreNanOnlyThere) {
 
 TEST(Derivatives, ByWhatIsNoNumberOfTheScene_AreRefused) {
   const SceneValues scene = parse(kScene);
-  for (const char* key :
-       {"surface.masking", "accuracy.tolerance", "path.transmittance", "surface.wind_m_s", "n", "grid.n"}) {
+  for (const char* key : {"surface.masking", "accuracy.tolerance", "path.transmittance", "surface.wind_m_s",
+                          "surface.sigma_cross", "n", "grid.n", ""}) {
     const std::string error = error_text([&] { derivatives_with(scene, {key}); });
     EXPECT_NE(error.find(std::string("derivatives: ") + key + ": is no number of this scene"), std::string::npos)
         << error;

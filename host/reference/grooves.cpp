@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/hash.hpp"
 #include "reference/adaptive.hpp"
 #include "reference/fresnel.hpp"
 #include "reference/groove_beam.hpp"
@@ -50,15 +51,15 @@ constexpr int kLookAzimuths = 16;
 constexpr double kLookSteepest = 50.0;
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
-// kLost is the light that is left after kMostFollowed bounces. It may leave the groove. kReflected includes it.
+// The fate of the light that enters a groove.
 enum Component : std::size_t {
-  kAlbedo,
-  kReflected,
-  kPolarised,
-  kDiagonal,
-  kAbsorbed,
-  kLost,
-  kSkyReflected,
+  kAlbedo,        // flux that leaves if the facets absorb nothing
+  kReflected,     // I that leaves if unpolarised light enters; at() adds kLost
+  kPolarised,     // Q: (I that leaves if s light enters - I that leaves if p light enters) / 2
+  kDiagonal,      // U toward the viewer, if unpolarised light of all directions enters
+  kAbsorbed,      // absorbed by all bounces
+  kLost,          // I that is left after kMostFollowed bounces; it may leave the groove
+  kSkyReflected,  // like kReflected, but each ray is multiplied by the function of the sky
   kSkyPolarised,
   kSkyDiagonal,
   kCount
@@ -80,39 +81,39 @@ double diagonal_light(const UnitLight& light) {
   return -sum;
 }
 
-void follow(const Groove<double>& groove, const SlopePoint& point, const Vector3& omega, Facet first,
-            const FacetOptics& constants, const SkyFunction* sky, GrooveLight& total) {
-  GrooveBeam<double> beam(groove, omega, first);
+// Adds the fate of the light of `beam`. Returns the number of bounces.
+int follow(GrooveBeam<double> beam, const SlopePoint& point, const FacetOptics& constants, const SkyFunction* sky,
+           GrooveValues& total) {
   UnitLight light = unit_light(point, beam.direction());
-  for (int count = 1; beam.flux() > 0.0; ++count) {
+  int count = 0;
+  while (beam.flux() > 0.0) {
+    ++count;
     const Bounce<double> b = bounce(beam.direction(), beam.normal(), {0.0, 1.0, 0.0});
     const FresnelCoefficients r = fresnel(constants, b.cos_beta);
     const double absorbed = 0.5 * (reflect(b, r, light.from_s) + reflect(b, r, light.from_p));
-    total.absorbed += beam.flux() * absorbed;
-    if (count == 1) total.once_absorbed += beam.flux() * absorbed;
+    total[kAbsorbed] += beam.flux() * absorbed;
     const double left = beam.reflect(b.k_out);
     const double s = intensity(light.from_s);
     const double p = intensity(light.from_p);
-    total.albedo += left;
-    total.reflected += left * 0.5 * (s + p);
-    total.polarised += left * 0.5 * (s - p);
+    total[kAlbedo] += left;
+    total[kReflected] += left * 0.5 * (s + p);
+    total[kPolarised] += left * 0.5 * (s - p);
     const double diagonal = diagonal_light(light);
-    total.diagonal += left * diagonal;
+    total[kDiagonal] += left * diagonal;
     if (sky && left > 0.0) {
       const double g = sky->value(std::acos(std::clamp(b.k_out[2], 0.0, 1.0)) * 180.0 / pi);
-      total.sky_reflected += g * left * 0.5 * (s + p);
-      total.sky_polarised += g * left * 0.5 * (s - p);
-      total.sky_diagonal += g * left * diagonal;
+      total[kSkyReflected] += g * left * 0.5 * (s + p);
+      total[kSkyPolarised] += g * left * 0.5 * (s - p);
+      total[kSkyDiagonal] += g * left * diagonal;
     }
-    if (count == 1) total.once_reflected += left * 0.5 * (s + p);
-    total.bounces += 1.0;
     const bool is_lost = count == kMostFollowed;
     if (s + p < kDark || is_lost) {
-      total.albedo += beam.flux();
-      if (is_lost) total.lost += beam.flux() * 0.5 * (s + p);
-      return;
+      total[kAlbedo] += beam.flux();
+      if (is_lost) total[kLost] += beam.flux() * 0.5 * (s + p);
+      break;
     }
   }
+  return count;
 }
 
 // A Regime: a number that changes at a bend of the integrand. It is a hash over the bounces of a beam. Each bounce
@@ -120,8 +121,7 @@ void follow(const Groove<double>& groove, const SlopePoint& point, const Vector3
 // the angle of incidence lies; how many kinks of the sky have a smaller zenith than the light that leaves.
 std::uint64_t history(const SlopePoint& point, const Vector3& omega, Facet first, const SpecialAngles& special,
                       const SkyFunction* sky) {
-  constexpr std::uint64_t kPrime = 1099511628211U;
-  std::uint64_t hash = 14695981039346656037U;
+  std::uint64_t hash = kHashStart;
   GrooveBeam<double> beam(make_groove(point.t), omega, first);
   for (int count = 0; beam.flux() > 0.0 && count < kMostFollowed; ++count) {
     const Vector3 n = beam.normal();
@@ -131,10 +131,10 @@ std::uint64_t history(const SlopePoint& point, const Vector3& omega, Facet first
     if (sky && left > 0.0) {
       const double zenith_deg = std::acos(std::clamp(out[2], 0.0, 1.0)) * 180.0 / pi;
       const auto above = [&](double corner_deg) { return corner_deg < zenith_deg; };
-      hash = (hash ^ static_cast<std::uint64_t>(std::ranges::count_if(sky->corners_deg, above))) * kPrime;
+      hash = hashed(hash, static_cast<std::uint64_t>(std::ranges::count_if(sky->corners_deg, above)));
     }
     const std::uint64_t leaves = (left > 0.0 ? 1U : 0U) + (beam.flux() > 0.0 ? 2U : 0U);
-    hash = (hash ^ (4U * special.side(cos_beta) + leaves)) * kPrime;
+    hash = hashed(hash, 4U * special.side(cos_beta) + leaves);
   }
   return hash;
 }
@@ -151,17 +151,6 @@ GrooveValues value_scales(const GrooveValues& value) {
           reflected,
           reflected,
           reflected};
-}
-
-GrooveValues light_values(const GrooveLight& light, const MirrorWeights& weights) {
-  GrooveValues values{
-      light.albedo, light.reflected + light.lost, light.polarised,     light.diagonal,    light.absorbed,
-      light.lost,   light.sky_reflected,          light.sky_polarised, light.sky_diagonal};
-  for (std::size_t k = 0; k < kCount; ++k) {
-    const bool is_diagonal = k == kDiagonal || k == kSkyDiagonal;
-    values[k] *= is_diagonal ? weights.half_difference : weights.mean;
-  }
-  return values;
 }
 
 class Surveyor {
@@ -238,10 +227,20 @@ class Surveyor {
  private:
   GrooveValues at(const SlopePoint& point) {
     if (is_abandoned()) return {};
-    const GrooveLight light = light_in_groove(point.t, point.sin_chi, point.cos_chi, view_, constants_, sky_);
-    bounces_ += light.bounces;
+    const Groove<double> groove = make_groove(point.t);
+    const Vector3 omega = toward_view(point, view_);
+    GrooveValues values{};
+    for (const Facet first : {Facet::kA, Facet::kB})
+      bounces_ += follow({groove, omega, first}, point, constants_, sky_, values);
     evaluations_ += 1.0;
-    return light_values(light, slopes_.mirror_weights(point.t * point.t, point.sin_chi, point.cos_chi));
+    const MirrorWeights weights = slopes_.mirror_weights(point.t * point.t, point.sin_chi, point.cos_chi);
+    for (double& value : values) value *= 0.5 / groove.cos_alpha;  // per width of the groove
+    values[kReflected] += values[kLost];
+    for (std::size_t k = 0; k < kCount; ++k) {
+      const bool is_diagonal = k == kDiagonal || k == kSkyDiagonal;
+      values[k] *= is_diagonal ? weights.half_difference : weights.mean;
+    }
+    return values;
   }
   GrooveValues look(double t) {
     GrooveValues mean{};
@@ -292,22 +291,6 @@ class Surveyor {
 };
 
 }  // namespace
-
-GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zenith& view, const FacetOptics& constants,
-                            const SkyFunction* sky) {
-  const SlopePoint point{t, sin_chi, cos_chi};
-  const Groove<double> groove = make_groove(t);
-  const Vector3 omega = toward_view(point, view);
-  GrooveLight total;
-  for (const Facet first : {Facet::kA, Facet::kB}) follow(groove, point, omega, first, constants, sky, total);
-  const double per_width = 0.5 / groove.cos_alpha;
-  for (double* value :
-       {&total.albedo, &total.reflected, &total.polarised, &total.diagonal, &total.absorbed, &total.lost,
-        &total.once_reflected, &total.once_absorbed, &total.sky_reflected, &total.sky_polarised, &total.sky_diagonal}) {
-    *value *= per_width;
-  }
-  return total;
-}
 
 Moments groove_moments(const Slopes& slopes, double theta_deg, const FacetOptics& constants,
                        const Refinement& refinement, const SkyFunction* sky) {

@@ -51,26 +51,6 @@ Estimate transmission_integral(const FacetOptics& optics, double power, const Sk
 Moments groove_moments(const Slopes& slopes, double theta_deg, const FacetOptics& constants,
                        const Refinement& refinement, const SkyFunction* sky = nullptr);
 
-/// The fate of the light that enters one groove: fluxes divided by the width of the groove's aperture.
-struct GrooveLight {
-  double albedo = 0.0;          ///< flux that leaves if the facets absorb nothing
-  double reflected = 0.0;       ///< I that leaves if unpolarised light enters
-  double polarised = 0.0;       ///< Q: (I that leaves if s light enters - I that leaves if p light enters) / 2
-  double diagonal = 0.0;        ///< U toward the viewer, if unpolarised light of all directions enters
-  double absorbed = 0.0;        ///< absorbed by all bounces
-  double lost = 0.0;            ///< I after the last followed bounce, neither in `reflected` nor in `absorbed`
-  double once_reflected = 0.0;  ///< I that leaves after one bounce
-  double once_absorbed = 0.0;   ///< absorbed by the first bounce
-  double sky_reflected = 0.0;   ///< like `reflected`, but each ray is multiplied by the function of the sky
-  double sky_polarised = 0.0;   ///< like `polarised`, but each ray is multiplied by the function of the sky
-  double sky_diagonal = 0.0;    ///< like `diagonal`, but each ray is multiplied by the function of the sky
-  double bounces = 0.0;         ///< number of followed bounces
-};
-
-/// Domain: slope t > 0; cos(theta) > 0. chi is 90 degrees minus the azimuth phi of the facets, so sin_chi = cos(phi).
-GrooveLight light_in_groove(double t, double sin_chi, double cos_chi, const Zenith& view, const FacetOptics& constants,
-                            const SkyFunction* sky = nullptr);
-
 /// The direct emission of a rough surface (sigma > 0): direct_i, direct_q, direct_u and their errors.
 /// Equation: cos(theta) eps = int P(t) t dt dphi e G_1 (1 - |r|^2), with the slope density P, the masking G_1 toward
 /// the viewer and the reflection amplitude r. The integral is over all facets (slope t, azimuth phi) with a projected

@@ -1,5 +1,6 @@
 #include "model/sky_basis.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <boost/math/quadrature/gauss.hpp>
@@ -28,30 +29,6 @@ constexpr double kBeyondLast = 2.0;
 constexpr double kHorizonPower = 4.0;
 
 }  // namespace
-
-LeastSquares::LeastSquares(const Eigen::MatrixXd& columns)
-    : orthonormal_(columns), triangle_(Eigen::MatrixXd::Zero(columns.cols(), columns.cols())) {
-  for (Eigen::Index i = 0; i < columns.cols(); ++i) {
-    Eigen::VectorXd column = columns.col(i);
-    const auto before = orthonormal_.leftCols(i);
-    for (int pass = 0; pass < 2; ++pass) {
-      const Eigen::VectorXd parts = before.transpose() * column;
-      column -= before * parts;
-      triangle_.col(i).head(i) += parts;
-    }
-    triangle_(i, i) = column.norm();
-    orthonormal_.col(i) = column / triangle_(i, i);
-  }
-}
-
-Eigen::VectorXd LeastSquares::solve(const Eigen::VectorXd& values) const {
-  Eigen::VectorXd weights = orthonormal_.topRows(values.size()).transpose() * values;
-  for (Eigen::Index i = weights.size() - 1; i >= 0; --i) {
-    weights[i] /= triangle_(i, i);
-    weights.head(i) -= weights[i] * triangle_.col(i).head(i);
-  }
-  return weights;
-}
 
 SkyNodes::SkyNodes(std::vector<double> ends_deg) : ends_deg_(std::move(ends_deg)), points_(lobatto_points(kPoints)) {
   for (std::size_t i = 0; i + 1 < ends_deg_.size(); ++i) {
@@ -139,14 +116,16 @@ SkyBasis::SkyBasis(SkyNodes nodes, const std::vector<Eigen::VectorXd>& functions
     if (!worst) break;
     values_.conservativeResize(Eigen::NoChange, values_.cols() + 1);
     values_.rightCols(1) = *worst / worst->cwiseAbs().maxCoeff();
-    sums_ = LeastSquares(values_);
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(values_);
+    orthonormal_ = qr.householderQ() * Eigen::MatrixXd::Identity(values_.rows(), values_.cols());
+    triangle_ = qr.matrixQR().topRows(values_.cols());
   }
 }
 
 SkyWeights SkyBasis::find_weights(const Eigen::VectorXd& function) const {
   if (size() == 0) return {{}, function.cwiseAbs().maxCoeff()};
   SkyWeights weights;
-  weights.of = sums_.solve(function);
+  weights.of = triangle_.triangularView<Eigen::Upper>().solve(orthonormal_.transpose() * function);
   const double terms = weights.of.cwiseAbs().sum();
   weights.error = kBetweenNodes * (values_ * weights.of - function).cwiseAbs().maxCoeff() + kRounding * terms;
   return weights;

@@ -6,20 +6,6 @@
 
 namespace dolp {
 
-/// Finds the weighted sum of columns that is nearest to given values, by Gram-Schmidt orthogonalization.
-class LeastSquares {
- public:
-  LeastSquares() = default;
-  explicit LeastSquares(const Eigen::MatrixXd& columns);  ///< domain: linearly independent columns
-
-  /// The weight of each column in the sum that is nearest to `values`. Shorter `values` are extended by zeros.
-  Eigen::VectorXd solve(const Eigen::VectorXd& values) const;
-
- private:
-  Eigen::MatrixXd orthonormal_;
-  Eigen::MatrixXd triangle_;  ///< orthonormal_ * triangle_ is the matrix that the constructor received
-};
-
 /// Zeniths at which functions of the zenith are tabulated. `ends_deg` divides [0, 90] into intervals. In each interval
 /// a function is the polynomial through its values at Chebyshev-Lobatto points. Between intervals it may have kinks.
 class SkyNodes {
@@ -70,8 +56,9 @@ class SkyBasis {
 
  private:
   SkyNodes nodes_;
-  Eigen::MatrixXd values_;  ///< nodes x functions
-  LeastSquares sums_;
+  Eigen::MatrixXd values_;       ///< nodes x functions
+  Eigen::MatrixXd orthonormal_;  ///< values_ = orthonormal_ * triangle_
+  Eigen::MatrixXd triangle_;
 };
 
 inline constexpr std::size_t kMostSkyFunctions = 8;  ///< most functions of a sky that the kernels accept

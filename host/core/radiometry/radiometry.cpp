@@ -239,26 +239,19 @@ PointResult Radiometry::point(const Direction& direction, std::span<const Moment
   return point(direction, moments, optics_);
 }
 
-PointResult Radiometry::point(const Direction& direction, std::span<const Moments> moments,
-                              const Optics& optics) const {
+PointResult Radiometry::point(const Direction& direction, std::span<const Moments> moments, const Optics& optics,
+                              double cos_theta_i, std::span<const Scattered> scattered) const {
+  const bool bistatic = scene_.geometry.mode == Mode::kBistatic;
   assert(moments.size() == rule_.samples.size() && optics.facets.size() == moments.size());
   if (!std::ranges::all_of(moments, is_known)) return outside_domain();
-  if (reflectance_diverges(scene_.surface, direction, moments)) {
-    return finished(grazing_limit(scene_, kept_rule_, sky_, direction, moments));
+  if (!reflectance_diverges(scene_.surface, direction, moments)) {
+    const double cos_source = bistatic ? cos_theta_i : direction.cos_theta;
+    return finished(assemble(moments, direction.cos_theta, optics, cos_source, scattered));
   }
-  return finished(assemble(moments, direction.cos_theta, optics, direction.cos_theta, {}));
-}
-
-PointResult Radiometry::bistatic_point(const Direction& view, double cos_theta_i, std::span<const Moments> moments,
-                                       const Optics& optics, std::span<const Scattered> scattered) const {
-  assert(moments.size() == rule_.samples.size() && scattered.size() == moments.size());
-  if (!std::ranges::all_of(moments, is_known)) return outside_domain();
-  if (reflectance_diverges(scene_.surface, view, moments)) {
-    PointResult result = outside_domain();
-    result.status |= kReflectanceOutsideZeroToOne;
-    return result;
-  }
-  return finished(assemble(moments, view.cos_theta, optics, cos_theta_i, scattered));
+  if (!bistatic) return finished(grazing_limit(scene_, kept_rule_, sky_, direction, moments));
+  PointResult result = outside_domain();
+  result.status |= kReflectanceOutsideZeroToOne;
+  return result;
 }
 
 bool Radiometry::may_change_dolp(const PointResult& result, double cos_theta) const {

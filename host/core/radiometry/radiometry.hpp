@@ -61,19 +61,16 @@ class Radiometry {
   Optics optics_with(std::vector<FacetOptics> facets) const;
 
   /// Result for an entry with its own n or k. `optics` affects only fresnel emission and a polarised diffuse part.
-  PointResult point(const Direction& direction, std::span<const Moments> moments, const Optics& optics) const;
-
-  /// Result in bistatic mode. `moments` and rho belong to the direction of the view; the source is at theta_i.
-  /// Shape: one Moments and one Scattered per sample of rule(), in the order of the samples.
-  /// If moments are NaN, the status is 4. If rho diverges, it is 1 | 4. In both cases every quantity is NaN.
-  PointResult bistatic_point(const Direction& view, double cos_theta_i, std::span<const Moments> moments,
-                             const Optics& optics, std::span<const Scattered> scattered) const;
+  /// In bistatic mode `direction`, `moments` and rho belong to the view, and the source is at theta_i. `scattered` has
+  /// one element per sample of rule(). If rho diverges, dolp is NaN, too. The other mode needs neither.
+  PointResult point(const Direction& direction, std::span<const Moments> moments, const Optics& optics,
+                    double cos_theta_i = 0.0, std::span<const Scattered> scattered = {}) const;
   const Optics& optics() const { return optics_; }
 
   /// True if light that single scattering loses, or that the masking creates, may change DOLP by more than 1e-4.
   bool may_change_dolp(const PointResult& result, double cos_theta) const;
 
-  /// Sets model_change_dolp of a result of point() or bistatic_point(), and the status bit that follows from it. The
+  /// Sets model_change_dolp of a result of point(), and the status bit that follows from it. The
   /// light that a surface with the albedo A loses, 1 - A, is reflected as `further` tells.
   /// Shape: one FurtherLight per group of middle_samples(), or one for all groups.
   void judge_dolp(PointResult& result, double cos_theta, std::span<const FurtherLight> further) const;

@@ -95,7 +95,7 @@ Report verify(const std::filesystem::path& path, const TableCheckOptions& option
   const SceneValues scene =
       table_scene(reader.head(), name, options.named_files ? NamedData::kOfFiles : NamedData::kOfTable);
   TableSample sample;
-  sample.positions = sample_positions(reader.head().size(), options);
+  sample.positions = sample_positions(reader.head().size(), options.samples, options.seed);
   sample.table = reader.read_entries(sample.positions, options.progress);
   use_scene_labels(sample.table, scene, name);
   const auto check_sample = sample.table.beta_deg.empty() ? check_table : check_responses;

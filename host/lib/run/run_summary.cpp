@@ -126,11 +126,15 @@ std::size_t checked_count(std::size_t moments) {
   return std::min(kMostChecked + kMostChecked * (moments / kManyMoments), moments / (kShare * kCostOfOne));
 }
 
-std::vector<std::size_t> checked_positions(std::size_t size, std::size_t count, std::uint64_t seed) {
+std::vector<std::size_t> sample_positions(std::size_t size, std::size_t count, std::uint64_t seed) {
+  // Floyd's sampling (Bentley, Comm. ACM 30, 1987). The choice of std::sample depends on the standard library.
   std::mt19937_64 engine(seed);
-  std::set<std::size_t> positions;
-  while (positions.size() < std::min(count, size)) positions.insert(static_cast<std::size_t>(engine() % size));
-  return {positions.begin(), positions.end()};
+  std::set<std::size_t> chosen;
+  for (std::size_t last = size - std::min(count, size); last < size; ++last) {
+    const std::size_t candidate = engine() % (last + 1);
+    chosen.insert(chosen.contains(candidate) ? last : candidate);
+  }
+  return {chosen.begin(), chosen.end()};
 }
 
 void RunSummary::add(const SceneValues& scene, const SceneEntries& part, const RunResults& results) {

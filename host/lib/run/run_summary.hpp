@@ -30,7 +30,9 @@ struct SelfCheck {
 /// Number of moments that the check of a table computes again. They cost at most a fiftieth of the run.
 std::size_t checked_count(std::size_t moments);
 
-std::vector<std::size_t> checked_positions(std::size_t size, std::size_t count, std::uint64_t seed);
+/// Positions of `count` random entries of a table with `size` entries, or of all entries if there are fewer. No
+/// position appears twice; they ascend. `seed` fixes the choice.
+std::vector<std::size_t> sample_positions(std::size_t size, std::size_t count, std::uint64_t seed);
 
 inline constexpr double kAlbedoMin = 0.95;
 inline constexpr double kAlbedoMax = 1.05;

@@ -94,9 +94,8 @@ class MemberResults {
     const std::span<const Moments> moments = member_moments(member, entry, direction, optics.facets);
     const bool is_bistatic = context_.scene.geometry.mode == Mode::kBistatic;
     if (is_bistatic) fill_beams(member, entry);
-    PointResult result =
-        is_bistatic ? radiometry.bistatic_point(direction, cos_sin_deg(entry.theta_deg).cos, moments, optics, beams_)
-                    : radiometry.point(direction, moments, optics);
+    const double cos_theta_i = is_bistatic ? cos_sin_deg(entry.theta_deg).cos : 0.0;
+    PointResult result = radiometry.point(direction, moments, optics, cos_theta_i, beams_);
     if (radiometry.may_change_dolp(result, direction.cos_theta))
       radiometry.judge_dolp(result, direction.cos_theta, further(member, direction, entry, optics.facets));
     return result;
@@ -462,7 +461,7 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
   const std::size_t whole = entries.is_grid() ? grid_size(entries.whole()) : entries.size();
   const bool has_moments = entries.is_grid() && plan.kept.moments;
   std::vector<std::size_t> checked;
-  if (has_moments) checked = checked_positions(whole, checked_count(whole * samples), scene_seed(scene));
+  if (has_moments) checked = sample_positions(whole, checked_count(whole * samples), scene_seed(scene));
   RunSummary summary = sink.summary_of_done();
   const auto start = std::chrono::steady_clock::now();
   const std::shared_ptr<const ResponseBasis> basis = evaluator ? run_basis(scene, entries, plan) : nullptr;

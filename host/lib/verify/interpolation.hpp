@@ -5,11 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 #include <dolp/axis.hpp>
-#include <dolp/errors.hpp>
 #include <dolp/quantity.hpp>
 #include "plan/effects.hpp"
 #include "scene/points.hpp"

@@ -8,8 +8,6 @@
 #include <dolp/errors.hpp>
 #include <numbers>
 #include <optional>
-#include <random>
-#include <set>
 #include <span>
 #include <utility>
 
@@ -271,21 +269,6 @@ std::vector<AxisValue> entry_axis_values(std::size_t entry, const TableHead& tab
     position.push_back({axis, value, describe(axis).has_labels ? table.label(axis, value) : ""});
   }
   return position;
-}
-
-std::vector<std::size_t> sample_positions(std::size_t entries, const TableCheckOptions& options) {
-  std::set<std::size_t> chosen;
-  if (options.samples >= entries) {
-    for (std::size_t i = 0; i < entries; ++i) chosen.insert(i);
-    return {chosen.begin(), chosen.end()};
-  }
-  // Floyd's sampling (Bentley, Comm. ACM 30, 1987). The choice of std::sample depends on the standard library.
-  std::mt19937_64 engine(options.seed);
-  for (std::size_t last = entries - options.samples; last < entries; ++last) {
-    const std::size_t candidate = engine() % (last + 1);
-    chosen.insert(chosen.contains(candidate) ? last : candidate);
-  }
-  return {chosen.begin(), chosen.end()};
 }
 
 TableCheck check_table(const TableSample& sample, const SceneValues& scene, const std::string& name,

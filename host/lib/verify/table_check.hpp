@@ -50,9 +50,6 @@ struct TableCheck {
 
 std::vector<AxisValue> entry_axis_values(std::size_t entry, const TableHead& table);
 
-/// Positions of options.samples random entries, none twice, in ascending order. options.seed fixes the choice.
-std::vector<std::size_t> sample_positions(std::size_t entries, const TableCheckOptions& options);
-
 /// Some entries of a table. `table` has only these entries; `positions` are their positions in the whole table.
 struct TableSample {
   TableValues table;

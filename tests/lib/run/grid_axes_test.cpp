@@ -95,7 +95,7 @@ TEST(GridAxes, FileReadBack_HasItsLabelsAndVerifiesWithoutTheMaterials) {
   EXPECT_EQ(reader.head().labels, scene.labels);
   EXPECT_EQ(reader.head().labels[Axis::kBand], (std::vector<std::string>{"8-9", "10-10.5"}));
   TableSample sample;
-  sample.positions = sample_positions(reader.head().size(), {});
+  sample.positions = sample_positions(reader.head().size(), reader.head().size(), 0);
   sample.table = reader.read_entries(sample.positions, {});
   const SceneValues again = table_scene(reader.head(), "t.nc");
   const TableCheck check = check_table(sample, again, "t.nc", {});

@@ -180,8 +180,7 @@ real2 groove_line(ThetaNode theta, real cos_psi, real sin_psi) {
 CONST real kDigitsOfLines = real(3.0);
 
 SplitLines groove_lines(RuleNode rule, ThetaNode theta, real t, real digits, SplitLines lines) {
-  real r = real(1.0) / sqrt(real(1.0) + t * t);
-  real2 turn = real2(t * r, r);  // e^(i gamma)
+  real2 turn = facet_turn(t);    // e^(i gamma)
   real2 at = turn;               // e^(i j gamma)
   real2 next = multiply(at, turn);
   lines.arcs = 0;

@@ -46,17 +46,13 @@ real2 column_factors(Slope slope, Facet f) {
   return real2(sky, sky * f.rotation);
 }
 
-real2 turned_by(real2 turn, real2 more) {
-  return real2(turn.x * more.x - turn.y * more.y, turn.x * more.y + turn.y * more.x);
-}
-
 // (cos, sin) of 2 k phi, where at = (cos, sin) of phi.
 real2 order_factors(int k, real2 at) {
-  real2 power = turned_by(at, at);
+  real2 power = multiply(at, at);
   real2 turn = real2(real(1.0), real(0.0));
   for (int bit = 1; bit < 32; bit *= 2) {  // DOLP_ROW_WIDTH more than the highest order is below 32
-    if ((k & bit) != 0) turn = turned_by(turn, power);
-    power = turned_by(power, power);
+    if ((k & bit) != 0) turn = multiply(turn, power);
+    power = multiply(power, power);
   }
   return turn;
 }
@@ -72,7 +68,7 @@ OrderFactors row_factors(int first, Azimuth at) {
   if (kHasOrders) {
     real2 phi = real2(at.x, at.sin_phi);
     factors.value[0] = order_factors(first, phi);
-    for (int g = 1; g < DOLP_WIDTH; ++g) factors.value[g] = turned_by(factors.value[g - 1], turned_by(phi, phi));
+    for (int g = 1; g < DOLP_WIDTH; ++g) factors.value[g] = multiply(factors.value[g - 1], multiply(phi, phi));
   }
   return factors;
 }

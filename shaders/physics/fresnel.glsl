@@ -11,6 +11,7 @@ struct Fresnel {
   real r_s;
   real absorbed_s;         // 1 - R_s
   real split_over_sin2;    // (R_s - R_p) / sin^2(beta)
+  real2 w;                 // w of the head of this file; 0 for reflectances from a table
 };
 
 // sqrt(re + i im) for im >= 0, as (Re, Im), both >= 0 and each without cancellation.
@@ -21,8 +22,12 @@ real2 sqrt_upper(real re, real im) {
   return real2(re >= real(0.0) ? larger : smaller, re >= real(0.0) ? smaller : larger);
 }
 
-// The formulas of the head of this file. `n2m1` is N^2 - 1, `s_sum` is c + w, and `p_sum` is N^2 c + w.
-Fresnel fresnel_of_sums(real2 n2m1, real cos_beta, real2 w, real2 s_sum, real2 p_sum) {
+// Reflection by a bare surface, without films. Domain: 0 < cos_beta <= 1.
+Fresnel fresnel(IndexNode index, real cos_beta) {
+  real2 n2m1 = real2(index.n2m1_re, index.n2m1_im);
+  real2 w = sqrt_upper(n2m1.x + cos_beta * cos_beta, n2m1.y);
+  real2 s_sum = real2(cos_beta + w.x, w.y);
+  real2 p_sum = real2((n2m1.x + real(1.0)) * cos_beta + w.x, n2m1.y * cos_beta + w.y);  // N^2 c + w
   // Without the lower limit, N = 1 at grazing incidence would give 0/0 if the squares underflow.
   real inverse_b = real(1.0) / max(s_sum.x * s_sum.x + s_sum.y * s_sum.y, kSmallestSquare);
   real a = (n2m1.x * n2m1.x + n2m1.y * n2m1.y) * inverse_b;
@@ -31,15 +36,8 @@ Fresnel fresnel_of_sums(real2 n2m1, real cos_beta, real2 w, real2 s_sum, real2 p
   f.r_s = a * inverse_b;
   f.absorbed_s = transmitted * inverse_b;
   f.split_over_sin2 = transmitted * a / max(p_sum.x * p_sum.x + p_sum.y * p_sum.y, kSmallestSquare);
+  f.w = w;
   return f;
-}
-
-// Reflection by a bare surface, without films. Domain: 0 < cos_beta <= 1.
-Fresnel fresnel(IndexNode index, real cos_beta) {
-  real2 w = sqrt_upper(index.n2m1_re + cos_beta * cos_beta, index.n2m1_im);
-  real2 s_sum = real2(cos_beta + w.x, w.y);
-  real2 p_sum = real2((index.n2m1_re + real(1.0)) * cos_beta + w.x, index.n2m1_im * cos_beta + w.y);
-  return fresnel_of_sums(real2(index.n2m1_re, index.n2m1_im), cos_beta, w, s_sum, p_sum);
 }
 
 // Reads R_s, 1 - R_s and (R_s - R_p) / sin^2(beta) of films or of measured reflectances from a table
@@ -64,5 +62,5 @@ Fresnel reflectance_at(IndexNode index, real cos_beta) {
     real2 high = table_node(first + 2 * i + 1);
     value[i] = low.x + x * (low.y + x * (high.x + x * high.y));
   }
-  return Fresnel(max(value[0], real(0.0)), max(value[1], real(0.0)), value[2]);
+  return Fresnel(max(value[0], real(0.0)), max(value[1], real(0.0)), value[2], real2(real(0.0), real(0.0)));
 }

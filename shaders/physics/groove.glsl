@@ -29,9 +29,8 @@ struct Fan {
 
 // The state before the first bounce. The ray has the vertical component c and the component u across the groove.
 Fan fan(real t, real c, real u) {
-  real r = real(1.0) / sqrt(real(1.0) + t * t);
   Fan f;
-  f.turn = real2(t * r, r);
+  f.turn = facet_turn(t);
   f.gamma = real(0.0);
   f.left = real(0.0);
   f.done = real(0.0);
@@ -82,13 +81,10 @@ struct Bounce {
 };
 
 // The matrix of a group of 2^doublings bounces, a power of the matrix of one bounce. For one bounce, Bounce::cross is
-// |r_s|^2 r_p / r_s, and r_p / r_s = (cos(beta) w - sin^2(beta)) / (cos(beta) w + sin^2(beta)). fresnel.glsl defines w.
+// |r_s|^2 r_p / r_s, and r_p / r_s = (cos(beta) w - sin^2(beta)) / (cos(beta) w + sin^2(beta)). w is Fresnel::w.
 Bounce bounce(IndexNode index, real cos_beta, real sin2_beta, int doublings) {
-  real2 w = sqrt_upper(index.n2m1_re + cos_beta * cos_beta, index.n2m1_im);
-  real2 s_sum = real2(cos_beta + w.x, w.y);
-  real2 p_sum = real2((index.n2m1_re + real(1.0)) * cos_beta + w.x, index.n2m1_im * cos_beta + w.y);
-  Fresnel f = fresnel_of_sums(real2(index.n2m1_re, index.n2m1_im), cos_beta, w, s_sum, p_sum);
-  real2 cw = real2(cos_beta * w.x, cos_beta * w.y);
+  Fresnel f = fresnel(index, cos_beta);
+  real2 cw = real2(cos_beta * f.w.x, cos_beta * f.w.y);
   real scale = f.r_s / max((cw.x + sin2_beta) * (cw.x + sin2_beta) + cw.y * cw.y, kSmallestSquare);
   real half_split = real(0.5) * f.split_over_sin2 * sin2_beta;
   Bounce combined;
@@ -128,11 +124,6 @@ real2 doubled_angle(real x, real y) {
   return real2((x - y) * (x + y) * inverse, real(2.0) * x * y * inverse);
 }
 
-// Adds two angles, given as (sin, cos) in `at` and as (cos, sin) in `step`. Returns (sin, cos) of the sum.
-real2 further_on(real2 at, real2 step) {
-  return real2(at.x * step.x + at.y * step.y, at.y * step.x - at.x * step.y);
-}
-
 // Light that leaves a groove. A part of the beam may leave one bounce earlier than the rest.
 struct GrooveLight {
   real4 moments;    // (r_i, r_q, albedo, deficit), as in facet.glsl
@@ -157,7 +148,7 @@ GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index,
   real width = (u * f.turn.x > c * f.turn.y) ? real(2.0) * c * f.turn.y : first;
   real inverse_width = real(1.0) / max(width, real(1e-30));
   real rise = real(0.0);        // X_k - X_1
-  real2 between = real2(u, c);  // the length a times (sin, cos) of psi + 2 k gamma
+  real2 between = real2(c, u);  // the length a times (cos, sin) of psi + 2 k gamma
   real share = f.is_black ? real(0.0) : real(1.0);  // share of the beam that continues
   real absorbed = real(1.0) - share;
   // Stokes vectors in the axes of the groove. `natural` begins as unpolarised light.
@@ -173,21 +164,21 @@ GrooveLight reflected_in_groove(RuleNode rule, ThetaNode theta, IndexNode index,
   while (share > real(0.0)) {
     light.before = real2((real(1.0) - share) * natural.x, (real(1.0) - share) * polarised.x);
     if (kHasOrders) light.before_u = (real(1.0) - share) * tilted.x;
-    light.cos_before = -between.y;
+    light.cos_before = -between.x;
     if (f.is_steep) f = next_bounces(f);
-    real2 at = further_on(between, f.turn);
-    real along = b * at.x;
-    real norm = at.y * at.y + along * along;
+    real2 at = multiply(between, f.turn);  // (Y_k, X_k)
+    real along = b * at.y;
+    real norm = at.x * at.x + along * along;
     real inverse_norm = real(1.0) / max(norm, kSmallestSquare);
-    real2 twice = real2((at.y - along) * (at.y + along) * inverse_norm, real(2.0) * at.y * along * inverse_norm);
-    Bounce by = bounce(index, max(at.x, real(1e-15)), min(norm * inverse_a2, real(1.0)), f.doublings);
+    real2 twice = real2((at.x - along) * (at.x + along) * inverse_norm, real(2.0) * at.x * along * inverse_norm);
+    Bounce by = bounce(index, max(at.y, real(1e-15)), min(norm * inverse_a2, real(1.0)), f.doublings);
     absorbed += share * (by.absorbed * natural.x - by.m01 * (twice.x * natural.y + twice.y * natural.z));
     natural += share * (bounced(by, twice, natural) - natural);
     polarised += share * (bounced(by, twice, polarised) - polarised);
     if (kHasOrders) tilted += share * (bounced(by, twice, tilted) - tilted);
-    between = further_on(at, f.turn);
-    light.cos_last = -between.y;
-    rise += real(2.0) * f.turn.y * between.y;
+    between = multiply(at, f.turn);
+    light.cos_last = -between.x;
+    rise += real(2.0) * f.turn.y * between.x;
     if (f.is_steep) {
       f.done += f.taken;
       f.left -= f.taken;

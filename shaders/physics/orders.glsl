@@ -208,11 +208,6 @@ Singularity branch_at(ThetaNode theta, IndexNode index, real2 facet) {
   return facet_singularity(theta, index.branch_re, index.branch_im, facet);
 }
 
-real2 facet_turn(real t) {
-  real r = real(1.0) / sqrt(real(1.0) + t * t);
-  return real2(t * r, r);
-}
-
 bool has_masking_integrals() { return kMasking == DOLP_MASKING_SMITH || kMasking == DOLP_MASKING_INTEGRAL; }
 
 // Smith masking has a cusp at theta_r = 0, where Lambda behaves like |theta_r|^(2q - 2). Only the facet with t =

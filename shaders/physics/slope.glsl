@@ -3,6 +3,12 @@
 //   P(t) = (q - 1) / (pi m^2) (1 + u^2)^-q (cauchy) or exp(-u^2) / (pi m^2) (gaussian).
 // The integral of P t dt dphi over the slope plane is 1. With D, the distribution of normals, P = D cos^4(alpha).
 
+// (cos, sin) of gamma = pi/2 - alpha.
+real2 facet_turn(real t) {
+  real r = real(1.0) / sqrt(real(1.0) + t * t);
+  return real2(t * r, r);
+}
+
 // The share of facets that are steeper than t is exp(-exponent_factor(shape) * common_exponent(t / m)).
 real common_exponent(real u) { return (kDistribution == DOLP_CAUCHY) ? log1p_square(u) : u * u; }
 real exponent_factor(ShapeNode shape) { return (kDistribution == DOLP_CAUCHY) ? shape.q_minus_1 : real(1.0); }

@@ -195,7 +195,7 @@ std::vector<Moments> ReferenceEvaluator::evaluate(const MomentsRequest& request,
   const auto compute = [&](std::size_t i) {
     if (request.is_wanted(i)) results[i] = point_moments(request, request[i], refinement);
   };
-  parallel_for(results.size(), compute, progress, kEntriesAtOnce);
+  parallel_for(results.size(), kEntriesAtOnce, compute, progress);
   for (const Moments& moments : results) report_.evaluations += moments.evaluations;
   note(seconds_since(start));
   return results;
@@ -206,7 +206,7 @@ std::vector<ScatteringMatrix> ReferenceEvaluator::scatter(const ScatteringReques
   const auto start = std::chrono::steady_clock::now();
   std::vector<ScatteringMatrix> results(request.entries.size());
   const auto compute = [&](std::size_t i) { results[i] = scattering_matrix(request, request.entries[i]); };
-  parallel_for(results.size(), compute, progress, kEntriesAtOnce);
+  parallel_for(results.size(), kEntriesAtOnce, compute, progress);
   note(seconds_since(start));
   return results;
 }

@@ -198,7 +198,7 @@ std::vector<ScatteringMatrix> scattering_matrices(const ScatteringRequest& reque
   const Progress beam_progress = [&](std::size_t done, std::size_t) {
     return !progress || progress(std::min(done * kBeamsAtOnce, order.size()), order.size());
   };
-  parallel_for((order.size() + kBeamsAtOnce - 1) / kBeamsAtOnce, compute_group, beam_progress, 4);
+  parallel_for((order.size() + kBeamsAtOnce - 1) / kBeamsAtOnce, 4, compute_group, beam_progress);
   return matrices;
 }
 

@@ -24,12 +24,10 @@ bool is_finite(const Moments& m) {
 std::vector<ShapeBlock> shape_blocks(const MomentsStep& step, std::span<const Moments> nodes) {
   const std::size_t nodes_per_pair = step.shapes->nodes_of_a_direction();
   std::vector<ShapeBlock> blocks(nodes.size() / nodes_per_pair);
-  parallel_ranges(blocks.size(), 16, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      const std::span<const Moments> pair_nodes = nodes.subspan(i * nodes_per_pair, nodes_per_pair);
-      const bool is_wanted = step.request.is_wanted(i * step.request.shapes());
-      if (is_wanted && std::ranges::all_of(pair_nodes, is_finite)) blocks[i] = shape_block(*step.shapes, pair_nodes);
-    }
+  parallel_for(blocks.size(), 16, [&](std::size_t i) {
+    const std::span<const Moments> pair_nodes = nodes.subspan(i * nodes_per_pair, nodes_per_pair);
+    const bool is_wanted = step.request.is_wanted(i * step.request.shapes());
+    if (is_wanted && std::ranges::all_of(pair_nodes, is_finite)) blocks[i] = shape_block(*step.shapes, pair_nodes);
   });
   return blocks;
 }

@@ -197,9 +197,7 @@ void add_curves(KernelData& data, const MomentsRequest& request, Tables tables) 
   if (is_counted) different = {different[different.size() / 2]};  // a film may need many megabytes for each wavelength
   std::vector<ReflectanceCurve> curves(different.size());
   const double tolerance = tables_tolerance(request);
-  parallel_ranges(curves.size(), 1, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) curves[i] = reflectance_curve(*different[i], tolerance);
-  });
+  parallel_for(curves.size(), 1, [&](std::size_t i) { curves[i] = reflectance_curve(*different[i], tolerance); });
   std::vector<double> starts;
   for (const ReflectanceCurve& curve : curves) {
     const std::size_t aligned = (data.rule_nodes.size() + DOLP_CURVE_ALIGNMENT - 1) / DOLP_CURVE_ALIGNMENT;
@@ -286,14 +284,12 @@ void add_points(KernelData& data, const MomentsRequest& request) {
   }
   data.thetas.resize(count);
   data.pieces.resize(count);
-  parallel_ranges(count, kPointsAtOnce, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      const bool has_line = data.needs_line[data.shape_positions[i]] != 0;
-      const auto [theta, pieces] =
-          direction_node(data, request, request.theta_deg[i], {data.indices[i].critical_cos, has_line});
-      data.thetas[i] = theta;
-      data.pieces[i] = pieces;
-    }
+  parallel_for(count, kPointsAtOnce, [&](std::size_t i) {
+    const bool has_line = data.needs_line[data.shape_positions[i]] != 0;
+    const auto [theta, pieces] =
+        direction_node(data, request, request.theta_deg[i], {data.indices[i].critical_cos, has_line});
+    data.thetas[i] = theta;
+    data.pieces[i] = pieces;
   });
 }
 

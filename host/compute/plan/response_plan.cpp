@@ -216,9 +216,7 @@ namespace {
 
 std::vector<ResponsePlan::Source> response_sources(const ResponseBasis& basis, std::span<const FacetOptics> indices) {
   std::vector<ResponsePlan::Source> sources(indices.size());
-  parallel_ranges(sources.size(), 1, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) sources[i].weights = basis.find_weights(indices[i]);
-  });
+  parallel_for(sources.size(), 1, [&](std::size_t i) { sources[i].weights = basis.find_weights(indices[i]); });
   return sources;
 }
 

@@ -85,8 +85,8 @@ void add_gauss_rules(Rules& rules, int largest_order) {
     }
   }
   constexpr std::size_t kRulesAtOnce = 4;
-  parallel_for(
-      missing.size(), [&](std::size_t i) { missing[i]->second = gauss_legendre(missing[i]->first); }, {}, kRulesAtOnce);
+  parallel_for(missing.size(), kRulesAtOnce,
+               [&](std::size_t i) { missing[i]->second = gauss_legendre(missing[i]->first); });
 }
 
 RuleNodes make_rule_nodes(const Rules& gauss, int largest_order) {

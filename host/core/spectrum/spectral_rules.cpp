@@ -30,9 +30,7 @@ SpectralRules::SpectralRules(const SceneModel& scene, const SceneEntries& entrie
   std::vector<std::shared_ptr<const SpectralRule>> rules(variants.size());
   rules.front() = computed(variants.front());
   if (rules.front()->samples.size() * variants.size() > kMostKeptSamples) return;
-  parallel_ranges(variants.size() - 1, 1, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first + 1; i <= last; ++i) rules[i] = computed(variants[i]);
-  });
+  parallel_for(variants.size() - 1, 1, [&](std::size_t i) { rules[i + 1] = computed(variants[i + 1]); });
   for (std::size_t i = 0; i < variants.size(); ++i) kept_.emplace(variants[i], std::move(rules[i]));
 }
 

@@ -141,18 +141,16 @@ void GrooveTable::fill(Block& block, const SceneValues& scene, const std::vector
   const std::size_t shape_nodes = sigmas.size() * qs.size();
   block.logits.resize(optics.size() * thetas.size() * shape_nodes);
   block.quotients.resize(block.logits.size());
-  parallel_ranges(block.logits.size(), kNodesAtOnce, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      const std::size_t group = i / shape_nodes % block.groups;
-      const std::size_t shape = i % shape_nodes;
-      const std::size_t outer = i / (block.groups * shape_nodes);
-      const FurtherLight light = further_light(scene.surface.distribution, thetas[outer % thetas.size()],
-                                               {sigmas[shape / qs.size()], qs[shape % qs.size()]},
-                                               optics[outer / thetas.size() * block.groups + group]);
-      const double reflected = std::clamp(light.i, kLeastReflected, 1.0 - kLeastReflected);
-      block.logits[i] = std::log(reflected / (1.0 - reflected));
-      block.quotients[i] = light.q / (reflected * (1.0 - reflected));
-    }
+  parallel_for(block.logits.size(), kNodesAtOnce, [&](std::size_t i) {
+    const std::size_t group = i / shape_nodes % block.groups;
+    const std::size_t shape = i % shape_nodes;
+    const std::size_t outer = i / (block.groups * shape_nodes);
+    const FurtherLight light = further_light(scene.surface.distribution, thetas[outer % thetas.size()],
+                                             {sigmas[shape / qs.size()], qs[shape % qs.size()]},
+                                             optics[outer / thetas.size() * block.groups + group]);
+    const double reflected = std::clamp(light.i, kLeastReflected, 1.0 - kLeastReflected);
+    block.logits[i] = std::log(reflected / (1.0 - reflected));
+    block.quotients[i] = light.q / (reflected * (1.0 - reflected));
   });
 }
 

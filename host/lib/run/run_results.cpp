@@ -27,9 +27,7 @@ RunResults::RunResults(const Quantities& quantities, const std::vector<Derivativ
   for (const Quantity quantity : quantities) own.push_back(&columns[quantity]);
   for (DerivativeColumn& derivative : derivatives) own.push_back(&derivative.values);
   // The first writes to new memory take most of the time here.
-  parallel_ranges(own.size(), entries < kManyEntries ? own.size() : 1, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) own[i]->resize(entries);
-  });
+  parallel_for(own.size(), entries < kManyEntries ? own.size() : 1, [&](std::size_t i) { own[i]->resize(entries); });
   status.resize(entries);
 }
 

@@ -40,15 +40,16 @@ void parallel_ranges(std::size_t count, std::size_t grain,
   if (error) std::rethrow_exception(error);
 }
 
-void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body, const Progress& progress,
-                  std::size_t grain) {
+void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t)>& body,
+                  const Progress& progress) {
   std::mutex mutex;
   std::size_t done = 0;
   parallel_ranges(count, grain, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) body(i);
+    if (!progress) return;
     const std::lock_guard lock(mutex);
     done += last - first;
-    if (progress && !progress(done, count)) throw Cancelled();
+    if (!progress(done, count)) throw Cancelled();
   });
 }
 

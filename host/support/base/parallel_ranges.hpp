@@ -12,9 +12,10 @@ namespace dolp {
 void parallel_ranges(std::size_t count, std::size_t grain,
                      const std::function<void(std::size_t first, std::size_t last)>& body);
 
-/// Calls body(i) once for each i < count, on all cores. Calls `progress` after each `grain` items, never on two threads
-/// at once. Errors: the first exception of `body`; Cancelled if `progress` returns false. Both stop the loop.
-void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body, const Progress& progress,
-                  std::size_t grain = 64);
+/// Calls body(i) once for each i < count, like parallel_ranges(). Calls `progress` after each `grain` items, never on
+/// two threads at once. Errors: the first exception of `body`; Cancelled if `progress` returns false. Both stop the
+/// loop.
+void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t)>& body,
+                  const Progress& progress = nullptr);
 
 }  // namespace dolp

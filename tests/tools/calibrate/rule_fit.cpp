@@ -57,7 +57,7 @@ std::vector<Moments> computed(const MomentsRequest& request, const RuleModel& mo
     const MomentsEntry entry = data[i];
     moments[i] = moments_from_kernel(kernel->moments(entry, {}), data, entry, kDoubleRoundoff);
   };
-  parallel_for(moments.size(), one, nullptr);
+  parallel_for(moments.size(), 64, one);
   return moments;
 }
 

@@ -19,6 +19,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr std::size_t kComputedAtOnce = 64;  // entries or directions that a thread computes in one step
 constexpr std::size_t kTablesAtOnce = 4096;  // most masking tables in memory; each has 4 KiB in float, 58 KiB in double
 
 std::unique_ptr<CpuKernel> make_kernel(const KernelData& data, bool in_double) {
@@ -63,7 +64,7 @@ std::vector<Moments> by_entries(const MomentsRequest& request, const KernelData&
     const Progress total_progress = [&](std::size_t done, std::size_t) {
       return !progress || progress(before + done, all.size());
     };
-    parallel_for(entries.size(), compute_entry, total_progress);
+    parallel_for(entries.size(), kComputedAtOnce, compute_entry, total_progress);
     before += entries.size();
   }
   return moments;
@@ -82,7 +83,7 @@ std::vector<Moments> by_slope_samples(const MomentsRequest& request, const Kerne
   const Progress entry_progress = [&](std::size_t done, std::size_t all) {
     return !progress || progress(wanted * done / all, wanted);
   };
-  parallel_for(data.directions, compute_direction, entry_progress);
+  parallel_for(data.directions, kComputedAtOnce, compute_direction, entry_progress);
   return moments;
 }
 

@@ -111,9 +111,9 @@ class SourceKernel final : public CpuKernel {
   void build_masking_tables(std::vector<std::uint32_t> shapes) override {
     shapes_ = std::move(shapes);
     source_.masking_table.resize(shapes_.size() * KernelSource::kMaskingNodes);
-    parallel_for(
-        shapes_.size(), [&](std::size_t i) { source_.build_masking_table(shape_node(shapes_[i]), table_at(i)); },
-        nullptr);
+    constexpr std::size_t kShapesAtOnce = 64;
+    parallel_for(shapes_.size(), kShapesAtOnce,
+                 [&](std::size_t i) { source_.build_masking_table(shape_node(shapes_[i]), table_at(i)); });
   }
 
   kernel::MomentsNode moments(const MomentsEntry& entry, std::span<double> columns) override {

@@ -156,17 +156,15 @@ class RowRun final : public TiledRun {
   std::vector<Moments> entry_moments(std::span<const kernel::MomentsNode> results) const {
     std::vector<Moments> moments(request_.size());
     const std::size_t per_entry = column_sums(data_);
-    parallel_ranges(rows_.rows.size(), kRowsAtOnce, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) {
-        const Row& row = rows_.rows[i];
-        const Chunk& chunk = rows_.chunks[row.chunk];
-        const std::uint32_t theta = rows_.theta_position(data_, row);
-        for (std::uint32_t g = 0; g < chunk.count; ++g) {
-          const std::uint32_t shape = rows_.shape_positions[chunk.first + g];
-          moments[data_.entry_position(row.direction, row.index, shape)] = moments_from_kernel(
-              results[i * rows_.width + g], data_, {theta, shape, row.index}, context_.unit_roundoff,
-              std::span(column_results_).subspan((i * rows_.width + g) * per_entry, per_entry));
-        }
+    parallel_for(rows_.rows.size(), kRowsAtOnce, [&](std::size_t i) {
+      const Row& row = rows_.rows[i];
+      const Chunk& chunk = rows_.chunks[row.chunk];
+      const std::uint32_t theta = rows_.theta_position(data_, row);
+      for (std::uint32_t g = 0; g < chunk.count; ++g) {
+        const std::uint32_t shape = rows_.shape_positions[chunk.first + g];
+        moments[data_.entry_position(row.direction, row.index, shape)] =
+            moments_from_kernel(results[i * rows_.width + g], data_, {theta, shape, row.index}, context_.unit_roundoff,
+                                std::span(column_results_).subspan((i * rows_.width + g) * per_entry, per_entry));
       }
     });
     return moments;

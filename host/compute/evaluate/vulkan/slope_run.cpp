@@ -57,11 +57,9 @@ class SlopeRun final : public TiledRun {
       finish_tiles();
       for (const kernel::AzimuthNode& azimuth : azimuths.nodes) cost_.evaluations += azimuth.evaluations;
       const auto start = std::chrono::steady_clock::now();
-      parallel_ranges(batch.samples.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          const SlopeSamples& samples = batch.samples[i];
-          tiles_.sampling.integrate(samples, azimuths, batch.first_node[i], context_.unit_roundoff, moments);
-        }
+      parallel_for(batch.samples.size(), 1, [&](std::size_t i) {
+        const SlopeSamples& samples = batch.samples[i];
+        tiles_.sampling.integrate(samples, azimuths, batch.first_node[i], context_.unit_roundoff, moments);
       });
       cost_.sums_s += seconds_since(start);
     }

@@ -161,9 +161,7 @@ SlopeBatch SlopeTiles::batch(std::size_t first) const {
   std::vector<SampledEntries> entries = sampled_entries(request, data, first, last);
   SlopeBatch batch;
   batch.samples.resize(entries.size());
-  parallel_ranges(entries.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) batch.samples[i] = sampling.plan(std::move(entries[i]));
-  });
+  parallel_for(entries.size(), 1, [&](std::size_t i) { batch.samples[i] = sampling.plan(std::move(entries[i])); });
   batch.orders_at_once = orders_at_once(data);
   for (const SlopeSamples& samples : batch.samples) {
     batch.first.push_back(batch.slopes.size());

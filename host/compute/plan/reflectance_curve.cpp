@@ -154,25 +154,16 @@ std::size_t fewest_cells(const FacetOptics& optics) {
   return std::bit_ceil(static_cast<std::size_t>(std::ceil(1.0 / step)));
 }
 
-ReflectanceCurve film_curve(const Sixths& sixths) {
+ReflectanceCurve make_curve(const Sixths& sixths) {
   ReflectanceCurve curve{.cells = sixths.cells()};
   curve.nodes.reserve(DOLP_CURVE_NODES * curve.cells);
+  std::vector<std::array<double, 2>> kinks, beyond;  // films have neither
   for (std::size_t i = 0; i < curve.cells; ++i) {
     const CellValues values = cell_values(sixths, i);
-    const Cell cell{i, cubics_through(values)};
+    const Cell cell = sixths.optics().measured ? measured_cell(sixths, i) : Cell{i, cubics_through(values)};
     append(curve.nodes, cell.before);
     add_errors(curve, sixths, cell, values);
-  }
-  return curve;
-}
-
-ReflectanceCurve measured_curve(const Sixths& sixths) {
-  ReflectanceCurve curve{.cells = sixths.cells()};
-  std::vector<std::array<double, 2>> kinks, beyond;
-  for (std::size_t i = 0; i < curve.cells; ++i) {
-    const Cell cell = measured_cell(sixths, i);
-    append(curve.nodes, cell.before);
-    add_errors(curve, sixths, cell, cell_values(sixths, i));
+    if (!sixths.optics().measured) continue;
     kinks.push_back({cell.kink, static_cast<double>((DOLP_CURVE_NODES + 1) * curve.cells + beyond.size())});
     if (cell.kink < 1.0) append(beyond, cell.after);
   }
@@ -207,7 +198,7 @@ ReflectanceCurve reflectance_curve(const FacetOptics& optics, double tolerance) 
   Sixths sixths(optics, fewest_cells(optics));
   ReflectanceCurve curve;
   while (true) {
-    curve = optics.measured ? measured_curve(sixths) : film_curve(sixths);
+    curve = make_curve(sixths);
     if (curve.error <= wanted || curve.cells == kMostCells) break;
     sixths.divide();
   }

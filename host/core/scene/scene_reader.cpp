@@ -167,23 +167,17 @@ SceneValues read_keys(const SceneDocument& document) {
 /// If the scene gives a quantity only as an axis, stores the first value of the axis as the scene's value.
 void fill_from_grid(SceneValues& scene, const SceneDocument& document) {
   Axes& grid = scene.grid;
-  OpticalConstants& index = scene.surface.material.constant;
   if (document.find("grid.temperature_K"))
     check_needs(document, "grid.temperature_K", {{document.find("emission") != nullptr, "the table [emission]"}});
   for (const char* key : {"grid.view_zenith_deg", "grid.relative_azimuth_deg"}) {
     if (document.find(key))
       check_needs(document, key, {{scene.geometry.mode == Mode::kBistatic, "geometry.mode = \"bistatic\""}});
   }
-  if (!grid[Axis::kViewZenith].empty() && !document.find("geometry.view_zenith_deg"))
-    scene.geometry.view_zenith_deg = grid[Axis::kViewZenith].front();
-  if (!grid[Axis::kRelativeAzimuth].empty() && !document.find("geometry.relative_azimuth_deg"))
-    scene.geometry.relative_azimuth_deg = grid[Axis::kRelativeAzimuth].front();
-  if (!grid[Axis::kSigmaCross].empty() && !document.find("surface.sigma_cross"))
-    scene.surface.sigma_cross = grid[Axis::kSigmaCross].front();
-  if (!grid[Axis::kSurfaceAzimuth].empty() && !document.find("geometry.surface_azimuth_deg"))
-    scene.geometry.surface_azimuth_deg = grid[Axis::kSurfaceAzimuth].front();
-  if (!grid[Axis::kWavelength].empty() && !document.find("spectrum.wavelength_um"))
-    scene.spectrum = {grid[Axis::kWavelength].front(), grid[Axis::kWavelength].front()};
+  for (const Axis axis : kAllAxes) {
+    const SceneKey* const key = find_scene_key(describe(axis).key);
+    const bool is_filled = key && !describe(axis).is_required && !grid[axis].empty();
+    if (is_filled && !document.find(describe(axis).key)) key->set(scene, {.number = grid[axis].front()});
+  }
   if (!scene.bands.empty()) scene.spectrum = scene.bands.front();
   for (const Spectrum& band : scene.bands) {
     std::vector<std::string>& labels = scene.labels[Axis::kBand];
@@ -191,10 +185,6 @@ void fill_from_grid(SceneValues& scene, const SceneDocument& document) {
     labels.push_back(band.label());
     if (std::ranges::count(labels, labels.back()) > 1) document.fail("grid.band_um", labels.back() + " appears twice");
   }
-  if (!grid[Axis::kTemperature].empty() && !document.find("emission.temperature_K"))
-    scene.emission->temperature_K = grid[Axis::kTemperature].front();
-  if (!grid[Axis::kN].empty() && !document.find("surface.n")) index.n = grid[Axis::kN].front();
-  if (!grid[Axis::kK].empty() && !document.find("surface.k")) index.k = grid[Axis::kK].front();
 }
 
 void fill_grid(SceneValues& scene, const SceneDocument& document) {

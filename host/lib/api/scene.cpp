@@ -62,22 +62,12 @@ Scene Scene::with_all(const std::vector<Setting>& settings) const {
 
 Scene Scene::for_points() const {
   const SceneValues& scene = impl_->scene;
-  constexpr std::pair<Axis, const char*> kKeys[] = {{Axis::kWavelength, "spectrum.wavelength_um"},
-                                                    {Axis::kTemperature, "emission.temperature_K"},
-                                                    {Axis::kN, "surface.n"},
-                                                    {Axis::kK, "surface.k"},
-                                                    {Axis::kViewZenith, "geometry.view_zenith_deg"},
-                                                    {Axis::kRelativeAzimuth, "geometry.relative_azimuth_deg"},
-                                                    {Axis::kSigmaCross, "surface.sigma_cross"},
-                                                    {Axis::kSurfaceAzimuth, "geometry.surface_azimuth_deg"},
-                                                    {Axis::kSigma, "surface.sigma"},
-                                                    {Axis::kQ, "surface.q"}};
   std::vector<Setting> settings;
-  for (const auto& [axis, key] : kKeys) {
-    if (scene.grid[axis].size() != 1) continue;
+  for (const Axis axis : kAllAxes) {
+    const std::string key = describe(axis).key;
+    if (key.empty() || scene.grid[axis].size() != 1) continue;
     const bool is_wind = axis == Axis::kSigma && !scene.wind_m_s.empty();
-    settings.push_back(is_wind ? Setting{"surface.wind_m_s", scene.wind_m_s.front()}
-                               : Setting{key, scene.grid[axis].front()});
+    settings.push_back(is_wind ? Setting{kWind.key, scene.wind_m_s.front()} : Setting{key, scene.grid[axis].front()});
   }
   return with(settings);
 }

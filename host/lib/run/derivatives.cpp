@@ -23,27 +23,15 @@ namespace {
 constexpr double kStepTolerance = 1e-8;
 constexpr double kStep = 0.01;  // the error of order h^4 and the bounds of the results over h are then similar
 constexpr const char* kThetaKey = "grid.theta_deg";
-constexpr const char* kWindKey = "surface.wind_m_s";
-
-/// Keys whose values entries may have themselves.
-constexpr std::array<std::pair<Axis, const char*>, 12> kAxisKeys = {
-    {{Axis::kViewZenith, "geometry.view_zenith_deg"},
-     {Axis::kRelativeAzimuth, "geometry.relative_azimuth_deg"},
-     {Axis::kTheta, kThetaKey},
-     {Axis::kSigma, "surface.sigma"},
-     {Axis::kSigma, kWindKey},
-     {Axis::kQ, "surface.q"},
-     {Axis::kSigmaCross, "surface.sigma_cross"},
-     {Axis::kSurfaceAzimuth, "geometry.surface_azimuth_deg"},
-     {Axis::kN, "surface.n"},
-     {Axis::kK, "surface.k"},
-     {Axis::kWavelength, "spectrum.wavelength_um"},
-     {Axis::kTemperature, "emission.temperature_K"}}};
 
 /// The axis on which the entries have the values of the key; nullopt if the scene has the value.
 std::optional<Axis> key_axis(const SceneEntries& entries, const std::string& key) {
-  const auto found = std::ranges::find(kAxisKeys, key, [](const auto& pair) { return std::string_view(pair.second); });
-  return found != kAxisKeys.end() && entries.has_values(found->first) ? std::optional(found->first) : std::nullopt;
+  const std::string axis_key = key == kWind.key ? describe(Axis::kSigma).key : key;
+  for (const Axis axis : kAllAxes) {
+    const bool is_axis = key == kThetaKey ? axis == Axis::kTheta : axis_key == describe(axis).key;
+    if (is_axis && entries.has_values(axis)) return axis;
+  }
+  return std::nullopt;
 }
 
 bool has_wind(const SceneValues& scene) { return scene.surface.wind_m_s.has_value() || !scene.wind_m_s.empty(); }
@@ -54,7 +42,7 @@ bool is_number_of(const SceneValues& scene, const SceneEntries& entries, const s
   if (!known || known->description.type != Key::Type::kNumber || key.starts_with("accuracy.")) return false;
   const auto has_films = [](const SceneVariant& variant) { return !variant.films.empty(); };
   if (known->description.layer > 0 && std::ranges::any_of(entries.variants(), has_films)) return false;
-  if (key == kWindKey) return has_wind(scene);
+  if (key == kWind.key) return has_wind(scene);
   if (key == "surface.sigma") return !has_wind(scene);
   if (key == "surface.sigma_cross" && scene.surface.sigma_cross == 0.0) return key_axis(entries, key).has_value();
   if (key == "surface.q" && scene.surface.distribution == Distribution::kGaussian) return false;
@@ -129,9 +117,9 @@ class Steps {
     return evaluate_scene(changed, entries_.changed(*axis_, change), evaluator, progress);
   }
 
-  double to_key(double own) const { return key_ == kWindKey ? wind_from_sigma(own, scene_.surface.wind_model) : own; }
+  double to_key(double own) const { return key_ == kWind.key ? wind_from_sigma(own, scene_.surface.wind_model) : own; }
   double from_key(double value) const {
-    return key_ == kWindKey ? sigma_in_wind(value, scene_.surface.wind_model) : value;
+    return key_ == kWind.key ? sigma_in_wind(value, scene_.surface.wind_model) : value;
   }
 
   const SceneValues& scene_;

@@ -12,17 +12,10 @@ namespace {
 Scene with_grid(const Scene& scene, const PointList& list) {
   std::vector<Setting> axes;
   for (const auto& [name, values] : list.values) axes.push_back({name, values});
-  for (const auto& [axis, key] : {std::pair{"wavelength_um", "spectrum.wavelength_um"},
-                                  {"temperature_K", "emission.temperature_K"},
-                                  {"n", "surface.n"},
-                                  {"k", "surface.k"},
-                                  {"view_zenith_deg", "geometry.view_zenith_deg"},
-                                  {"relative_azimuth_deg", "geometry.relative_azimuth_deg"},
-                                  {"sigma_cross", "surface.sigma_cross"},
-                                  {"surface_azimuth_deg", "geometry.surface_azimuth_deg"}}) {
-    const bool is_listed = std::ranges::count(axes, axis, &Setting::key) > 0;
-    if (!is_listed && !scene.numbers(std::string("grid.") + axis).empty())
-      axes.push_back({axis, scene.number(key).value()});
+  for (const Axis axis : kAllAxes) {
+    const std::string key = describe(axis).key, column = describe(axis).column;
+    if (key.empty() || describe(axis).is_required || std::ranges::count(axes, column, &Setting::key) > 0) continue;
+    if (!scene.numbers("grid." + column).empty()) axes.push_back({column, scene.number(key).value()});
   }
   const AxisLabels& labels = scene.labels();
   if (!labels[Axis::kMaterial].empty()) axes.push_back({"material", scene.word("surface.material").value()});

@@ -37,12 +37,6 @@ const std::vector<UnitNames>& unit_names() {
   return names;
 }
 
-std::string_view without_ends(std::string_view text, std::string_view ends) {
-  const std::size_t first = text.find_first_not_of(ends);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(ends) - first + 1);
-}
-
 /// The unit of a spectral column: of "wavelength_um", "Wavelength (micron)", "(um)", and of WAVL and WAVN in files of
 /// the Aerosol Refractive Index Archive (ARIA).
 std::optional<SpectralUnit> spectral_unit(std::string_view name) {
@@ -51,8 +45,8 @@ std::optional<SpectralUnit> spectral_unit(std::string_view name) {
   if (text == "wavn") return SpectralUnit::kPerCentimetre;
   const std::size_t bracket = text.find_first_of("([");
   const std::size_t cut = std::min(bracket == std::string::npos ? text.rfind('_') : bracket, text.size());
-  const std::string quantity(without_ends(std::string_view(text).substr(0, cut), " _"));
-  const std::string unit(without_ends(std::string_view(text).substr(cut), " _()[]"));
+  const std::string quantity(trim(std::string_view(text).substr(0, cut), " _"));
+  const std::string unit(trim(std::string_view(text).substr(cut), " _()[]"));
   for (const UnitNames& names : unit_names()) {
     const bool is_quantity =
         (quantity.empty() && bracket == 0) || std::ranges::find(names.quantities, quantity) != names.quantities.end();
@@ -88,7 +82,7 @@ std::string column_names(const std::vector<CsvColumn>& columns) {
 /// A name in lower case without the unit of a pure number: "n" for "N (-)".
 std::string bare_name(std::string_view name) {
   const std::size_t bracket = std::min(name.find_first_of("(["), name.size());
-  const std::string_view unit = without_ends(name.substr(bracket), " ()[]");
+  const std::string_view unit = trim(name.substr(bracket), " ()[]");
   const bool is_pure = unit.empty() || unit == "-" || unit == "1";
   return lower_case(trim(is_pure ? name.substr(0, bracket) : name));
 }
@@ -148,7 +142,7 @@ std::vector<std::string> names_with_units(std::string_view line, std::string_vie
   const std::vector<std::string> units = names_in(below, separator);
   if (names.size() != units.size()) return {};
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const std::string_view unit = without_ends(units[i], " ()[]-");
+    const std::string_view unit = trim(units[i], " ()[]-");
     if (!unit.empty()) names[i] += fmt::format(" ({})", unit);
   }
   return names;

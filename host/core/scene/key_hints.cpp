@@ -120,7 +120,6 @@ std::string_view without_unit(std::string_view name) {
 std::string similar_key(const std::string& key) {
   std::vector<std::string> known = scene_tables();
   for (const Key& description : keys()) known.push_back(description.key);
-  const auto last_part = [](const std::string& name) { return name.substr(name.find_last_of('.') + 1); };
   const auto distance = [&](const std::string& name) {
     return std::min({edit_distance(key, name), edit_distance(last_part(key), last_part(name)) + 1,
                      edit_distance(key, name.substr(0, key.size() + 1)) + 1});
@@ -136,7 +135,7 @@ std::optional<KeyHint> key_by_meaning(std::string_view unknown) {
   const std::string key = lower_case(unknown);
   const std::size_t dot = key.find('.');
   const std::string table = dot == std::string::npos ? "" : key.substr(0, dot);
-  const std::string name = key.substr(key.find_last_of('.') + 1);
+  const std::string name = last_part(key);
   const auto fits = [&](const Synonyms& row) {
     if (*row.tables != '\0' && !is_in(row.tables, table)) return false;
     return is_in(row.names, name) || is_in(row.names, without_unit(name));

@@ -55,9 +55,7 @@ Material fit_to_spectrum(const Material& material, const Spectrum& spectrum, con
 /// Reads a user's CSV with the columns beta_deg (angle of incidence, from 0 to 90), r_s and r_p. If the reflectances
 /// depend on the wavelength, the file has a column wavelength_um too, and the same angles at each wavelength.
 /// Domain: reflectances in [0, 1]. At 0 degrees r_s and r_p differ by at most 0.01; both are replaced by their mean.
-/// Errors: InputError with file and line; if the file cannot be opened, the message begins with `prefix`.
-ReflectanceTable read_reflectance_file(const std::string& path, const std::string& prefix);
-
+/// Errors: InputError with file and line.
 ReflectanceTable parse_reflectances(const std::string& text, const std::string& name);
 
 }  // namespace dolp

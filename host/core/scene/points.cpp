@@ -49,7 +49,7 @@ void append_film_rules(std::vector<ColumnRule>& rules, const std::vector<std::st
     const SceneKey* const key = find_scene_key(name);
     if (!key || key->description.layer == 0 || std::ranges::find(rules, name, &ColumnRule::name) != rules.end())
       continue;
-    const auto part = kParts.find(name.substr(name.rfind('.') + 1));
+    const auto part = kParts.find(last_part(name));
     if (part == kParts.end()) continue;
     rules.push_back({name, key->description.range, FilmColumn{key->description.layer - 1, part->second}});
   }

@@ -44,15 +44,13 @@ auto read_scene_file(SceneValues& scene, const std::string& file, const std::str
   }
 }
 
-/// The data that the scene's table stores for a file, or read(path, prefix) of the file. `name`: the file in
-/// SceneNames.
+/// The data that the scene's table stores for a file, or read(path) of the file. `name`: the file in SceneNames.
 template <class Data, class Read>
 Data stored_or_read(SceneValues& scene, std::string SceneNames::*name, std::optional<Data> KnownData::*stored,
                     const std::string& prefix, const Read& read) {
   const KnownData* const known = stored_data(scene, [name](const SceneNames& all) { return all.*name; });
   if (known && known->*stored) return *(known->*stored);
-  return read_scene_file(scene, scene.names.*name, prefix, known,
-                         [&](const std::string& path) { return read(path, prefix); });
+  return read_scene_file(scene, scene.names.*name, prefix, known, read);
 }
 
 Spectrum all_wavelengths(const SceneValues& scene) {
@@ -200,8 +198,9 @@ void load_materials(SceneValues& scene, const SceneDocument& document) {
   if (!document.find("surface.reflectance_file")) return;
   const std::string prefix = document.prefix("surface.reflectance_file");
   if (!surface.coating.empty()) throw InputError(prefix + "cannot be combined with surface.coating");
-  ReflectanceTable table =
-      stored_or_read(scene, &SceneNames::reflectance_file, &KnownData::reflectance, prefix, read_reflectance_file);
+  // Unlike other files, this one may be stdin or a pipe.
+  const auto read = [&](const std::string& path) { return parse_reflectances(read_text(path, prefix), path); };
+  ReflectanceTable table = stored_or_read(scene, &SceneNames::reflectance_file, &KnownData::reflectance, prefix, read);
   if (!table.wavelength_um.empty()) check_covers({table.wavelength_um, {}}, all_wavelengths(scene), prefix);
   surface.reflectance = std::make_shared<const ReflectanceTable>(std::move(table));
 }
@@ -210,9 +209,7 @@ void load_materials(SceneValues& scene, const SceneDocument& document) {
 void load_response(SceneValues& scene, const SceneDocument& document) {
   if (!document.find("spectrum.response_file")) return;
   const std::string prefix = document.prefix("spectrum.response_file");
-  const auto read = [](const std::string& path, const std::string& origin) {
-    return parse_response(read_named_file(path, origin), path);
-  };
+  const auto read = [&](const std::string& path) { return parse_response(read_named_file(path, prefix), path); };
   SpectralTable table = stored_or_read(scene, &SceneNames::response_file, &KnownData::response, prefix, read);
   scene.spectrum = response_spectrum(std::move(table), scene.spectrum.response_per);
 }
@@ -220,9 +217,7 @@ void load_response(SceneValues& scene, const SceneDocument& document) {
 void load_diffuse(SceneValues& scene, const SceneDocument& document) {
   if (!document.find("surface.diffuse_file")) return;
   const std::string prefix = document.prefix("surface.diffuse_file");
-  const auto read = [](const std::string& path, const std::string& origin) {
-    return parse_diffuse(read_named_file(path, origin), path);
-  };
+  const auto read = [&](const std::string& path) { return parse_diffuse(read_named_file(path, prefix), path); };
   SpectralTable table = stored_or_read(scene, &SceneNames::diffuse_file, &KnownData::diffuse, prefix, read);
   check_covers(table, all_wavelengths(scene), prefix);
   Surface& surface = scene.surface;
@@ -245,8 +240,8 @@ void load_source(SceneValues& scene, const SceneDocument& document) {
   } else if (is_preset) {
     source.table = sun_irradiance();
   } else {
-    source.table = read_scene_file(scene, scene.names.source_file, prefix, known,
-                                   [&](const std::string& path) { return read_irradiance_file(path, prefix); });
+    const auto read = [&](const std::string& path) { return parse_irradiance(read_named_file(path, prefix), path); };
+    source.table = read_scene_file(scene, scene.names.source_file, prefix, known, read);
   }
   check_covers(source.table, all_wavelengths(scene), prefix);
 }
@@ -271,8 +266,8 @@ void load_profile(SceneValues& scene, const SceneDocument& document) {
                                  near ? "; the nearest is " + *near : ""));
   }
   if (!profile) {
-    profile = read_scene_file(scene, scene.names.profile, prefix, known,
-                              [&](const std::string& path) { return read_sky_profile(path, prefix); });
+    const auto read = [&](const std::string& path) { return parse_sky_profile(read_named_file(path, prefix), path); };
+    profile = read_scene_file(scene, scene.names.profile, prefix, known, read);
   }
   if (!profile->wavelength_um.empty()) check_covers({profile->wavelength_um, {}}, all_wavelengths(scene), prefix);
   scene.surroundings->set_sky(std::move(*profile));

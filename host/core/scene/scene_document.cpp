@@ -69,8 +69,6 @@ std::size_t list_position(std::string_view part) {
   return is_number ? number - 1 : std::numeric_limits<std::size_t>::max();
 }
 
-std::string last_part(std::string_view key) { return std::string(key.substr(key.find_last_of('.') + 1)); }
-
 std::string_view table_part(std::string_view key) {
   const std::size_t dot = key.find_last_of('.');
   return dot == std::string_view::npos ? std::string_view{} : key.substr(0, dot);

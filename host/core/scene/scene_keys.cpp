@@ -536,6 +536,8 @@ std::vector<std::string> scene_tables() {
   return tables;
 }
 
+std::string last_part(std::string_view key) { return std::string(key.substr(key.rfind('.') + 1)); }
+
 bool is_effect_table(std::string_view table) {
   return table == "emission" || table == "source" || table == "surroundings" || table == "path";
 }

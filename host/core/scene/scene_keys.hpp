@@ -52,6 +52,8 @@ const SceneKey* find_scene_key(std::string_view key);
 /// The keys that a scene cannot have beside `key`, because they belong to other alternatives of a KeyChoice.
 std::vector<std::string> keys_replaced_by(std::string_view key);
 
+std::string last_part(std::string_view key);  ///< the part behind the last dot: "sigma" of "surface.sigma"
+
 std::vector<std::string> scene_tables();
 
 /// True for a table whose absence removes an effect: emission, source, surroundings, path.

@@ -18,8 +18,6 @@ bool names_file(const std::string& key, const std::string& value) {
   return is_file || (key == "surroundings.profile" && !built_in_sky(value));
 }
 
-std::string last_part(const std::string& key) { return key.substr(key.rfind('.') + 1); }
-
 std::string path_from(const std::filesystem::path& folder, const std::string& file, const std::string& scene_path) {
   namespace fs = std::filesystem;
   if (fs::path(file).is_absolute()) return file;

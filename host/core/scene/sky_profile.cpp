@@ -11,7 +11,6 @@
 #include <span>
 #include <utility>
 
-#include "base/hash.hpp"
 #include "base/text.hpp"
 #include "model/angles.hpp"
 #include "scene/scene.hpp"
@@ -173,12 +172,6 @@ std::string SkyProfile::text() const {
   return text;
 }
 
-std::uint64_t SkyProfile::hash() const {
-  std::uint64_t hash = hashed(kHashStart, static_cast<std::uint64_t>(kind));
-  for (const std::vector<double>* list : {&zenith_deg, &wavelength_um, &values}) hash = hashed(hash, std::span(*list));
-  return hashed(hash, std::span<const double>(std::array{air_K, beyond_K, emissivity, window}));
-}
-
 const std::vector<BuiltInSky>& built_in_skies() {
   static const std::vector<BuiltInSky> skies = {
       {"clear-sky",
@@ -223,10 +216,6 @@ SkyProfile parse_sky_profile(std::string_view text, const std::string& name) {
   if (profile.zenith_deg.size() > kMostZeniths)
     reader.fail(fmt::format("{} zeniths are too many; at most {}", profile.zenith_deg.size(), kMostZeniths));
   return profile;
-}
-
-SkyProfile read_sky_profile(const std::string& path, const std::string& prefix) {
-  return parse_sky_profile(read_named_file(path, prefix), path);
 }
 
 }  // namespace dolp

@@ -50,7 +50,6 @@ struct SkyProfile {
   std::optional<double> only_temperature() const;
   /// The profile as a CSV file that parse_sky_profile reads; empty for kLayers.
   std::string text() const;
-  std::uint64_t hash() const;
 };
 
 struct BuiltInSky {
@@ -75,6 +74,5 @@ std::optional<SkyProfile> built_in_sky(std::string_view name, const SkyAir& air 
 /// Reads a CSV with zenith_deg (from 0 to 90) and temperature_K or radiance. A CSV that also has wavelength_um needs
 /// the same zeniths at each wavelength. Errors: InputError with file, line and column.
 SkyProfile parse_sky_profile(std::string_view text, const std::string& name);
-SkyProfile read_sky_profile(const std::string& path, const std::string& prefix);
 
 }  // namespace dolp

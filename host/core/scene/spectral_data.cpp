@@ -33,18 +33,6 @@ std::vector<SpectralRow> read_rows(std::string_view text, const std::string& nam
   return rows;
 }
 
-SpectralTable parse_irradiance(std::string_view text, const std::string& name) {
-  const std::vector<CsvColumn> known = {{"wavelength_um", kPositiveRange, true},
-                                        {"irradiance", kNonNegativeRange, true, "irradiance_W_m2_um", "W m-2 um-1"}};
-  SpectralTable table;
-  append_rows(table, read_rows(text, name, known), {"irradiance", 0.0, kNonNegativeRange}, name);
-  if (table.value.empty()) {
-    throw InputError(
-        fmt::format("{}:1: no rows; wavelength_um in {} and irradiance are expected", name, kWavelengthUmRange.text()));
-  }
-  return table;
-}
-
 constexpr double kPercent = 0.01;
 
 std::vector<CsvColumn> diffuse_columns(const NumberRange& range) {
@@ -147,6 +135,18 @@ SpectralTable parse_response(std::string_view text, const std::string& name) {
   return table;
 }
 
+SpectralTable parse_irradiance(std::string_view text, const std::string& name) {
+  const std::vector<CsvColumn> known = {{"wavelength_um", kPositiveRange, true},
+                                        {"irradiance", kNonNegativeRange, true, "irradiance_W_m2_um", "W m-2 um-1"}};
+  SpectralTable table;
+  append_rows(table, read_rows(text, name, known), {"irradiance", 0.0, kNonNegativeRange}, name);
+  if (table.value.empty()) {
+    throw InputError(
+        fmt::format("{}:1: no rows; wavelength_um in {} and irradiance are expected", name, kWavelengthUmRange.text()));
+  }
+  return table;
+}
+
 SpectralTable parse_diffuse(std::string_view text, const std::string& name) {
   std::vector<SpectralRow> rows =
       is_ecostress(text) ? read_ecostress(text, name) : read_rows(text, name, diffuse_columns(kFractionRange));
@@ -195,10 +195,6 @@ SpectralTable sun_irradiance() {
   SpectralTable table = parse_irradiance(embedded_sun_csv(), "sun.csv (built in)");
   table.interpolation = SpectralTable::Interpolation::kLogLog;
   return table;
-}
-
-SpectralTable read_irradiance_file(const std::string& path, const std::string& prefix) {
-  return parse_irradiance(read_named_file(path, prefix), path);
 }
 
 void append_row(SpectralTable& table, double wavelength_um, const NamedValue& value, const std::string& where) {
@@ -333,10 +329,6 @@ Between between(const std::vector<double>& list, double value) {
   const auto above = std::upper_bound(list.begin() + 1, list.end() - 1, value);
   const auto first = static_cast<std::size_t>(above - list.begin()) - 1;
   return {first, std::clamp((value - list[first]) / (list[first + 1] - list[first]), 0.0, 1.0)};
-}
-
-ReflectanceTable read_reflectance_file(const std::string& path, const std::string& prefix) {
-  return parse_reflectances(read_text(path, prefix), path);
 }
 
 ReflectanceTable parse_reflectances(const std::string& text, const std::string& name) {

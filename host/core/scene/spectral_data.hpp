@@ -17,8 +17,8 @@ SpectralTable sun_irradiance();
 
 /// Reads a user's CSV with the columns wavelength_um and irradiance (W m-2 um-1), interpolated linearly. A file without
 /// column names has these columns in this order. Errors: InputError if an irradiance is negative, or if the file has no
-/// rows. InputError that begins with `prefix` if the file cannot be opened.
-SpectralTable read_irradiance_file(const std::string& path, const std::string& prefix);
+/// rows.
+SpectralTable parse_irradiance(std::string_view text, const std::string& name);
 
 /// The response of a camera from a CSV with the columns wavelength_um and response, in this order if they have no
 /// names. Errors: InputError if the rows are not in the order of their wavelengths, if a response is negative, or if

@@ -44,18 +44,10 @@ std::size_t longest_label(const TableHead& head, Axis axis) {
 
 std::string value_text(const Attribute& attribute) {
   if (const auto* number = std::get_if<double>(&attribute.value)) return number_text(*number);
-  std::string_view lines = std::get<std::string>(attribute.value);
-  while (lines.ends_with('\n')) lines.remove_suffix(1);
-  std::string text;
-  for (;;) {
-    const std::size_t end = lines.find('\n');
-    std::string_view line = lines.substr(0, end);
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    text += printable_line(line);
-    if (end == std::string_view::npos) return text;
-    text += "\n#   ";
-    lines.remove_prefix(end + 1);
-  }
+  std::vector<std::string> lines;
+  std::ranges::transform(split_lines(std::get<std::string>(attribute.value)), std::back_inserter(lines),
+                         printable_line);
+  return fmt::format("{}", fmt::join(lines, "\n#   "));
 }
 
 /// The names of the columns, then attributes as comments. numpy.genfromtxt(names=True) takes its names from the first

@@ -81,7 +81,7 @@ std::uint64_t data_hash(const SceneValues& scene) {
   if (scene.source) add(scene.source->table);
   for (const SpectralTable* table : {scene.spectrum.response.get(), scene.surface.diffuse_table.get()})
     if (table) add(*table);
-  if (scene.surroundings && scene.surroundings->profile) hash = hashed(hash, scene.surroundings->profile->hash());
+  if (scene.surroundings && scene.surroundings->profile) hash = hashed(hash, scene.surroundings->profile->text());
   return hash;
 }
 

@@ -55,7 +55,7 @@ std::string axis_materials_text(const SceneModel& scene, StoredRows rows);  ///<
 
 std::vector<std::optional<Material>> parse_materials(const std::string& text, const std::string& name);
 
-/// The measured reflectances of a surface, in the format of read_reflectance_file(). Empty if the surface has none.
+/// The measured reflectances of a surface, in the format of parse_reflectances(). Empty if the surface has none.
 std::string reflectance_text(const Surface& surface);
 
 std::string formula_text(const Dispersion& formula);

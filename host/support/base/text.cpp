@@ -21,7 +21,6 @@
 namespace dolp {
 namespace {
 
-constexpr std::string_view kBlanks = " \t";
 constexpr std::size_t kMessageBytes = 80;
 
 bool is_control(std::uint32_t code) {
@@ -34,10 +33,10 @@ bool is_control(std::uint32_t code) {
 
 }  // namespace
 
-std::string_view trim(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kBlanks);
+std::string_view trim(std::string_view text, std::string_view ends) {
+  const std::size_t first = text.find_first_not_of(ends);
   if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+  return text.substr(first, text.find_last_not_of(ends) - first + 1);
 }
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
@@ -109,11 +108,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates) {
-  const std::string* nearest = &candidates.front();
-  for (const std::string& candidate : candidates) {
-    if (edit_distance(name, candidate) < edit_distance(name, *nearest)) nearest = &candidate;
-  }
-  return *nearest;
+  const auto distance = [name](std::string_view candidate) { return edit_distance(name, candidate); };
+  return *std::ranges::min_element(candidates, {}, distance);
 }
 
 std::optional<std::string> near_name(std::string_view name, const std::vector<std::string>& candidates) {

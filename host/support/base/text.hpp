@@ -8,7 +8,8 @@
 
 namespace dolp {
 
-std::string_view trim(std::string_view text);  ///< removes blanks (space, tab) at both ends
+/// Removes the characters of `ends` at both ends of a text.
+std::string_view trim(std::string_view text, std::string_view ends = " \t");
 std::vector<std::string_view> split(std::string_view text, char separator);  ///< returns at least one piece
 
 /// The lines of a text without their ends (LF or CRLF). Skips a UTF-8 byte order mark, and blank lines after the text.

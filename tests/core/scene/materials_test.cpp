@@ -415,14 +415,12 @@ TEST(IrradianceFile_Columns, AreFoundByName) {
   for (const char* text :
        {"10,1\n11,3\n", "wavelength_um,irradiance\n10,1\n11,3\n", "irradiance,wavelength_um\n1,10\n3,11\n",
         "wavelength_um,irradiance_W_m2_um\n11,3\n10,1\n,\n", "0.01,9\n10,1\n10,1\n11,3\n"}) {
-    const TemporaryFile file("e.csv", text);
-    EXPECT_EQ(read_irradiance_file(file.path(), "").at(10.5), 2.0) << text;
+    EXPECT_EQ(parse_irradiance(text, "e.csv").at(10.5), 2.0) << text;
   }
 }
 
 TEST(IrradianceFile_WithZeros, IsInterpolatedLinearly) {
-  const TemporaryFile file("e.csv", "\xEF\xBB\xBFwavelength_um, irradiance\r\n10, 0\r\n11, 2\r\n");
-  const SpectralTable table = read_irradiance_file(file.path(), "");
+  const SpectralTable table = parse_irradiance("\xEF\xBB\xBFwavelength_um, irradiance\r\n10, 0\r\n11, 2\r\n", "e.csv");
   EXPECT_EQ(table.at(10.0), 0.0);
   EXPECT_EQ(table.at(10.5), 1.0);
 }

@@ -292,8 +292,6 @@ py::tuple response_tuple(const dolp::TableValues& table) {
   return py::make_tuple(to_array(table.beta_deg), dolp::kBeta.long_name, dolp::kBeta.units, variables);
 }
 
-std::vector<double> to_vector(const Array& values) { return {values.data(), values.data() + values.size()}; }
-
 /// Maps the column names of materials and bands to their lists of labels. A column has positions in its list of labels.
 py::dict to_label_lists(const dolp::AxisLabels& labels) {
   py::dict all;

@@ -8,7 +8,6 @@
 #include <set>
 #include <stdexcept>
 #include <utility>
-#include <vector>
 
 namespace dolp {
 namespace {

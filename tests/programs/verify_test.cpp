@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <dolp/errors.hpp>
 #include <limits>
 #include <set>
 #include <string>

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include <dolp/number_range.hpp>
-#include <dolp/status.hpp>
 #include "api/impl.hpp"
 #include "base/atomic_file.hpp"
 #include "base/stopwatch.hpp"

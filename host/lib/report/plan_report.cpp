@@ -4,7 +4,6 @@
 #include <dolp/errors.hpp>
 #include <optional>
 
-#include <dolp/status.hpp>
 #include "base/processor.hpp"
 #include "evaluate/kernel/slope_samples.hpp"
 #include "evaluate/vulkan/tiles.hpp"

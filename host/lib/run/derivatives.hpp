@@ -2,7 +2,6 @@
 #pragma once
 
 #include <dolp/results.hpp>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>

@@ -2,7 +2,6 @@
 // whole range, with fixed seeds.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstdio>
 #include <numeric>
 #include <string>

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <dolp/errors.hpp>
 #include <iostream>
 #include <random>
 

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <dolp/status.hpp>
 #include <filesystem>
 #include <fstream>
 #include <optional>

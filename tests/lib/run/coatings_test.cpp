@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <complex>
-#include <cstdio>
 #include <dolp/errors.hpp>
 #include <dolp/status.hpp>
 #include <numbers>

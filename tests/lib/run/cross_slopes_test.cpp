@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include <dolp/errors.hpp>
 #include <dolp/status.hpp>
 #include "error_text.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"

@@ -6,7 +6,6 @@
 #include <complex>
 #include <fstream>
 #include <numbers>
-#include <sstream>
 
 #include "computed_scene.hpp"
 #include "error_text.hpp"

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <dolp/errors.hpp>
 #include <numbers>
 
 #include "evaluate/cpu/cpu_evaluator.hpp"

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <dolp/errors.hpp>
 #include <iostream>
 #include <numeric>
 #include <random>

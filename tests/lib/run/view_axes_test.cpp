@@ -2,9 +2,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <dolp/errors.hpp>
-#include <dolp/status.hpp>
-
 #include "base/temporary_folder.hpp"
 #include "computed_scene.hpp"
 #include "radiometry/radiometry.hpp"
@@ -112,7 +109,7 @@ TEST(ViewAxes, Shards_MergeToTheTable_WhichVerifies) {
   }
   const std::filesystem::path merged = folder.path() / "t.nc";
   EXPECT_EQ(ShardSet(paths).merge(merged, "test"), 48U);
-  TableSample sample{read_table(merged), sample_positions(48, {.samples = 48})};
+  TableSample sample{read_table(merged), sample_positions(48, 48, 0)};
   EXPECT_EQ(sample.table.axes, scene.grid);
   EXPECT_EQ(sample.table[kDolp], table_of(scene)[kDolp]);
   EXPECT_TRUE(check_table(sample, scene, "t.nc", {}).passed());

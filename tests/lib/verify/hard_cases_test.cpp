@@ -1,7 +1,6 @@
 // The hard cases of the model: checks of the stored values, and all evaluators compared with them.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 

@@ -102,7 +102,7 @@ Table Evaluator::table(const Scene& scene, const RunOptions& call_options) {
     TableLayout layout = table_layout(values, run);
     choose_variables(layout, options.quantities);
     CollectedResults results(run.entries());
-    const RunOutcome outcome = run.compute(results);
+    const RunOutcome outcome = run.compute(results.sink());
     layout.head.attributes.push_back({kIdentity, run_identity(values, impl_->options.evaluator, options)});
     layout.head.attributes = all_attributes(values, layout, outcome, options.history);
     TableValues table = table_part(layout, run.entries(), results.take());
@@ -118,12 +118,11 @@ void Evaluator::table_parts(const Scene& scene, const std::function<void(const T
     TableLayout layout = table_layout(values, run);
     choose_variables(layout, options.quantities);
     const std::function<void(const Table&)> guarded = impl_->guard_reentry(take);
-    CallbackSink parts([&](const SceneEntries& part, RunResults results) {
+    run.compute([&](const SceneEntries& part, RunResults results, const RunSummary&) {
       TableValues table = table_part(layout, part, std::move(results));
       table.stokes_units = layout.head.stokes_units;
       guarded(Table(std::make_shared<const Table::Impl>(Table::Impl{std::move(table)})));
     });
-    run.compute(parts);
   });
 }
 
@@ -132,7 +131,7 @@ Results Evaluator::evaluate(const Scene& scene, const std::vector<Column>& point
     Run run(values, point_entries(values, points_of_columns(points, PointsKind::kDirections)), options,
             impl_->maker(values));
     CollectedResults collected(run.entries());
-    const RunOutcome outcome = run.compute(collected);
+    const RunOutcome outcome = run.compute(collected.sink());
     TableLayout layout = table_layout(values, run);
     layout.quantities = output_quantities(values);
     layout.head.attributes = all_attributes(values, layout, outcome, options.history);

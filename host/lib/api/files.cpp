@@ -131,12 +131,12 @@ Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& 
     const TableLayout layout{.quantities = output_quantities(values), .derivatives = run.derivatives()};
     ResultCsv csv = points_csv(path, points, layout);
     double rows_s = 0.0;
-    CallbackSink rows([&](const SceneEntries&, RunResults results) {
+    const auto write_rows = [&](const SceneEntries&, RunResults results, const RunSummary&) {
       const Clock::time_point start = Clock::now();
       csv.append(run_columns(layout.quantities, std::move(results)));
       rows_s += seconds_since(start);
-    });
-    RunOutcome outcome = run.compute(rows);
+    };
+    RunOutcome outcome = run.compute(write_rows);
     const std::optional<ScatteringGap> gap = timed_gap(values, run.entries(), outcome);
     const Clock::time_point start = Clock::now();
     csv.commit();

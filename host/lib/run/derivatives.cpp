@@ -4,16 +4,15 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <dolp/errors.hpp>
 #include <dolp/number_range.hpp>
 #include <limits>
-#include <utility>
+#include <optional>
 
-#include "base/stopwatch.hpp"
 #include "base/text.hpp"
 #include "model/slopes.hpp"
+#include "run/scene_run.hpp"
 #include "scene/scene_keys.hpp"
 #include "table/table.hpp"
 
@@ -182,26 +181,6 @@ void compute_derivatives(const SceneValues& scene, const SceneEntries& entries, 
     const auto bound = [&](std::size_t k) { return (*at)[k][i][Quantity::kErrorEstimate]; };
     columns.back().values[i] = change + ((bound(0) + bound(1)) / 6.0 + (bound(2) + bound(3)) * (4.0 / 3.0)) / step;
   }
-}
-
-void WithDerivatives::write(const SceneEntries& part, RunResults results, const RunSummary& so_far) {
-  done_ += part.size();
-  if (!keys_.empty()) {
-    const auto busy_s = [&] {
-      const EvaluationReport report = evaluator_->report();
-      return report.setup_s + report.kernel_s + report.sums_s + report.curves_s + report.beams_s;
-    };
-    const Progress is_wanted = [&](std::size_t, std::size_t) { return progress_(done_, done_); };
-    const double before_s = busy_s();
-    const auto start = std::chrono::steady_clock::now();
-    results.derivatives = columns_;
-    for (std::size_t i = 0; i < keys_.size(); ++i) {
-      compute_derivatives(scene_, part, keys_[i], *evaluator_, is_wanted,
-                          std::span(results.derivatives).subspan(i * kDerivativesPerKey, kDerivativesPerKey));
-    }
-    time_s_ += std::max(0.0, seconds_since(start) - (busy_s() - before_s));
-  }
-  sink_.write(part, std::move(results), so_far);
 }
 
 }  // namespace dolp

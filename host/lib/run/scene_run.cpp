@@ -390,18 +390,20 @@ RunResults part_results(const RunContext& context, const SceneEntries& part, std
 
 }  // namespace
 
-void CollectedResults::write(const SceneEntries& part, RunResults results, const RunSummary&) {
-  if (part.size() == entries_.size()) {
-    results_ = std::move(results);
-    return;
-  }
-  if (collected_ == 0) results_ = RunResults(results.quantities(), results.derivatives, entries_.size());
-  if (!part.is_grid()) results_.copy(results, 0, collected_, part.size());
-  if (part.is_grid()) {
-    for_each_run(part.first_in(entries_), part.counts(), entries_.counts(),
-                 [&](const GridRun& run) { results_.copy(results, run.in_part, run.in_whole, run.count); });
-  }
-  collected_ += part.size();
+Sink CollectedResults::sink() {
+  return [this](const SceneEntries& part, RunResults results, const RunSummary&) {
+    if (part.size() == entries_.size()) {
+      results_ = std::move(results);
+      return;
+    }
+    if (collected_ == 0) results_ = RunResults(results.quantities(), results.derivatives, entries_.size());
+    if (!part.is_grid()) results_.copy(results, 0, collected_, part.size());
+    if (part.is_grid()) {
+      for_each_run(part.first_in(entries_), part.counts(), entries_.counts(),
+                   [&](const GridRun& run) { results_.copy(results, run.in_part, run.in_whole, run.count); });
+    }
+    collected_ += part.size();
+  };
 }
 
 std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spectral_samples) {
@@ -436,13 +438,30 @@ Run::Run(const SceneValues& scene, SceneEntries entries, const RunOptions& optio
 
 std::vector<SceneEntries> Run::parts() const { return run_parts(entries_, plan().rules->most_samples(entries_)); }
 
-RunOutcome Run::compute(Sink& sink) {
-  const Progress counted = [&](std::size_t done, std::size_t) {
-    return !progress_ || progress_(done, entries_.size());
+void Run::add_derivatives(const SceneEntries& part, std::size_t done, RunResults& results) {
+  const auto busy_s = [&] {
+    const EvaluationReport report = evaluator_->report();
+    return report.setup_s + report.kernel_s + report.sums_s + report.curves_s + report.beams_s;
   };
-  WithDerivatives all(scene_, derivative_keys_, derivatives_, evaluator_, sink, counted);
-  outcome_.summary = run_scene(scene_, entries_, outcome_.plan, evaluator_, all, progress_);
-  outcome_.derivatives_s = all.time_s();
+  const Progress is_wanted = [&](std::size_t, std::size_t) { return !progress_ || progress_(done, entries_.size()); };
+  const double before_s = busy_s();
+  const auto start = std::chrono::steady_clock::now();
+  results.derivatives = derivatives_;
+  for (std::size_t i = 0; i < derivative_keys_.size(); ++i) {
+    compute_derivatives(scene_, part, derivative_keys_[i], *evaluator_, is_wanted,
+                        std::span(results.derivatives).subspan(i * kDerivativesPerKey, kDerivativesPerKey));
+  }
+  outcome_.derivatives_s += std::max(0.0, seconds_since(start) - (busy_s() - before_s));
+}
+
+RunOutcome Run::compute(const Sink& sink, const Finished& finished) {
+  std::size_t done = 0;
+  const Sink with_derivatives = [&](const SceneEntries& part, RunResults results, const RunSummary& so_far) {
+    done += part.size();
+    if (!derivatives_.empty()) add_derivatives(part, done, results);
+    sink(part, std::move(results), so_far);
+  };
+  outcome_.summary = run_scene(scene_, entries_, outcome_.plan, evaluator_, with_derivatives, progress_, finished);
   if (evaluator_) {
     outcome_.evaluation = evaluator_->report();
     static_cast<Work&>(outcome_.evaluation) = outcome_.summary.work;
@@ -454,7 +473,7 @@ RunOutcome Run::compute(Sink& sink) {
 double Run::wall_s() const { return seconds_since(start_); }
 
 RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& given,
-                     ModelEvaluator* evaluator, Sink& sink, const Progress& progress) {
+                     ModelEvaluator* evaluator, const Sink& sink, const Progress& progress, const Finished& finished) {
   const EffectPlan plan = with_spectra(given, scene, entries);
   const Quantities quantities = output_quantities(scene, &plan);
   const std::size_t samples = plan.rules->most_samples(entries);
@@ -462,7 +481,7 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
   const bool has_moments = entries.is_grid() && plan.kept.moments;
   std::vector<std::size_t> checked;
   if (has_moments) checked = sample_positions(whole, checked_count(whole * samples), scene_seed(scene));
-  RunSummary summary = sink.summary_of_done();
+  RunSummary summary = finished.summary;
   const auto start = std::chrono::steady_clock::now();
   const std::shared_ptr<const ResponseBasis> basis = evaluator ? run_basis(scene, entries, plan) : nullptr;
   summary.response_basis_s += seconds_since(start);
@@ -474,7 +493,7 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
     if (evaluator) all.work += evaluator->report();
     return all;
   };
-  std::size_t left = sink.parts_done(), before = 0;
+  std::size_t left = finished.parts, before = 0;
   for (const SceneEntries& part : run_parts(entries, samples)) {
     const Progress part_progress = [&](std::size_t done, std::size_t total) {
       return !progress || progress(before + part.size() * done / total, entries.size());
@@ -488,7 +507,7 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
       const RunContext context{scene, plan, spectra, evaluator, basis, quantities, summary, grooves};
       RunResults results = part_results(context, part, checked, summary.check, part_progress);
       summary.add(scene, part, results);
-      sink.write(part, std::move(results), with_evaluation());
+      sink(part, std::move(results), with_evaluation());
     }
     before += part.size();
   }
@@ -499,7 +518,7 @@ std::vector<PointResult> evaluate_scene(const SceneValues& scene, const SceneEnt
                                         ModelEvaluator& evaluator, const Progress& progress,
                                         const std::optional<EffectPlan>& plan) {
   CollectedResults results(entries);
-  run_scene(scene, entries, plan ? *plan : keep_everything(scene), &evaluator, results, progress);
+  run_scene(scene, entries, plan ? *plan : keep_everything(scene), &evaluator, results.sink(), progress);
   return results.take().list();
 }
 

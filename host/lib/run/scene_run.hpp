@@ -35,40 +35,26 @@ void check_surface(const SceneValues& scene, const Points& points);
 /// Throws InputError if the scene's grid has several materials or bands, and no column of the points chooses one.
 void check_labels_chosen(const SceneValues& scene, const Points& points = {});
 
-/// A receiver of the results of a run, part by part.
-class Sink {
- public:
-  virtual ~Sink() = default;
-  /// Number of parts that an earlier run finished. The new run skips this many parts at its beginning.
-  virtual std::size_t parts_done() const { return 0; }
-  virtual RunSummary summary_of_done() const { return {}; }  ///< summary of the finished parts
-  /// Receives the results of `part`. Parts of a list of points come in the order of the points. `so_far` is the summary
-  /// of all parts up to this one.
-  virtual void write(const SceneEntries& part, RunResults results, const RunSummary& so_far) = 0;
+/// A receiver of the results of a run, part by part. Parts of a list of points come in the order of the points.
+/// `so_far` is the summary of all parts up to this one.
+using Sink = std::function<void(const SceneEntries& part, RunResults results, const RunSummary& so_far)>;
+
+/// The parts that an earlier run finished. A new run skips them at its beginning.
+struct Finished {
+  std::size_t parts = 0;
+  RunSummary summary = {};
 };
 
-class CollectedResults final : public Sink {
+class CollectedResults {
  public:
   explicit CollectedResults(const SceneEntries& entries) : entries_(entries) {}
-  void write(const SceneEntries& part, RunResults results, const RunSummary& so_far) override;
+  Sink sink();
   RunResults take() { return std::move(results_); }
 
  private:
   const SceneEntries& entries_;
   RunResults results_;
   std::size_t collected_ = 0;
-};
-
-class CallbackSink final : public Sink {
- public:
-  using Take = std::function<void(const SceneEntries& part, RunResults results)>;
-  explicit CallbackSink(Take take) : take_(std::move(take)) {}
-  void write(const SceneEntries& part, RunResults results, const RunSummary&) override {
-    take_(part, std::move(results));
-  }
-
- private:
-  Take take_;
 };
 
 /// A function that makes the evaluator. A run calls it only if something must be computed.
@@ -83,7 +69,7 @@ struct RunOutcome {
   // Parts of wall_s. `summary` and `evaluation` have others.
   double spectral_rule_s = 0.0;  ///< for the samples of the spectrum, and for the effects that follow from them
   double estimates_s = 0.0;      ///< for the estimated error of single scattering
-  double derivatives_s = 0.0;    ///< for the derivatives
+  double derivatives_s = 0.0;    ///< for the derivatives, without the time that `evaluation` contains
   double file_s = 0.0;           ///< in which the run waited for the table to be written
 };
 
@@ -104,15 +90,18 @@ class Run {
   const std::vector<DerivativeColumn>& derivatives() const { return derivatives_; }
   std::vector<SceneEntries> parts() const;
 
-  /// Computes all parts and passes their results to `sink`. Results that miss the tolerance are computed again.
-  /// Progress counts entries. As a check, some entries of a grid are computed a second time. If the two results of an
-  /// entry differ by more than their error bounds, all entries in its direction get the status bits of missed
-  /// tolerances. Errors: errors of the evaluator, Radiometry and the sink; Cancelled.
-  RunOutcome compute(Sink& sink);
+  /// Computes all parts that are not finished and passes their results to `sink`. Results that miss the tolerance are
+  /// computed again. Progress counts entries. As a check, some entries of a grid are computed a second time. If the two
+  /// results of an entry differ by more than their error bounds, all entries in its direction get the status bits of
+  /// missed tolerances. Errors: errors of the evaluator, Radiometry and the sink; Cancelled.
+  RunOutcome compute(const Sink& sink, const Finished& finished = {});
 
   double wall_s() const;  ///< time in s since the object was made
 
  private:
+  /// Adds the derivatives to the results of a part. `done`: number of entries that are computed.
+  void add_derivatives(const SceneEntries& part, std::size_t done, RunResults& results);
+
   const SceneValues& scene_;
   SceneEntries entries_;
   std::vector<std::string> derivative_keys_;
@@ -129,7 +118,8 @@ void report_start(const Progress& progress, std::size_t total);
 
 /// Does what Run::compute does, with a given plan and evaluator. The evaluator may be null if the plan needs none.
 RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
-                     ModelEvaluator* evaluator, Sink& sink, const Progress& progress);
+                     ModelEvaluator* evaluator, const Sink& sink, const Progress& progress,
+                     const Finished& finished = {});
 
 /// Calls run_scene and returns the results in the order of `entries`. Without a plan, all effects are kept.
 std::vector<PointResult> evaluate_scene(const SceneValues& scene, const SceneEntries& entries,

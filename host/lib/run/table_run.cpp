@@ -64,22 +64,18 @@ std::vector<TableBox> part_boxes(const SceneEntries& entries, const std::vector<
   return boxes;
 }
 
-class TableSink final : public Sink {
+/// Writes the parts of a table on another thread, while the run computes the next part.
+class TableSink {
  public:
   TableSink(const SceneEntries& entries, const TableLayout& layout, TableOutput& output)
-      : entries_(entries), layout_(layout), output_(output), parts_done_(output.parts_done()) {
-    if (parts_done_ > 0) done_ = RunSummary::from_text(output.note()).value_or(RunSummary{});
-  }
+      : entries_(entries), layout_(layout), output_(output) {}
   TableSink(const TableSink&) = delete;
   TableSink& operator=(const TableSink&) = delete;
-  ~TableSink() override {
+  ~TableSink() {
     if (pending_.valid()) pending_.wait();
   }
 
-  std::size_t parts_done() const override { return parts_done_; }
-  RunSummary summary_of_done() const override { return done_; }
-
-  void write(const SceneEntries& part, RunResults results, const RunSummary& so_far) override {
+  void write(const SceneEntries& part, RunResults results, const RunSummary& so_far) {
     TableValues table = table_part(layout_, part, std::move(results));
     finish();
     pending_ = std::async(std::launch::async,
@@ -98,8 +94,6 @@ class TableSink final : public Sink {
   const SceneEntries& entries_;
   const TableLayout& layout_;
   TableOutput& output_;
-  std::size_t parts_done_;
-  RunSummary done_;
   std::future<void> pending_;
   double waited_s_ = 0.0;
 };
@@ -234,8 +228,13 @@ RunOutcome write_table(const SceneValues& scene, const TableJob& job, const Eval
                       .progress = job.options.progress});
   RunOutcome outcome;
   with_rest(output, [&] {
+    Finished finished{output.parts_done()};
+    if (finished.parts > 0) finished.summary = RunSummary::from_text(output.note()).value_or(RunSummary{});
     TableSink sink(run.entries(), layout, output);
-    outcome = run.compute(sink);
+    const auto write = [&](const SceneEntries& part, RunResults results, const RunSummary& so_far) {
+      sink.write(part, std::move(results), so_far);
+    };
+    outcome = run.compute(write, finished);
     sink.finish();
     const auto start = std::chrono::steady_clock::now();
     output.finish(run_attributes(scene, outcome, job.options.history));

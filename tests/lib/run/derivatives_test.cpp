@@ -9,12 +9,12 @@
 
 #include "computed_scene.hpp"
 #include "error_text.hpp"
+#include "in_folder.hpp"
 #include "reference/reference_evaluator.hpp"
 #include "run/derivatives.hpp"
 #include "run/table_run.hpp"
 #include "scene/points.hpp"
 #include "table/table_file.hpp"
-#include "temporary_file.hpp"
 
 namespace dolp {
 namespace {
@@ -45,7 +45,7 @@ std::vector<std::vector<double>> derivatives_with(const SceneValues& scene, cons
                                                   const std::vector<std::string>& keys, ModelEvaluator& evaluator) {
   Run run(scene, entries, {.derivatives = keys}, [&] { return &evaluator; });
   CollectedResults results(run.entries());
-  run.compute(results);
+  run.compute(results.sink());
   std::vector<std::vector<double>> columns;
   for (const DerivativeColumn& column : results.take().derivatives) columns.push_back(column.values);
   return columns;
@@ -196,17 +196,13 @@ TEST(Derivatives, ByWhatIsNoNumberOfTheScene_AreRefused) {
             std::string::npos);
 }
 
-class DerivativeFiles : public testing::Test {
+class DerivativeFiles : public InFolder {
  protected:
-  fs::path at(const std::string& name) const { return folder_.path() / name; }
   void write(const std::string& name, const Shard& shard = {}) const {
     CpuEvaluator evaluator;
     write_table(parse(kScene), {at(name), shard, {.derivatives = {"surface.n", "emission.temperature_K"}}, "cpu"},
                 [&] { return &evaluator; });
   }
-
- private:
-  TemporaryFolder folder_;
 };
 
 TEST_F(DerivativeFiles, OfAllFormatsAndOfShards_HaveTheSameValues) {

@@ -32,7 +32,7 @@ std::vector<PointResult> in_parts(const SceneValues& scene, const std::vector<Sc
   auto evaluator = evaluator_on(device);
   for (const SceneEntries& part : parts) {
     if (parts.size() <= kFewParts) evaluator = evaluator_on(device);
-    run_scene(scene, part, plan, evaluator.get(), results, {});
+    run_scene(scene, part, plan, evaluator.get(), results.sink(), {});
   }
   return results.take().list();
 }
@@ -109,7 +109,8 @@ TEST(SceneParts, CombinedIndices_KeepTheirBitsInParts) {
     scene.grid = make_axes({80.0}, spaced(0.1, 0.4, 5), spaced(2.0, 5.0, 5), {}, spaced(1.3, 3.0, 8), {0.1, 0.9});
     const auto evaluator = evaluator_on(true);
     CollectedResults results(grid_entries(scene));
-    const Work work = run_scene(scene, grid_entries(scene), keep_everything(scene), evaluator.get(), results, {}).work;
+    const Work work =
+        run_scene(scene, grid_entries(scene), keep_everything(scene), evaluator.get(), results.sink(), {}).work;
     EXPECT_LT(2 * work.interpolation_nodes, work.interpolated);
     expect_same_bits(scene, true);
   }

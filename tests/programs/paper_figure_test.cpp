@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "in_folder.hpp"
 #include "program.hpp"
 
 namespace {
@@ -22,12 +23,12 @@ constexpr double kAttenuationTolerance = 6e-4;
 constexpr double kSlopeTolerancePerRad = 6e-3;
 constexpr std::size_t kLargestPictureBytes = 120'000;
 
-class PaperFigure : public testing::Test {
+class PaperFigure : public InFolder {
  protected:
   Outcome figure(std::vector<std::string> arguments, const std::string& program = DOLP_PROGRAM) const {
     arguments.insert(arguments.begin(), {"/usr/bin/python3", DOLP_PAPER_FIGURE});
     if (!program.empty()) arguments.insert(arguments.end(), {"--program", program});
-    return run({.arguments = std::move(arguments), .folder = folder_.path()});
+    return run({.arguments = std::move(arguments), .folder = folder()});
   }
   json numbers(const std::string& number, const std::vector<std::string>& options = {}) const {
     std::vector<std::string> arguments = {number, "--json", "--evaluator", "cpu"};
@@ -38,14 +39,11 @@ class PaperFigure : public testing::Test {
   }
   json numbers_and_picture(const std::string& number) const {
     json report = numbers(number, {"-o", "f.png"});
-    const std::string picture = read_file(folder_.path() / "f.png");
+    const std::string picture = content("f.png");
     EXPECT_TRUE(picture.starts_with("\x89PNG"));
     EXPECT_LT(picture.size(), kLargestPictureBytes);
     return report;
   }
-
- private:
-  TemporaryFolder folder_;
 };
 
 /// The only element of `list` that has all members of `wanted` with equal values.
@@ -63,7 +61,7 @@ json curve_of(const json& report, const std::string& sample, const std::string& 
                 {{"sample", sample}, {"reading", reading}, {"mode", mode}, {"distribution", distribution}});
 }
 
-double at(const json& curve, double theta_deg) {
+double percent_at(const json& curve, double theta_deg) {
   const json& angles = curve["theta_deg"];
   const auto place = std::ranges::find(angles, json(theta_deg));
   return curve["dolp_percent"].at(static_cast<std::size_t>(place - angles.begin())).get<double>();
@@ -93,8 +91,8 @@ void expect_peaks_between_70_and_80(const json& report) {
     EXPECT_NEAR(curve["peak"]["theta_deg"], peak.theta_deg, kAngleToleranceDeg);
     EXPECT_NEAR(curve["peak"]["dolp_percent"], peak.dolp_percent, kPointTolerance);
     EXPECT_TRUE(curve["model_fails_from_deg"].is_null());
-    EXPECT_LT(at(curve, 90.0), 0.9 * peak.dolp_percent);
-    EXPECT_LT(at(curve, 0.0), peak.dolp_percent);
+    EXPECT_LT(percent_at(curve, 90.0), 0.9 * peak.dolp_percent);
+    EXPECT_LT(percent_at(curve, 0.0), peak.dolp_percent);
   }
 }
 
@@ -124,7 +122,7 @@ void expect_hemispherical_rises(const json& report) {
     EXPECT_TRUE(curve["peak"].is_null()) << curve.dump();
     EXPECT_GT(curve["model_fails_from_deg"], 87.5);
     EXPECT_LT(curve["model_fails_from_deg"], 89.0);
-    EXPECT_LT(at(curve, 75.0), at(curve, 87.0));
+    EXPECT_LT(percent_at(curve, 75.0), percent_at(curve, 87.0));
   }
   EXPECT_EQ(seen, 10);
 }

@@ -1,13 +1,13 @@
 // Tables in parts: shards and their merge, runs that are killed and resumed, and axes of wavelength, n and k.
 #include <signal.h>
 
-#include <bit>
 #include <chrono>
 #include <filesystem>
 #include <thread>
 
 #include "cli_support.hpp"
 #include "table/table_file.hpp"
+#include "table_support.hpp"
 
 namespace dolp {
 namespace {
@@ -58,14 +58,8 @@ class Shards : public CommandLine {
     const TableValues other = read_table(at(b));
     EXPECT_EQ(one.axes, other.axes);
     EXPECT_EQ(one.status, other.status);
-    for (const Quantity quantity : kAllQuantities) {
-      const std::vector<double>& x = one[quantity];
-      const std::vector<double>& y = other[quantity];
-      ASSERT_EQ(x.size(), y.size()) << describe(quantity).name;
-      for (std::size_t i = 0; i < x.size(); ++i)
-        ASSERT_EQ(std::bit_cast<std::uint64_t>(x[i]), std::bit_cast<std::uint64_t>(y[i]))
-            << describe(quantity).name << ' ' << i;
-    }
+    for (const Quantity quantity : kAllQuantities)
+      dolp::expect_same(one[quantity], other[quantity], describe(quantity).name);
   }
 };
 

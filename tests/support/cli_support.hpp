@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "in_folder.hpp"
 #include "program.hpp"
 
 namespace dolp {
@@ -83,30 +83,16 @@ inline Columns parse_csv(const std::string& csv) {
 }
 
 /// Runs `dolp` in a new folder with scene.toml and points.csv.
-class CommandLine : public testing::Test {
+class CommandLine : public InFolder {
  protected:
   void SetUp() override {
     put("scene.toml", kScene);
     put("points.csv", kPoints);
   }
 
-  std::filesystem::path at(const std::string& name) const { return folder_.path() / name; }
-  void put(const std::string& name, const std::string& text) const {
-    std::ofstream(at(name), std::ios::binary) << text;
-  }
-  std::string content(const std::string& name) const { return read_file(at(name)); }
-  std::vector<std::string> names() const {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
-      names.push_back(entry.path().filename().string());
-    }
-    std::ranges::sort(names);
-    return names;
-  }
-
   Command command(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), DOLP_PROGRAM);
-    return {.arguments = std::move(arguments), .folder = folder_.path()};
+    return {.arguments = std::move(arguments), .folder = folder()};
   }
   Outcome dolp(const std::vector<std::string>& arguments, const std::string& input = "") const {
     Command wanted = command(arguments);
@@ -132,9 +118,6 @@ class CommandLine : public testing::Test {
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return parse_csv(outcome.out);
   }
-
- private:
-  TemporaryFolder folder_;
 };
 
 }  // namespace dolp

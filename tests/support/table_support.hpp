@@ -3,35 +3,17 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "in_folder.hpp"
 #include "table/table.hpp"
-#include "temporary_file.hpp"
 
 namespace dolp {
 
-class TableFiles : public testing::Test {
- protected:
-  std::filesystem::path at(const std::string& name) const { return folder_.path() / name; }
-  std::vector<std::string> names() const {
-    std::vector<std::string> result;
-    for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
-      result.push_back(entry.path().filename().string());
-    std::ranges::sort(result);
-    return result;
-  }
-
- private:
-  TemporaryFolder folder_;
-};
-
-inline void put(const std::filesystem::path& path, const std::string& text) { std::ofstream(path) << text; }
+using TableFiles = InFolder;
 
 /// A table with numbers that need many digits, NaN and infinity.
 inline TableValues sample_table(std::size_t thetas, std::size_t sigmas, std::size_t qs) {

@@ -198,7 +198,7 @@ TEST_F(TableFiles, Netcdf_FlippedBit_IsFoundOrChangesNothing) {
     std::string damaged = bytes;
     char& byte = damaged[random() % damaged.size()];
     byte = static_cast<char>(byte ^ (1 << random() % 8));
-    put(at("damaged.nc"), damaged);
+    put("damaged.nc", damaged);
     try {
       TableValues read = read_table(at("damaged.nc"));
       // The hash is over all numbers and labels, but not over texts such as the title.

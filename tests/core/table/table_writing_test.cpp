@@ -183,7 +183,7 @@ TEST_F(TableFiles, PartialFile_CancelledWhileItIsRead_StaysAsItWas) {
 }
 
 TEST_F(TableFiles, WriteText_ExistingFile_IsReplacedWithItsPermissions) {
-  put(at("t.csv"), "a longer text than the new one");
+  put("t.csv", "a longer text than the new one");
   fs::permissions(at("t.csv"), fs::perms::owner_read | fs::perms::owner_write);
   write_text_atomically(at("t.csv"), "new");
   EXPECT_EQ(read_file(at("t.csv")), "new");

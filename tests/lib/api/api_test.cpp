@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "error_text.hpp"
-#include "temporary_file.hpp"
+#include "in_folder.hpp"
 
 namespace {
 
@@ -35,15 +35,10 @@ sigma = [0.1, 0.4]
 q = [2, 3.5]
 )";
 
-class Library : public testing::Test {
+class Library : public dolp::InFolder {
  protected:
-  std::filesystem::path at(const std::string& name) const { return files_.path() / name; }
-
   dolp::Scene scene_ = dolp::Scene::from_text(kScene);
   dolp::Evaluator evaluator_{{.evaluator = "cpu"}};
-
- private:
-  dolp::TemporaryFolder files_;
 };
 
 TEST_F(Library, ResponseTables_InMemoryAndInAFile_AreTheSameBits) {
@@ -61,28 +56,6 @@ TEST_F(Library, ResponseTables_InMemoryAndInAFile_AreTheSameBits) {
   EXPECT_FALSE(std::filesystem::exists(at("r.csv")));
 }
 
-TEST_F(Library, Tables_InMemoryAndInAFile_AreTheSameBits_AndPointsAgree) {
-  const dolp::Table table = evaluator_.table(scene_);
-  for (const dolp::Axis axis : dolp::kAllAxes)
-    EXPECT_EQ(table.values().axes[axis].empty(), !dolp::describe(axis).is_required);
-  const auto path = evaluator_.write_table(scene_, at("t.nc")).output;
-  const dolp::Table read = dolp::Table::read(path);
-  const std::vector<double> theta = {60, 60}, sigma = {0.1, 0.4}, q = {3.5};
-  const dolp::Results points = evaluator_.evaluate(scene_, {{"theta_deg", theta}, {"sigma", sigma}, {"q", q}});
-  EXPECT_EQ(table.values().quantities(), read.values().quantities());
-  for (const dolp::Quantity quantity : table.values().quantities()) {
-    ASSERT_EQ(table.values()[quantity].size(), 12U);
-    EXPECT_EQ(table.values()[quantity], read.values()[quantity]) << dolp::describe(quantity).name;
-  }
-  const auto agree = [&](std::size_t point, std::size_t entry) {
-    const dolp::PointResult a = points.at(point), b = table.values().at(entry);
-    EXPECT_LE(std::abs(a[Quantity::kDolp] - b[Quantity::kDolp]),
-              a[Quantity::kErrorEstimate] + b[Quantity::kErrorEstimate]);
-  };
-  agree(0, 9);
-  agree(1, 11);
-}
-
 TEST_F(Library, PartsOfATable_AreTheTable) {
   const dolp::Scene scene =
       scene_.with({{"surface.masking", "none"}, {"surface.distribution", "gaussian"}, {"accuracy.tolerance", 1e-2}})
@@ -98,21 +71,6 @@ TEST_F(Library, PartsOfATable_AreTheTable) {
   });
   EXPECT_EQ(entries, 1'200'000U);
   EXPECT_GT(parts, 1U);
-}
-
-TEST_F(Library, MergedShards_AreTheTable_AndOneThatIsThereIsKept) {
-  evaluator_.write_table(scene_, at("whole.nc"));
-  std::vector<std::filesystem::path> shards;
-  for (std::size_t i = 1; i <= 2; ++i) {
-    shards.push_back(evaluator_.write_table(scene_, at("t.nc"), {}, {i, 2}).output);
-  }
-  EXPECT_EQ(shards[1].filename(), "t.2-of-2.nc");
-  EXPECT_NE(evaluator_.write_table(scene_, at("t.nc"), {}, {1, 2}).text.find("is there already"), std::string::npos);
-  EXPECT_EQ(dolp::merge(shards, at("merged.nc")).output, at("merged.nc"));
-  const dolp::Table whole = dolp::Table::read(at("whole.nc")), merged = dolp::Table::read(at("merged.nc"));
-  for (const dolp::Quantity quantity : whole.values().quantities())
-    EXPECT_EQ(whole.values()[quantity], merged.values()[quantity]) << dolp::describe(quantity).name;
-  EXPECT_THROW(dolp::merge({shards[0]}, at("half.nc")), dolp::InputError);
 }
 
 TEST_F(Library, FilesOfPoints_AreTheCsvOfPointsInMemory) {

@@ -8,21 +8,19 @@
 
 #include "error_text.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
+#include "in_folder.hpp"
 #include "run/table_run.hpp"
 #include "scene/scene_reader.hpp"
 #include "scene_run_support.hpp"
 #include "table/table_file.hpp"
-#include "temporary_file.hpp"
 
 namespace {
 
 using namespace dolp;
 namespace fs = std::filesystem;
 
-class ReplacedShards : public testing::Test {
+class ReplacedShards : public InFolder {
  protected:
-  fs::path at(const std::string& name) const { return folder_.path() / name; }
-
   /// Writes shard `number` of two. A different `diffuse` makes it a shard of another table.
   void make(const std::string& name, std::size_t number, double diffuse) const {
     const SceneValues scene = parse_scene(
@@ -39,15 +37,12 @@ class ReplacedShards : public testing::Test {
     make("2.nc", 2, 0.5);
   }
   ShardSet shards() const { return ShardSet({at("1.nc").string(), at("2.nc").string()}); }
-
- private:
-  TemporaryFolder folder_;
 };
 
 TEST_F(ReplacedShards, ByAnotherFile_AreRefused) {
   make("other.nc", 2, 0.3);
   fs::copy_file(at("1.nc"), at("first.nc"));
-  std::ofstream(at("text.nc")) << "no table";
+  put("text.nc", "no table");
   const std::vector<std::pair<std::string, std::string>> rows = {
       {"other.nc", "2.nc: is a shard of another table: it has scene fnv1a64:"},
       {"first.nc", "2.nc: is shard 1/2 now, and was 2"},

@@ -154,7 +154,7 @@ TEST_F(TableAsScene, VerifyBetween_ReportsWhatInterpolationCosts) {
 TEST_F(TableAsScene, VerifyBetween_AnglesDifferByAtMostARightAngle) {
   make_table({"--set", "surface.masking=v-cavity", "--set", "surface.sigma_cross=0.4", "--set", "grid.theta_deg=[40]",
               "--set", "grid.surface_azimuth_deg={from=-60,to=60,count=5}", "--set", "grid.sigma=[0.2]", "--set",
-              "grid.q=[3]", "--evaluator", "cpu"});
+              "grid.q=[3]", "--set", "surroundings.temperature_K=400", "--evaluator", "cpu"});
   const auto [least, most] = std::ranges::minmax(dolp::read_table(at("t.nc"))[dolp::Quantity::kAolp]);
   ASSERT_GT(most - least, 90.0);
   const json found = report({"verify", "t.nc", "--between", "50", "--quantities", "aolp_deg"})["between"];

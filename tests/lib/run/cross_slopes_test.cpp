@@ -113,7 +113,7 @@ TEST(CrossSlopes, SourceOfAGrid_IsReflectedLikeThatOfPoints) {
                                          {"geometry.view_zenith_deg", 40.0},
                                          {"geometry.relative_azimuth_deg", 150.0},
                                          {"geometry.surface_azimuth_deg", 40.0},
-                                         {"source.irradiance", 10.0}};
+                                         {"source.irradiance", 1e4}};
   const std::vector<std::vector<Setting>> cases = {
       {},
       {{"surface.masking", "none"}, {"surface.scattering", "single"}},

@@ -51,7 +51,7 @@ Work TimedScene::run() {
   evaluator_.clear_report();
   plan_ = plan_effects(scene_, entries_, keep_all_);
   CollectedResults results(entries_);
-  const Work work = run_scene(scene_, entries_, plan_, &evaluator_, results.sink(), nullptr).work;
+  const Work work = run_scene(scene_, entries_, plan_, &evaluator_, {results.sink()}).work;
   results_ = results.take();
   return work;
 }

@@ -18,7 +18,7 @@ inline TableValues table_of(const SceneValues& scene) {
   const TableLayout layout = table_layout(scene, plan_effects(scene, entries, false), scene.grid);
   CpuEvaluator evaluator;
   CollectedResults results(entries);
-  run_scene(scene, entries, keep_everything(scene), &evaluator, results.sink(), {});
+  run_scene(scene, entries, keep_everything(scene), &evaluator, {results.sink()});
   TableValues table = table_part(layout, entries, results.take());
   static_cast<TableHead&>(table) = layout.head;
   return table;

@@ -461,7 +461,7 @@ RunOutcome Run::compute(const Sink& sink, const Finished& finished) {
     if (!derivatives_.empty()) add_derivatives(part, done, results);
     sink(part, std::move(results), so_far);
   };
-  outcome_.summary = run_scene(scene_, entries_, outcome_.plan, evaluator_, with_derivatives, progress_, finished);
+  outcome_.summary = run_scene(scene_, entries_, outcome_.plan, evaluator_, {with_derivatives, progress_, finished});
   if (evaluator_) {
     outcome_.evaluation = evaluator_->report();
     static_cast<Work&>(outcome_.evaluation) = outcome_.summary.work;
@@ -473,7 +473,7 @@ RunOutcome Run::compute(const Sink& sink, const Finished& finished) {
 double Run::wall_s() const { return seconds_since(start_); }
 
 RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& given,
-                     ModelEvaluator* evaluator, const Sink& sink, const Progress& progress, const Finished& finished) {
+                     ModelEvaluator* evaluator, const RunOutput& output) {
   const EffectPlan plan = with_spectra(given, scene, entries);
   const Quantities quantities = output_quantities(scene, &plan);
   const std::size_t samples = plan.rules->most_samples(entries);
@@ -481,7 +481,7 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
   const bool has_moments = entries.is_grid() && plan.kept.moments;
   std::vector<std::size_t> checked;
   if (has_moments) checked = sample_positions(whole, checked_count(whole * samples), scene_seed(scene));
-  RunSummary summary = finished.summary;
+  RunSummary summary = output.finished.summary;
   const auto start = std::chrono::steady_clock::now();
   const std::shared_ptr<const ResponseBasis> basis = evaluator ? run_basis(scene, entries, plan) : nullptr;
   summary.response_basis_s += seconds_since(start);
@@ -493,10 +493,10 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
     if (evaluator) all.work += evaluator->report();
     return all;
   };
-  std::size_t left = finished.parts, before = 0;
+  std::size_t left = output.finished.parts, before = 0;
   for (const SceneEntries& part : run_parts(entries, samples)) {
     const Progress part_progress = [&](std::size_t done, std::size_t total) {
-      return !progress || progress(before + part.size() * done / total, entries.size());
+      return !output.progress || output.progress(before + part.size() * done / total, entries.size());
     };
     if (left > 0) {
       --left;
@@ -507,7 +507,7 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
       const RunContext context{scene, plan, spectra, evaluator, basis, quantities, summary, grooves};
       RunResults results = part_results(context, part, checked, summary.check, part_progress);
       summary.add(scene, part, results);
-      sink(part, std::move(results), with_evaluation());
+      output.sink(part, std::move(results), with_evaluation());
     }
     before += part.size();
   }
@@ -518,7 +518,7 @@ std::vector<PointResult> evaluate_scene(const SceneValues& scene, const SceneEnt
                                         ModelEvaluator& evaluator, const Progress& progress,
                                         const std::optional<EffectPlan>& plan) {
   CollectedResults results(entries);
-  run_scene(scene, entries, plan ? *plan : keep_everything(scene), &evaluator, results.sink(), progress);
+  run_scene(scene, entries, plan ? *plan : keep_everything(scene), &evaluator, {results.sink(), progress});
   return results.take().list();
 }
 

@@ -116,10 +116,15 @@ std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spe
 
 void report_start(const Progress& progress, std::size_t total);
 
+struct RunOutput {
+  Sink sink;
+  Progress progress = {};
+  Finished finished = {};
+};
+
 /// Does what Run::compute does, with a given plan and evaluator. The evaluator may be null if the plan needs none.
 RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& plan,
-                     ModelEvaluator* evaluator, const Sink& sink, const Progress& progress,
-                     const Finished& finished = {});
+                     ModelEvaluator* evaluator, const RunOutput& output);
 
 /// Calls run_scene and returns the results in the order of `entries`. Without a plan, all effects are kept.
 std::vector<PointResult> evaluate_scene(const SceneValues& scene, const SceneEntries& entries,

@@ -68,7 +68,7 @@ TableCheck check_with(std::optional<double> dolp) {
   CpuEvaluator evaluator;
   const SceneEntries grid = grid_entries(scene);
   CollectedResults results(grid);
-  run_scene(scene, grid, keep_everything(scene), &evaluator, results.sink(), {});
+  run_scene(scene, grid, keep_everything(scene), &evaluator, {results.sink()});
   TableValues table = table_part(table_layout(scene, keep_everything(scene), scene.grid), grid, results.take());
   if (dolp) table[Quantity::kDolp][0] = *dolp;
   return check_table({std::move(table), {0, 1, 2}}, scene, "bands", {});

@@ -77,7 +77,7 @@ SelfCheck checked(Contradicts& evaluator, std::vector<PointResult>& results, con
   for (std::size_t i = 0; i < sigma.size(); ++i) sigma[i] = 0.1 + 0.01 * static_cast<double>(i);
   const SceneEntries grid = SceneEntries::grid(theta_deg, sigma, {2.0});
   CollectedResults collected(grid);
-  const SelfCheck check = run_scene(of, grid, keep_everything(of), &evaluator, collected.sink(), {}).check;
+  const SelfCheck check = run_scene(of, grid, keep_everything(of), &evaluator, {collected.sink()}).check;
   results = collected.take().list();
   return check;
 }

@@ -82,7 +82,7 @@ TEST(Prediction, CountsOfTheFirstLevel_AreThoseOfTheRun) {
 
     FirstRequests evaluator;
     CollectedResults results(entries);
-    const Work work = run_scene(scene, entries, plan, &evaluator, results.sink(), {}).work;
+    const Work work = run_scene(scene, entries, plan, &evaluator, {results.sink()}).work;
     EXPECT_EQ(requests, evaluator.requests);
     EXPECT_EQ(moments, evaluator.moments);
     EXPECT_EQ(predicted.beams, evaluator.beams);

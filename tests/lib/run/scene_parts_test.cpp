@@ -32,7 +32,7 @@ std::vector<PointResult> in_parts(const SceneValues& scene, const std::vector<Sc
   auto evaluator = evaluator_on(device);
   for (const SceneEntries& part : parts) {
     if (parts.size() <= kFewParts) evaluator = evaluator_on(device);
-    run_scene(scene, part, plan, evaluator.get(), results.sink(), {});
+    run_scene(scene, part, plan, evaluator.get(), {results.sink()});
   }
   return results.take().list();
 }
@@ -110,7 +110,7 @@ TEST(SceneParts, CombinedIndices_KeepTheirBitsInParts) {
     const auto evaluator = evaluator_on(true);
     CollectedResults results(grid_entries(scene));
     const Work work =
-        run_scene(scene, grid_entries(scene), keep_everything(scene), evaluator.get(), results.sink(), {}).work;
+        run_scene(scene, grid_entries(scene), keep_everything(scene), evaluator.get(), {results.sink()}).work;
     EXPECT_LT(2 * work.interpolation_nodes, work.interpolated);
     expect_same_bits(scene, true);
   }

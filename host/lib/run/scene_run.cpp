@@ -480,7 +480,7 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
   const std::size_t whole = entries.is_grid() ? grid_size(entries.whole()) : entries.size();
   const bool has_moments = entries.is_grid() && plan.kept.moments;
   std::vector<std::size_t> checked;
-  if (has_moments) checked = sample_positions(whole, checked_count(whole * samples), scene_seed(scene));
+  if (has_moments) checked = sample_positions(whole, checked_count(whole * samples) / samples, scene_seed(scene));
   RunSummary summary = output.finished.summary;
   const auto start = std::chrono::steady_clock::now();
   const std::shared_ptr<const ResponseBasis> basis = evaluator ? run_basis(scene, entries, plan) : nullptr;

@@ -59,6 +59,20 @@ TEST(Bands, GlassWhoseIndexPassesOneNearGrazing_IsWithinItsEstimate) {
   EXPECT_NEAR(result[Quantity::kDolp], kDolp, result[Quantity::kErrorEstimate] + 1e-12);
 }
 
+// The check computes at most a fiftieth of the moments again, and an entry of a band has one per spectral sample.
+TEST(Bands, SelfCheck_CountsTheSamplesOfAnEntry) {
+  const SceneValues scene = scene_with("0.2", "1e-2");
+  std::vector<double> theta_deg;
+  for (int i = 0; i < 40; ++i) theta_deg.push_back(2.0 * i);
+  const SceneEntries grid = SceneEntries::grid(theta_deg, {0.2}, {3.0});
+  const std::size_t samples = with_spectra(keep_everything(scene), scene, grid).rules->most_samples(grid);
+  ASSERT_GT(checked_count(grid.size() * samples), 0U);
+  CpuEvaluator evaluator;
+  CollectedResults results(grid);
+  const SelfCheck check = run_scene(scene, grid, keep_everything(scene), &evaluator, {results.sink()}).check;
+  EXPECT_LE(50 * check.entries, grid.size());
+}
+
 /// Checks a table of a smooth surface against the reference. `dolp` replaces the DOLP of the first entry.
 TableCheck check_with(std::optional<double> dolp) {
   SceneValues scene = scene_with("0", "1e-4");

@@ -35,7 +35,7 @@ std::optional<Axis> key_axis(const SceneEntries& entries, const std::string& key
 
 bool has_wind(const SceneValues& scene) { return scene.surface.wind_m_s.has_value() || !scene.wind_m_s.empty(); }
 
-bool is_number_of(const SceneValues& scene, const SceneEntries& entries, const std::string& key) {
+bool is_scene_number(const SceneValues& scene, const SceneEntries& entries, const std::string& key) {
   const SceneKey* const known = find_scene_key(key);
   if (key == kThetaKey) return true;
   if (!known || known->description.type != Key::Type::kNumber || key.starts_with("accuracy.")) return false;
@@ -138,7 +138,7 @@ std::string per_unit(const std::string& unit) {
 std::vector<DerivativeColumn> scene_derivatives(const SceneValues& scene, const SceneEntries& entries,
                                                 const std::vector<std::string>& keys) {
   for (const std::string& key : keys) {
-    if (!is_number_of(scene, entries, key))
+    if (!is_scene_number(scene, entries, key))
       throw InputError(fmt::format(
           "derivatives: {}: is no number of this scene; must be a key with a number that the scene has, such as "
           "surface.sigma, or grid.theta_deg (see dolp keys)",

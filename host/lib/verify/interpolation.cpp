@@ -220,8 +220,8 @@ std::vector<InterpolationError> PointsBetween::errors(const TableValues& entries
           const auto entry = std::ranges::lower_bound(known, weight.position) - known.begin();
           value += weight.value * entries[quantity][static_cast<std::size_t>(entry)];
         }
-        const double error = std::abs(value - computed[point][quantity]);
-        errors.push_back(quantity == Quantity::kAolp ? std::min(error, kAolpPeriod_deg - error) : error);
+        const double error = value - computed[point][quantity];
+        errors.push_back(std::abs(quantity == Quantity::kAolp ? std::remainder(error, kAolpPeriod_deg) : error));
       }
       InterpolationError& error = all.emplace_back(InterpolationError{quantity, method.name, summary(errors), {}});
       for (const Axis axis : kAllAxes) {

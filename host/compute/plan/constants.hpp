@@ -55,6 +55,8 @@ inline constexpr double kSteepStep = 16.0;  // in steep grooves, the bounces at 
 inline constexpr int kCriticalBounces = 3;  // last bounce at which the beginning of total reflection is a breakpoint
 /// Responses (glossary of host/README.md) get this share of the tolerance, because a sum of responses adds errors.
 inline constexpr double kResponseTolerance = 0.25;
+/// A list uses responses if it has this many entries per kernel moment that the responses need.
+inline constexpr std::size_t kLeastResponseGain = 2;
 inline constexpr double kResponseRoundings = 4.0;  // rounding of x in chebyshev_at() (columns.glsl), in unit roundoffs
 
 // ---- Skies (sky_table.cpp). The numbers are for two sets of entries: first a sky of 19 rows over 100 x 100 entries
@@ -139,6 +141,11 @@ inline constexpr double kExtraShapeDigits = 1.0;      // 1.84, 1.87, 2.33; 1.75,
 inline constexpr double kShapeTail = 3.0;  // 1.87, 1.87, 1.89; 1.80, 1.81, 2.00
 inline constexpr int kLastShapeCoefficients = 3;
 inline constexpr double kSlowestShapeFall = 0.9;
+/// A list is interpolated only if it has at least kLeastPoints points, and kLeastPointGain points per node.
+inline constexpr std::size_t kLeastPoints = 1024;
+inline constexpr std::size_t kLeastPointGain = 4;
+/// Responses at the nodes of points get this share of the tolerance, because the errors of high polynomials add up.
+inline constexpr double kPointNodeTolerance = 0.0025;
 /// Largest ratio of two values of q - 1 in a kernel row. Shapes that differ more need nodes at other slopes.
 inline constexpr double kMostRowSpread = 6.0;
 /// Kernel rows have kRowWidth places if the entries of a grid fill more than this share of them, otherwise one place.

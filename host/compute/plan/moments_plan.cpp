@@ -53,7 +53,7 @@ void MomentsPlan::add(MomentsStep step) {
     steps_.push_back(std::move(step));
     return;
   }
-  const ResponsePlan responses = response_plan(nodes);
+  const ResponsePlan responses = *response_plan(nodes);
   const std::size_t columns = nodes.basis->count() * nodes.sigma.size() * nodes.q.size();
   const std::size_t at_once = std::max<std::size_t>(1, kColumnsAtOnce / columns);
   for (std::size_t first = 0; first < step.directions.size(); first += at_once) {

@@ -22,7 +22,7 @@ struct MomentsStep {
   std::vector<const MomentsRequest*> kernel_requests() const;
 };
 
-/// The plan depends only on the request. The moments of an entry do not depend on other directions of the request.
+/// The plan depends only on the request. The moments of an entry of a grid do not depend on other directions.
 class MomentsPlan {
  public:
   MomentsPlan() = default;

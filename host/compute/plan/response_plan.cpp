@@ -2,10 +2,11 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
+#include <boost/functional/hash.hpp>
 #include <cmath>
-#include <map>
 #include <memory>
-#include <tuple>
+#include <unordered_map>
 #include <utility>
 
 #include "base/parallel_ranges.hpp"
@@ -17,6 +18,8 @@
 
 namespace dolp {
 namespace {
+
+constexpr std::size_t kPointsAtOnce = 64;  // points that a thread combines in one step
 
 /// The mask `wanted` of a second request, with other indices. Its index j must have each entry (direction and shape)
 /// that `request` wants at any of its own indices in needed_by[j].
@@ -82,16 +85,14 @@ struct Sums {
 
 class Combination {
  public:
-  Combination(const MomentsRequest& request, const ResponsePlan& plan)
-      : request_(request), sources_(*plan.sources), passes_(plan.passes.size()) {
+  /// `weights`: for each index, its weights.
+  Combination(const MomentsRequest& request, std::size_t passes, std::vector<const ResponseWeights*> weights)
+      : request_(request), passes_(passes), weights_(std::move(weights)) {
     const ResponseWeights& reference = request.basis->reference_weights();
-    for (std::size_t i = 0; i < sources_.size(); ++i) {
-      if (sources_[i].weights) reached_.push_back(i);
-    }
-    const auto rows = static_cast<Eigen::Index>(reached_.size());
+    const auto rows = static_cast<Eigen::Index>(weights_.size());
     absorbed_ = split_ = RowMajor(rows, static_cast<Eigen::Index>(request.basis->count()));
     for (Eigen::Index i = 0; i < rows; ++i) {
-      const ResponseWeights& own = *sources_[reached_[static_cast<std::size_t>(i)]].weights;
+      const ResponseWeights& own = *weights_[static_cast<std::size_t>(i)];
       absorbed_.row(i) = own.absorbed.transpose();
       split_.row(i) = own.split.transpose();
     }
@@ -101,7 +102,9 @@ class Combination {
     if (rows > 0) reflected_.col(0).array() += 1.0;
   }
 
-  /// Computes `moments` of all indices with weights at one direction, from the moments of all shapes in `passes`.
+  const std::vector<const ResponseWeights*>& weights() const { return weights_; }
+
+  /// Computes `moments` (indices x shapes) at one direction from the moments of all shapes in `passes`.
   void operator()(double cosine, std::span<const std::span<const Moments>> passes, std::span<Moments> moments) const {
     add_reflected(cosine, passes.front(), moments);
     std::size_t pass = 1;
@@ -112,10 +115,9 @@ class Combination {
  private:
   template <class Function>
   void for_all(std::size_t shapes, std::span<Moments> moments, const Function& set) const {
-    for (std::size_t i = 0; i < reached_.size(); ++i) {
+    for (std::size_t i = 0; i < weights_.size(); ++i) {
       for (std::size_t shape = 0; shape < shapes; ++shape) {
-        set(moments[reached_[i] * shapes + shape], *sources_[reached_[i]].weights, static_cast<Eigen::Index>(i),
-            static_cast<Eigen::Index>(shape));
+        set(moments[i * shapes + shape], *weights_[i], static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(shape));
       }
     }
   }
@@ -130,7 +132,7 @@ class Combination {
     const Sums more_absorbed = Sums::difference(all, Responses::kI, Responses::kIApart, absorbed_apart_);
     const Sums more_split = Sums::difference(all, Responses::kQ, Responses::kQApart, split_apart_);
     const ResponseWeights& reference_weights = request_.basis->reference_weights();
-    const double evaluations_share = static_cast<double>(passes_) / static_cast<double>(reached_.size());
+    const double evaluations_share = static_cast<double>(passes_) / static_cast<double>(weights_.size());
     for_all(reference.size(), moments, [&](Moments& sum, const ResponseWeights& own, auto index, auto shape) {
       const Moments& from = reference[static_cast<std::size_t>(shape)];
       sum.albedo = from.albedo;
@@ -193,9 +195,8 @@ class Combination {
   }
 
   const MomentsRequest& request_;
-  const std::vector<ResponsePlan::Source>& sources_;
   std::size_t passes_;
-  std::vector<std::size_t> reached_;  ///< positions of the indices that have weights
+  std::vector<const ResponseWeights*> weights_;
   RowMajor absorbed_, split_, absorbed_apart_, split_apart_, reflected_;
 };
 
@@ -220,12 +221,13 @@ std::vector<ResponsePlan::Source> response_sources(const ResponseBasis& basis, s
   return sources;
 }
 
+/// Adds passes for the entries of `reference`. `request`: the request of the plan.
 void add_passes(ResponsePlan& plan, const MomentsRequest& request, MomentsRequest reference) {
   const ResponseBasis& basis = *request.basis;
   reference.basis = nullptr;
   reference.sky = nullptr;
   reference.wants_direct = false;
-  reference.tolerance = request.finer_tolerance(kResponseTolerance);
+  reference.tolerance = request.finer_tolerance(plan.interpolation ? kPointNodeTolerance : kResponseTolerance);
   reference.response = {.count = basis.count(), .c0 = basis.c0(), .bend = basis.bend(), .of = Response::Of::kReflected};
   plan.passes.push_back(reference);
   if (request.wants_direct) {
@@ -249,31 +251,56 @@ MomentsRequest without_entries(const MomentsRequest& request) {
   return empty;
 }
 
-ResponsePlan plan_of_points(const MomentsRequest& request) {
+struct HashOfPoint {
+  std::size_t operator()(const FacetOptics& optics) const {
+    std::size_t hash = 0;
+    for (const double number : {optics.index.n, optics.index.k}) boost::hash_combine(hash, number);
+    for (const Film& film : optics.films) boost::hash_combine(hash, film.thickness);
+    return hash;
+  }
+  std::size_t operator()(const std::array<double, 3>& geometry) const { return boost::hash_value(geometry); }
+};
+
+std::optional<ResponsePlan> plan_of_points(const MomentsRequest& request) {
   ResponsePlan plan;
-  MomentsRequest reference = without_entries(request), others = reference;
-  std::map<std::tuple<double, double, double>, std::uint32_t> passes;
-  std::map<FacetOptics, std::uint32_t> numbers;
+  plan.points.resize(request.size());
+  plan.interpolation = point_plan(request);
+  MomentsRequest passes = plan.interpolation ? plan.interpolation->shapes.nodes : without_entries(request);
+  std::unordered_map<std::array<double, 3>, std::uint32_t, HashOfPoint> known;
+  for (std::uint32_t i = 0; i < request.size(); ++i) {
+    if (request.continues(i)) {
+      plan.points[i].pass = plan.points[i - 1].pass;
+    } else if (plan.interpolation) {
+      plan.points[i].pass = i;
+    } else {
+      const auto position = static_cast<std::uint32_t>(passes.size());
+      const auto [pass, is_new] = known.try_emplace({request.theta_deg[i], request.sigma[i], request.q[i]}, position);
+      if (is_new) passes.append({request.theta_deg[i], {request.sigma[i], request.q[i]}, request.basis->reference()});
+      plan.points[i].pass = pass->second;
+    }
+  }
+  const std::size_t pass_count = response_passes(request.wants_direct, request.sky ? request.sky->size() : 0);
+  if (request.size() < kLeastResponseGain * passes.size() * pass_count) return std::nullopt;
+
+  std::unordered_map<FacetOptics, std::uint32_t, HashOfPoint> numbers;
   std::vector<FacetOptics> indices;
   for (std::size_t i = 0; i < request.size(); ++i) {
-    MomentsPoint point = request[i];
-    const auto [source, is_new_index] = numbers.try_emplace(point.index, static_cast<std::uint32_t>(indices.size()));
-    if (is_new_index) indices.push_back(point.index);
-    const auto [pass, is_new] = passes.try_emplace({point.theta_deg, point.shape.sigma, point.shape.q},
-                                                   static_cast<std::uint32_t>(reference.size()));
-    point.index = request.basis->reference();
-    if (is_new) reference.append(point);
-    plan.points.push_back({.pass = pass->second, .source = source->second});
+    const auto number = static_cast<std::uint32_t>(indices.size());
+    const auto [source, is_new] = numbers.try_emplace(request.optics[i], number);
+    if (is_new) indices.push_back(request.optics[i]);
+    plan.points[i].source = source->second;
   }
   std::vector<ResponsePlan::Source> sources = response_sources(*request.basis, indices);
+  MomentsRequest others = without_entries(request);
   for (std::size_t i = 0; i < request.size(); ++i) {
-    if (sources[plan.points[i].source].weights) continue;
+    const bool is_in_reach = !plan.interpolation || PointPlan::reaches(request.theta_deg[i]);
+    if (sources[plan.points[i].source].weights && is_in_reach) continue;
     plan.points[i].other = static_cast<std::uint32_t>(others.size());
     others.append(request[i]);
   }
   plan.sources = std::make_shared<const std::vector<ResponsePlan::Source>>(std::move(sources));
   if (others.size() > 0) plan.others = std::move(others);
-  add_passes(plan, request, std::move(reference));
+  add_passes(plan, request, std::move(passes));
   return plan;
 }
 
@@ -305,22 +332,56 @@ ResponsePlan plan_of_grid(const MomentsRequest& request) {
   return plan;
 }
 
+/// Reads the moments of a point from the passes, or interpolates them.
+class PointReader {
+ public:
+  PointReader(const ResponsePlan& plan, std::span<const std::vector<Moments>> passes)
+      : plan_(plan.interpolation), passes_(passes) {
+    for (const std::vector<Moments>& pass : passes) {
+      if (plan_) panels_.push_back(panel_blocks(*plan_, pass));
+    }
+  }
+
+  /// For each pass the moments of one of its points. `buffer` keeps interpolated moments.
+  std::vector<std::span<const Moments>> read(std::size_t point, double theta_deg, std::vector<Moments>& buffer) const {
+    buffer.resize(passes_.size());
+    std::vector<std::span<const Moments>> moments;
+    for (std::size_t i = 0; i < passes_.size(); ++i) {
+      if (plan_) buffer[i] = interpolate(*plan_, panels_[i], theta_deg, point);
+      moments.push_back(plan_ ? std::span<const Moments>(&buffer[i], 1) : std::span(passes_[i]).subspan(point, 1));
+    }
+    return moments;
+  }
+
+ private:
+  const std::optional<PointPlan>& plan_;
+  std::span<const std::vector<Moments>> passes_;
+  std::vector<std::vector<ShapeBlock>> panels_;  ///< for each pass
+};
+
 std::vector<Moments> combined_points(const MomentsRequest& request, const ResponsePlan& plan,
                                      std::span<const std::vector<Moments>> passes, std::span<const Moments> others) {
-  const Combination combine(request, plan);
-  std::vector<std::vector<std::size_t>> pass_points(plan.passes.front().size());
-  for (std::size_t i = 0; i < plan.points.size(); ++i) pass_points[plan.points[i].pass].push_back(i);
   std::vector<Moments> moments(request.size());
-  parallel_ranges(pass_points.size(), 1, [&](std::size_t first, std::size_t last) {
-    std::vector<Moments> source_moments(plan.sources->size());
+  std::vector<std::vector<std::uint32_t>> sharing;  // for each position in a pass, the points that use it
+  for (std::uint32_t i = 0; i < plan.points.size(); ++i) {
+    const ResponsePlan::PointSource& point = plan.points[i];
+    if (point.other) moments[i] = others[*point.other];
+    sharing.resize(std::max<std::size_t>(sharing.size(), point.pass + 1));
+    if (!point.other) sharing[point.pass].push_back(i);
+  }
+  const PointReader reader(plan, passes);
+  parallel_ranges(sharing.size(), kPointsAtOnce, [&](std::size_t first, std::size_t last) {
+    std::vector<Moments> own, buffer;
+    std::optional<Combination> combine;
     for (std::size_t pass = first; pass < last; ++pass) {
-      std::vector<std::span<const Moments>> pass_moments;
-      for (const std::vector<Moments>& one : passes) pass_moments.push_back(std::span(one).subspan(pass, 1));
-      combine(cos_sin_deg(plan.passes.front().theta_deg[pass]).cos, pass_moments, source_moments);
-      for (const std::size_t i : pass_points[pass]) {
-        const ResponsePlan::PointSource& point = plan.points[i];
-        moments[i] = (*plan.sources)[point.source].weights ? source_moments[point.source] : others[point.other];
-      }
+      std::vector<const ResponseWeights*> weights;
+      for (const std::uint32_t i : sharing[pass]) weights.push_back(&*(*plan.sources)[plan.points[i].source].weights);
+      if (weights.empty()) continue;
+      if (!combine || combine->weights() != weights) combine.emplace(request, passes.size(), std::move(weights));
+      const double theta_deg = request.theta_deg[sharing[pass].front()];
+      own.assign(sharing[pass].size(), {});
+      (*combine)(cos_sin_deg(theta_deg).cos, reader.read(pass, theta_deg, buffer), own);
+      for (std::size_t j = 0; j < own.size(); ++j) moments[sharing[pass][j]] = std::move(own[j]);
     }
   });
   return moments;
@@ -328,27 +389,32 @@ std::vector<Moments> combined_points(const MomentsRequest& request, const Respon
 
 }  // namespace
 
-ResponsePlan response_plan(const MomentsRequest& request) {
+std::optional<ResponsePlan> response_plan(const MomentsRequest& request) {
   return request.layout == MomentsRequest::Layout::kList ? plan_of_points(request) : plan_of_grid(request);
 }
 
 std::vector<Moments> combined(const MomentsRequest& request, const ResponsePlan& plan,
                               std::span<const std::vector<Moments>> passes, std::span<const Moments> others) {
   if (request.layout == MomentsRequest::Layout::kList) return combined_points(request, plan, passes, others);
-  const Combination combine(request, plan);
+  std::vector<const ResponseWeights*> weights;
+  for (const ResponsePlan::Source& source : *plan.sources) {
+    if (source.weights) weights.push_back(&*source.weights);
+  }
+  const Combination combine(request, passes.size(), std::move(weights));
   const std::size_t shapes = request.shapes();
   const std::size_t directions = request.theta_deg.size();
   std::vector<Moments> moments(request.size());
   parallel_ranges(directions, 1, [&](std::size_t first, std::size_t last) {
-    std::vector<Moments> own(request.optics.size() * shapes);
+    std::vector<Moments> own(combine.weights().size() * shapes);
     for (std::size_t theta = first; theta < last; ++theta) {
       std::vector<std::span<const Moments>> pass_moments;
       for (const std::vector<Moments>& pass : passes)
         pass_moments.push_back(std::span(pass).subspan(theta * shapes, shapes));
       if (!pass_moments.empty()) combine(cos_sin_deg(request.theta_deg[theta]).cos, pass_moments, own);
+      std::size_t position = 0;
       for (std::size_t i = 0; i < plan.sources->size(); ++i) {
         const ResponsePlan::Source& source = (*plan.sources)[i];
-        const auto from = source.weights ? std::span<const Moments>(own).subspan(i * shapes, shapes)
+        const auto from = source.weights ? std::span<const Moments>(own).subspan(position++ * shapes, shapes)
                                          : others.subspan((source.other * directions + theta) * shapes, shapes);
         std::ranges::copy(from, moments.begin() + static_cast<std::ptrdiff_t>((i * directions + theta) * shapes));
       }

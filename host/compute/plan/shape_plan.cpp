@@ -12,10 +12,10 @@ namespace dolp {
 namespace {
 
 /// Estimated interpolation error of each column of `values`: the sum of the omitted Chebyshev coefficients. The
-/// estimate assumes that the omitted coefficients fall as fast as the last known ones.
-Eigen::RowVectorXd tails(const ShapeAxis& axis, const RowMajor& values) {
-  if (!axis.is_interpolated()) return Eigen::RowVectorXd::Zero(values.cols());
-  const Eigen::MatrixXd sizes = (axis.coefficients.bottomRows(2 * kLastShapeCoefficients) * values).cwiseAbs();
+/// estimate assumes that the omitted coefficients fall as fast as the last known ones. `coefficients`: see ShapeAxis.
+Eigen::RowVectorXd tails(const Eigen::MatrixXd& coefficients, const RowMajor& values) {
+  if (coefficients.size() == 0) return Eigen::RowVectorXd::Zero(values.cols());
+  const Eigen::MatrixXd sizes = (coefficients.bottomRows(2 * kLastShapeCoefficients) * values).cwiseAbs();
   const Eigen::RowVectorXd before = sizes.topRows(kLastShapeCoefficients).colwise().maxCoeff();
   const Eigen::RowVectorXd last = sizes.bottomRows(kLastShapeCoefficients).colwise().maxCoeff();
   Eigen::RowVectorXd bounds(values.cols());
@@ -28,6 +28,11 @@ Eigen::RowVectorXd tails(const ShapeAxis& axis, const RowMajor& values) {
 
 constexpr std::array kColumnParts = {&ColumnMoments::i, &ColumnMoments::q};
 constexpr auto kPartsOfAColumn = static_cast<std::ptrdiff_t>(kColumnParts.size());
+
+double column_bound(const ColumnMoments& column, double ColumnMoments::*part) {
+  return column.error + std::max(std::abs(column.i_apart), std::abs(column.q_apart)) +
+         column.relative_error * std::abs(column.*part);
+}
 
 std::span<const MomentMember> interpolated_members(const ShapePlan& plan) {
   return std::span(kMomentMembers).first(kMomentMembers.size() - (plan.nodes.wants_direct ? 0 : kDirectMembers));
@@ -78,13 +83,34 @@ ShapeParameter q_parameter(const MomentsRequest& request) {
   return {needs_mean_slope && has_mean_slope ? 1.5 : 1.0, 1.45};
 }
 
-/// Nodes from which `values` are interpolated with `digits` correct digits. No interpolation if it would save little.
-ShapeAxis shape_axis(const ShapeParameter& parameter, const std::vector<double>& values, double digits) {
+struct Range {
+  double least, largest;
+};
+
+Range range_of_values(const std::vector<double>& values) {
   const auto [least, largest] = std::minmax_element(values.begin(), values.end());
-  const double start = std::log(*least - parameter.origin);
-  const double end = std::log(*largest - parameter.origin);
+  return {*least, *largest};
+}
+
+/// A wider range with ends on a coarse scale. So different parts of a list mostly have the same nodes.
+Range rounded_range(const ShapeParameter& parameter, const std::vector<double>& values) {
+  constexpr double kStep = 0.25;
+  const Range range = range_of_values(values);
+  if (range.least == range.largest) return range;
+  const auto rounded = [&](double value, double round(double)) {
+    return parameter.origin + std::exp(kStep * round(std::log(value - parameter.origin) / kStep));
+  };
+  return {rounded(range.least, std::floor), rounded(range.largest, std::ceil)};
+}
+
+/// Nodes in `range` from which `values` are interpolated with `digits` correct digits. No interpolation if it would
+/// save little.
+ShapeAxis shape_axis(const ShapeParameter& parameter, const Range& range, const std::vector<double>& values,
+                     double digits) {
+  const double start = std::log(range.least - parameter.origin);
+  const double end = std::log(range.largest - parameter.origin);
   const double half_length = 0.5 * (end - start);
-  if (half_length <= 0.0) return without_interpolation(values);
+  if (half_length <= 0.0) return {{range.least}, RowMajor::Ones(1, static_cast<Eigen::Index>(values.size())), {}};
   const double count = nodes_needed(parameter, half_length, digits);
   if (!(count * kLeastAxisGain <= static_cast<double>(values.size()))) return without_interpolation(values);
 
@@ -94,8 +120,8 @@ ShapeAxis shape_axis(const ShapeParameter& parameter, const std::vector<double>&
   for (const double point : points) {
     axis.nodes.push_back(parameter.origin + std::exp(0.5 * (start + end) + half_length * point));
   }
-  axis.nodes.front() = *largest;
-  axis.nodes.back() = *least;
+  axis.nodes.front() = range.largest;
+  axis.nodes.back() = range.least;
   axis.weights.resize(nodes, static_cast<Eigen::Index>(values.size()));
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double x = (std::log(values[i] - parameter.origin) - 0.5 * (start + end)) / half_length;
@@ -104,6 +130,21 @@ ShapeAxis shape_axis(const ShapeParameter& parameter, const std::vector<double>&
   axis.coefficients = chebyshev_coefficients(nodes);
   return axis;
 }
+
+// Zeniths at which panels end. Toward 90 degrees the moments change with 90 degrees - theta, so the panels halve there.
+// With masking `v-cavity` the moments are not analytic at 45 degrees, where breakpoints of the slope axis cross (90
+// degrees - theta and 30 degrees + theta / 3). Beyond the last end nothing is interpolated.
+constexpr std::array kPanelEnds_deg = {0.0, 22.5, 45.0, 67.5, 78.75, 84.375, 87.1875};
+// The nearest singularity of a panel is at 90 degrees, as far away as the panel is long.
+constexpr ShapeParameter kInPanel = {.origin = 0.0, .strip = 2.83};
+
+std::size_t panel_at(double theta_deg) {
+  const auto end = std::ranges::upper_bound(kPanelEnds_deg, theta_deg);
+  return std::min<std::size_t>(static_cast<std::size_t>(end - kPanelEnds_deg.begin()), kPanelEnds_deg.size() - 1) - 1;
+}
+
+double middle_deg(std::size_t panel) { return 0.5 * (kPanelEnds_deg[panel] + kPanelEnds_deg[panel + 1]); }
+double half_length_deg(std::size_t panel) { return 0.5 * (kPanelEnds_deg[panel + 1] - kPanelEnds_deg[panel]); }
 
 }  // namespace
 
@@ -122,8 +163,8 @@ std::optional<ShapePlan> shape_plan(const MomentsRequest& request) {
   if (request.has_elliptic_shapes()) return std::nullopt;  // slope samples serve all shapes
   const double digits = kExtraShapeDigits - std::log10(request.tolerance);
   ShapePlan plan;
-  plan.sigma = shape_axis(sigma_parameter(request.distribution), request.sigma, digits);
-  plan.q = shape_axis(q_parameter(request), request.q, digits);
+  plan.sigma = shape_axis(sigma_parameter(request.distribution), range_of_values(request.sigma), request.sigma, digits);
+  plan.q = shape_axis(q_parameter(request), range_of_values(request.q), request.q, digits);
   if (request.shapes() < kLeastShapeGain * plan.nodes_of_a_direction()) return std::nullopt;
   plan.nodes = request;
   plan.nodes.tolerance = request.finer_tolerance(kShapeNodeTolerance);
@@ -149,8 +190,8 @@ ShapeBlock shape_block(const ShapePlan& plan, std::span<const Moments> nodes) {
     RowMajor values(sigma_nodes, q_nodes), bounds(sigma_nodes, q_nodes);
     std::ranges::transform(nodes, values.data(), node_value);
     std::ranges::transform(nodes, bounds.data(), node_bound);
-    bounds.rowwise() += tails(plan.sigma, values);
-    bounds.colwise() += tails(plan.q, values.transpose()).transpose();
+    bounds.rowwise() += tails(plan.sigma.coefficients, values);
+    bounds.colwise() += tails(plan.q.coefficients, values.transpose()).transpose();
     block.values.middleCols(first, q_nodes) = values;
     block.bounds.middleCols(first, q_nodes) = bounds;
     first += q_nodes;
@@ -158,12 +199,8 @@ ShapeBlock shape_block(const ShapePlan& plan, std::span<const Moments> nodes) {
   for (const auto& [value, error] : interpolated_members(plan)) add(value, error);
   for (std::size_t k = 0; k < columns; ++k) {
     for (double ColumnMoments::*part : kColumnParts) {
-      const auto bound = [&](const Moments& node) {
-        const ColumnMoments& column = node.columns[k];
-        return column.error + std::max(std::abs(column.i_apart), std::abs(column.q_apart)) +
-               column.relative_error * std::abs(column.*part);
-      };
-      add([&](const Moments& node) { return node.columns[k].*part; }, bound);
+      add([&](const Moments& node) { return node.columns[k].*part; },
+          [&](const Moments& node) { return column_bound(node.columns[k], part); });
     }
   }
   return block;
@@ -201,6 +238,101 @@ void interpolate(const ShapePlan& plan, const ShapeBlock& block, const ShapeRang
       });
     }
   }
+}
+
+bool PointPlan::reaches(double theta_deg) { return theta_deg <= kPanelEnds_deg.back(); }
+
+std::optional<PointPlan> point_plan(const MomentsRequest& points) {
+  if (!points.may_interpolate || points.size() < kLeastPoints || points.has_elliptic_shapes()) return std::nullopt;
+  const double digits = kExtraShapeDigits - std::log10(kResponseTolerance * points.tolerance);
+  PointPlan plan;
+  const auto axis = [&](const ShapeParameter& parameter, const std::vector<double>& values) {
+    return shape_axis(parameter, rounded_range(parameter, values), values, digits);
+  };
+  plan.shapes.sigma = axis(sigma_parameter(points.distribution), points.sigma);
+  plan.shapes.q = axis(q_parameter(points), points.q);
+  plan.in_panel = lobatto_points(static_cast<Eigen::Index>(nodes_needed(kInPanel, 1.0, digits)));
+  plan.coefficients = chebyshev_coefficients(static_cast<Eigen::Index>(plan.in_panel.size()));
+  MomentsRequest& nodes = plan.shapes.nodes = points;
+  nodes.layout = MomentsRequest::Layout::kGrid;
+  nodes.optics = {points.basis->reference()};
+  nodes.sigma = plan.shapes.sigma.nodes;
+  nodes.q = plan.shapes.q.nodes;
+  nodes.sigma_cross = nodes.azimuth_deg = {0.0};
+  nodes.theta_deg.clear();
+  for (std::size_t panel = 0; panel + 1 < kPanelEnds_deg.size(); ++panel) {
+    for (const double x : plan.in_panel) nodes.theta_deg.push_back(middle_deg(panel) + half_length_deg(panel) * x);
+  }
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    different += PointPlan::reaches(points.theta_deg[i]) && !points.continues(i) ? 1 : 0;
+  if (different < kLeastPointGain * nodes.size()) return std::nullopt;
+  return plan;
+}
+
+std::vector<ShapeBlock> panel_blocks(const PointPlan& plan, std::span<const Moments> nodes) {
+  const auto columns = static_cast<Eigen::Index>(nodes.front().columns.size());
+  const auto moments = static_cast<Eigen::Index>(interpolated_members(plan.shapes).size()) + kPartsOfAColumn * columns;
+  const auto directions = static_cast<Eigen::Index>(plan.in_panel.size());
+  const auto sigmas = static_cast<Eigen::Index>(plan.shapes.sigma.nodes.size());
+  const auto qs = static_cast<Eigen::Index>(plan.shapes.q.nodes.size());
+  std::vector<ShapeBlock> panels(kPanelEnds_deg.size() - 1);
+  for (ShapeBlock& panel : panels) {
+    RowMajor bounds(directions * sigmas * qs, moments);
+    panel.values.resize(bounds.rows(), moments);
+    for (Eigen::Index row = 0; row < bounds.rows(); ++row, nodes = nodes.subspan(1)) {
+      Eigen::Index moment = 0;
+      const auto add = [&](double value, double bound) {
+        panel.values(row, moment) = value;
+        bounds(row, moment++) = bound;
+      };
+      for (const auto& [value, error] : interpolated_members(plan.shapes))
+        add(nodes.front().*value, nodes.front().*error);
+      for (const ColumnMoments& column : nodes.front().columns) {
+        for (double ColumnMoments::*part : kColumnParts) add(column.*part, column_bound(column, part));
+      }
+    }
+    const auto add_tails = [&](const Eigen::MatrixXd& coefficients, Eigen::Index outer, Eigen::Index count) {
+      const Eigen::Index inner = bounds.size() / (outer * count);
+      for (Eigen::Index i = 0; i < outer; ++i) {
+        const RowMajor values = Eigen::Map<const RowMajor>(panel.values.data() + i * count * inner, count, inner);
+        Eigen::Map<RowMajor>(bounds.data() + i * count * inner, count, inner).rowwise() += tails(coefficients, values);
+      }
+    };
+    add_tails(plan.coefficients, 1, directions);
+    add_tails(plan.shapes.sigma.coefficients, directions, sigmas);
+    add_tails(plan.shapes.q.coefficients, directions * sigmas, qs);
+    const auto by_direction = Eigen::Map<const RowMajor>(bounds.data(), directions, sigmas * qs * moments);
+    panel.bounds = by_direction.colwise().maxCoeff().reshaped<Eigen::RowMajor>(sigmas * qs, moments);
+  }
+  return panels;
+}
+
+Moments interpolate(const PointPlan& plan, std::span<const ShapeBlock> panels, double theta_deg, std::size_t point) {
+  const std::size_t number = panel_at(theta_deg);
+  const ShapeBlock& panel = panels[number];
+  const Eigen::RowVectorXd of_zeniths =
+      cardinal_values(plan.in_panel, (theta_deg - middle_deg(number)) / half_length_deg(number));
+  const auto own = static_cast<Eigen::Index>(point);
+  const RowMajor of_shapes = plan.shapes.sigma.weights.col(own) * plan.shapes.q.weights.col(own).transpose();
+  const auto shape_row = of_shapes.reshaped<Eigen::RowMajor>().transpose();
+  const RowMajor of_nodes = of_zeniths.transpose() * shape_row;
+  const Eigen::RowVectorXd values = of_nodes.reshaped<Eigen::RowMajor>().transpose() * panel.values;
+  const Eigen::RowVectorXd bounds = of_zeniths.cwiseAbs().sum() * (shape_row.cwiseAbs() * panel.bounds);
+  Moments moments;
+  Eigen::Index moment = 0;
+  for (const auto& [member, error] : interpolated_members(plan.shapes)) {
+    moments.*member = values(moment);
+    moments.*error = bounds(moment++);
+  }
+  moments.columns.resize(static_cast<std::size_t>((values.cols() - moment) / kPartsOfAColumn));
+  for (ColumnMoments& column : moments.columns) {
+    for (double ColumnMoments::*part : kColumnParts) {
+      column.*part = values(moment);
+      column.error = std::max(column.error, bounds(moment++));
+    }
+  }
+  return moments;
 }
 
 }  // namespace dolp

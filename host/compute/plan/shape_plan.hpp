@@ -60,4 +60,25 @@ struct ShapeRange {
 /// the nodes. Shape: `moments` has range.sigmas x range.qs elements.
 void interpolate(const ShapePlan& plan, const ShapeBlock& block, const ShapeRange& range, std::span<Moments> moments);
 
+/// Interpolation of responses over zenith, sigma and q for a list of many points. The zeniths up to a limit are divided
+/// into panels.
+struct PointPlan {
+  std::vector<double> in_panel;  ///< nodes of a panel, on [-1, 1]
+  Eigen::MatrixXd coefficients;  ///< converts moments at the nodes of a panel to Chebyshev coefficients
+  ShapePlan shapes;              ///< has a column of weights for each point, and the nodes of all panels as directions
+
+  static bool reaches(double theta_deg);  ///< true if points at this zenith can be interpolated
+};
+
+/// Returns nullopt if interpolation would save little or is impossible. `points`: a list with a basis.
+std::optional<PointPlan> point_plan(const MomentsRequest& points);
+
+/// The known moments of each panel. `nodes`: moments at all nodes of the plan. Shape: `values` has a row for each node
+/// of the panel. `bounds` has a row for each pair of a node of sigma and a node of q, with the largest bounds of all
+/// zeniths. The columns are the moments, ordered as in ShapeBlock.
+std::vector<ShapeBlock> panel_blocks(const PointPlan& plan, std::span<const Moments> nodes);
+
+/// The moments of a point of the plan's list. `point`: its number; theta_deg: its zenith.
+Moments interpolate(const PointPlan& plan, std::span<const ShapeBlock> panels, double theta_deg, std::size_t point);
+
 }  // namespace dolp

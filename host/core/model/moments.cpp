@@ -74,4 +74,10 @@ void MomentsRequest::append(const MomentsPoint& point) {
   optics.push_back(point.index);
 }
 
+bool MomentsRequest::continues(std::size_t entry) const {
+  const auto repeats = [&](const std::vector<double>& values) { return values[entry] == values[entry - 1]; };
+  return entry > 0 && repeats(theta_deg) && repeats(sigma) && repeats(q) && repeats(sigma_cross) &&
+         repeats(azimuth_deg);
+}
+
 }  // namespace dolp

@@ -84,6 +84,8 @@ struct MomentsRequest {
   /// This request for only some directions of a grid, given by their positions in `theta_deg`.
   MomentsRequest select_directions(std::span<const std::size_t> directions) const;
   void append(const MomentsPoint& point);  ///< adds an entry; the request becomes a list
+  /// In a list: true if the entry has the direction and slope distribution of the entry before it.
+  bool continues(std::size_t entry) const;
   friend bool operator==(const MomentsRequest&, const MomentsRequest&) = default;
 };
 

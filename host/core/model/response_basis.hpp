@@ -40,14 +40,16 @@ class ResponseBasis {
   std::optional<ResponseWeights> find_weights(const FacetOptics& index) const;
 
  private:
-  ResponseBasis() = default;
+  ResponseBasis(double c0, std::size_t count, std::size_t samples, double tolerance);
 
   FacetOptics reference_;
   ResponseWeights reference_weights_;
-  std::size_t count_ = 0;
-  double c0_ = 1.0;
-  double bend_ = 1.0;
-  double tolerance_ = 0.0;
+  std::size_t count_;
+  double c0_;
+  double bend_;
+  double tolerance_;
+  std::vector<double> cosines_;   ///< at which a reflectance curve is sampled
+  Eigen::MatrixXd coefficients_;  ///< converts the samples to Chebyshev coefficients
 };
 
 inline constexpr std::size_t kMostResponses = 24;  ///< most responses that the kernels can compute at once

@@ -422,10 +422,11 @@ std::vector<SceneKey> geometry_keys() {
       choice("accuracy.precision", Accuracy().precision,
              "arithmetic of the kernels; auto takes float, and double for what float cannot compute to the tolerance",
              [](auto& s) { return &s.accuracy.precision; }),
-      {described("accuracy.interpolation", Type::kWord, "", {}, "auto",
-                 "auto: within the tolerance the program may interpolate over a dense grid of sigma and q, and compute "
-                 "many indices in one pass; off: it integrates every entry",
-                 {"auto", "off"}),
+      {described(
+           "accuracy.interpolation", Type::kWord, "", {}, "auto",
+           "auto: within the tolerance the program may interpolate over a dense grid of sigma and q, or over many "
+           "points, and compute many indices in one pass; off: it integrates every entry",
+           {"auto", "off"}),
        [](SceneValues& s, const KeyValue& v) { s.accuracy.may_interpolate = v.word == 0; },
        [](const SceneValues& s) -> std::optional<KeyValue> {
          const bool is_auto = s.accuracy.may_interpolate;

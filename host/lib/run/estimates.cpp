@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 #include "evaluate/cpu/cpu_evaluator.hpp"
+#include "evaluate/remembering_evaluator.hpp"
 #include "model/direction.hpp"
 #include "run/scene_run.hpp"
 #include "spectrum/spectral_rule.hpp"
@@ -126,24 +127,6 @@ PointResult weighted_sum(std::span<const PointResult> results, std::span<const d
   return sum;
 }
 
-/// Computes on the CPU. Remembers moments, because the same moments with and without an effect give its influence.
-class RememberingEvaluator final : public ModelEvaluator {
- public:
-  std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
-    const auto known = std::ranges::find(known_, request, &std::pair<MomentsRequest, std::vector<Moments>>::first);
-    if (known != known_.end()) return known->second;
-    return known_.emplace_back(request, cpu_.evaluate(request, progress)).second;
-  }
-  std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override {
-    return cpu_.scatter(request, progress);
-  }
-  EvaluationReport report() const override { return cpu_.report(); }
-
- private:
-  CpuEvaluator cpu_;
-  std::vector<std::pair<MomentsRequest, std::vector<Moments>>> known_;
-};
-
 std::vector<PointResult> sample_results(const Sample& sample, ModelEvaluator& evaluator, const EffectPlan& plan) {
   const std::vector<PointResult> all = evaluate_scene(sample.scene, sample.entries, evaluator, {}, plan);
   std::vector<PointResult> sums;
@@ -211,7 +194,9 @@ Influences add_influences(std::vector<Effect>& rows, const SceneValues& scene, c
                           const EffectPlan& plan) {
   const Sample sample = draw_sample(scene, entries, *with_spectra(plan, scene, entries).rules);
   const EffectPlan all = with_spectra(plan_to_keep(sample.scene, {}), sample.scene, sample.entries);
-  RememberingEvaluator evaluator;
+  CpuEvaluator cpu;
+  // The same moments, with and without an effect, give its influence.
+  RememberingEvaluator evaluator(cpu, [](const MomentsRequest&) { return true; });
   const std::vector<PointResult> whole = sample_results(sample, evaluator, all);
   for (Effect& row : rows) {
     if (row.state != EffectState::kKept || !row.part || row.influence) continue;

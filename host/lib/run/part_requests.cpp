@@ -1,5 +1,6 @@
 #include "run/part_requests.hpp"
 #include "model/sky_basis.hpp"
+#include "plan/constants.hpp"
 #include "plan/response_plan.hpp"
 
 #include <algorithm>
@@ -49,33 +50,25 @@ std::vector<std::uint32_t> compact_used_values(const std::vector<double>& values
 
 // A grid uses responses (see run_basis) only if it has this many entries per index. With fewer, they save little.
 constexpr std::size_t kLeastEntries = 24;
-// Responses are computed for all combinations of the points' indices, directions and slope distributions. Points use
-// responses only if they need at least 1 / kMostOfPoints of these combinations.
-constexpr std::size_t kMostOfPoints = 2;
+constexpr std::size_t kLeastIndices = 2;      // a list uses responses if at least so many indices share them
+constexpr std::size_t kDecidingPoints = 512;  // at most so many points of a list decide whether it uses responses
 
+/// The indices of some points of a list; none if the list would use no responses. It uses them if several indices share
+/// a direction and slope distribution, or if it is so long that responses may be interpolated.
 std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const SceneEntries& entries,
                                            const SpectralIndices& spectral) {
-  const bool has_one_index =
-      spectral.size() == 1 && spectral.front().size() == 1 &&
-      std::ranges::none_of(entries.all(), [](const SceneEntry& e) { return e.index.has_value(); });
-  if (has_one_index) return {};
-  std::set<FacetOptics> indices;
-  std::set<std::tuple<double, double, double>> shapes;
-  std::size_t points = 0, most_points = 0;
-  for (const std::vector<FacetOptics>& samples : spectral) most_points = std::max(most_points, samples.size());
-  most_points *= entries.size();
-  const auto add = [&](const FacetOptics& index) { indices.insert(index); };
-  for (const SceneEntry& entry : entries.all()) {
+  std::set<std::tuple<double, double, double>> geometries;
+  std::vector<FacetOptics> indices;
+  const std::size_t drawn = std::min(entries.size(), kDecidingPoints);
+  for (std::size_t i = 0; i < drawn; ++i) {
+    const SceneEntry entry = entries[(2 * i + 1) * entries.size() / (2 * drawn)];
     if (is_elliptic(entry.shape)) return {};
-    shapes.insert({moment_zenith_deg(scene, entry), entry.shape.sigma, entry.shape.q});
-    const std::vector<FacetOptics>& samples = spectral[entry.variant];
-    if (entry.index) std::ranges::for_each(with_index(samples, entry.index), add);
-    if (!entry.index) std::ranges::for_each(samples, add);
-    points += entry.index && samples.front().is_bare() ? 1 : samples.size();
-    if (shapes.size() * indices.size() > kMostOfPoints * most_points) return {};
+    geometries.insert({moment_zenith_deg(scene, entry), entry.shape.sigma, entry.shape.q});
+    const std::vector<FacetOptics> samples = with_index(spectral[entry.variant], entry.index);
+    indices.insert(indices.end(), samples.begin(), samples.end());
   }
-  if (shapes.size() * indices.size() > kMostOfPoints * points) return {};
-  return {indices.begin(), indices.end()};
+  const bool is_shared = indices.size() >= kLeastIndices * geometries.size();
+  return is_shared || entries.size() >= kLeastPoints ? indices : std::vector<FacetOptics>{};
 }
 
 std::vector<FacetOptics> indices_of_grid(const SceneModel& scene, const EffectPlan& plan, const SceneEntries& entries) {

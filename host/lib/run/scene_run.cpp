@@ -11,6 +11,7 @@
 #include "base/parallel_ranges.hpp"
 #include "base/stopwatch.hpp"
 #include "evaluate/planned_moments.hpp"
+#include "evaluate/remembering_evaluator.hpp"
 #include "model/angles.hpp"
 #include "plan/further_light.hpp"
 #include "plan/moments_plan.hpp"
@@ -346,13 +347,16 @@ RunResults recompute_for_check(const RunContext& context, const SceneEntries& pa
   return results;
 }
 
-/// `checked`: positions in the whole table. Returns the positions in `part` of the checked entries that have moments.
+/// `checked`: positions in the whole table or list. Returns the positions in `part` of the checked entries that have
+/// moments. `before`: number of entries in the parts before it.
 std::vector<std::size_t> positions_in(const RunContext& context, const SceneEntries& part,
-                                      std::span<const std::size_t> checked) {
+                                      std::span<const std::size_t> checked, std::size_t before) {
   std::vector<std::size_t> positions;
   for (const std::size_t in_whole : checked) {
-    const std::optional<std::size_t> position = part.find_position(in_whole);
-    if (position && wants_moments(context.scene, part[*position], context.plan)) positions.push_back(*position);
+    const std::optional<std::size_t> position =
+        part.is_grid() ? part.find_position(in_whole) : std::optional(in_whole - before);  // wraps if it is below
+    if (!position || *position >= part.size()) continue;
+    if (wants_moments(context.scene, part[*position], context.plan)) positions.push_back(*position);
   }
   return positions;
 }
@@ -363,7 +367,8 @@ bool wants_evaluator(const SceneValues& scene, const SceneEntries& entries, cons
   });
 }
 
-RunResults part_results(const RunContext& context, const SceneEntries& part, std::span<const std::size_t> checked,
+/// `positions`: entries that are computed a second time.
+RunResults part_results(const RunContext& context, const SceneEntries& part, std::span<const std::size_t> positions,
                         SelfCheck& check, const Progress& progress) {
   if (!wants_evaluator(context.scene, part, context.plan)) {
     RunResults results = computed_at(context, {part}, {}, progress);
@@ -372,7 +377,6 @@ RunResults part_results(const RunContext& context, const SceneEntries& part, std
   }
   FirstResults first = first_results(context, part, progress);
   RunResults& results = first.results;
-  const std::vector<std::size_t> positions = positions_in(context, part, checked);
   const RunResults again = recompute_for_check(context, part, first.level, positions);
   refine(context, part, first, progress);
   for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -380,9 +384,8 @@ RunResults part_results(const RunContext& context, const SceneEntries& part, std
     entry_check.add(results.at(positions[i]), again.at(i));
     check.add(entry_check);
     if (entry_check.worst_ratio <= 1.0) continue;
-    const std::size_t direction = positions[i] / part.entries_per_direction();
-    for (std::uint32_t& status :
-         std::span(results.status).subspan(direction * part.entries_per_direction(), part.entries_per_direction()))
+    const std::size_t together = part.is_grid() ? part.entries_per_direction() : part.size();
+    for (std::uint32_t& status : std::span(results.status).subspan(positions[i] / together * together, together))
       status |= kAnyToleranceNotMet;
   }
   return std::move(first.results);
@@ -479,12 +482,13 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
   const std::size_t samples = plan.rules->most_samples(entries);
   const std::size_t whole = entries.is_grid() ? grid_size(entries.whole()) : entries.size();
   const bool has_moments = entries.is_grid() && plan.kept.moments;
-  std::vector<std::size_t> checked;
-  if (has_moments) checked = sample_positions(whole, checked_count(whole * samples) / samples, scene_seed(scene));
   RunSummary summary = output.finished.summary;
   const auto start = std::chrono::steady_clock::now();
   const std::shared_ptr<const ResponseBasis> basis = evaluator ? run_basis(scene, entries, plan) : nullptr;
   summary.response_basis_s += seconds_since(start);
+  std::vector<std::size_t> checked;
+  if (has_moments || basis)
+    checked = sample_positions(whole, checked_count(whole * samples) / samples, scene_seed(scene));
   const Surface& surface = scene.surface;
   const bool is_judged = has_moments && surface.scattering == Scattering::kSingle && !surface.has_cross_slopes();
   const auto grooves = is_judged ? std::make_shared<const GrooveTable>(scene, entries, *plan.rules) : nullptr;
@@ -493,6 +497,9 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
     if (evaluator) all.work += evaluator->report();
     return all;
   };
+  std::optional<RememberingEvaluator> remembering;  // parts of a list have the same responses
+  const auto is_repeated = [](const MomentsRequest& request) { return request.response.has_value(); };
+  if (basis && !entries.is_grid()) evaluator = &remembering.emplace(*evaluator, is_repeated);
   std::size_t left = output.finished.parts, before = 0;
   for (const SceneEntries& part : run_parts(entries, samples)) {
     const Progress part_progress = [&](std::size_t done, std::size_t total) {
@@ -505,7 +512,8 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
       const Spectra spectra(scene, plan, part.variants(), evaluator);
       summary.radiometry_s += seconds_since(spectra_start);
       const RunContext context{scene, plan, spectra, evaluator, basis, quantities, summary, grooves};
-      RunResults results = part_results(context, part, checked, summary.check, part_progress);
+      const std::vector<std::size_t> positions = positions_in(context, part, checked, before);
+      RunResults results = part_results(context, part, positions, summary.check, part_progress);
       summary.add(scene, part, results);
       output.sink(part, std::move(results), with_evaluation());
     }

@@ -91,9 +91,10 @@ class Run {
   std::vector<SceneEntries> parts() const;
 
   /// Computes all parts that are not finished and passes their results to `sink`. Results that miss the tolerance are
-  /// computed again. Progress counts entries. As a check, some entries of a grid are computed a second time. If the two
-  /// results of an entry differ by more than their error bounds, all entries in its direction get the status bits of
-  /// missed tolerances. Errors: errors of the evaluator, Radiometry and the sink; Cancelled.
+  /// computed again. Progress counts entries. As a check, some entries of a grid, or of a list with responses, are
+  /// computed a second time. If the two results of an entry differ by more than their error bounds, all entries in its
+  /// direction, or in its part of the list, get the status bits of missed tolerances. Errors: errors of the evaluator,
+  /// Radiometry and the sink; Cancelled.
   RunOutcome compute(const Sink& sink, const Finished& finished = {});
 
   double wall_s() const;  ///< time in s since the object was made

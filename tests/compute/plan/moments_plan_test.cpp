@@ -20,9 +20,11 @@ constexpr std::size_t kChecked = 30;  // entries checked per grid
 /// How the entries of a grid share work. kSlopes: one sum over the azimuths at a slope is used for all slope
 /// distributions. kRows: one kernel invocation computes several values of q. kShapes: moments are interpolated between
 /// slope distributions. kIndices: the moments of many indices are weighted sums of the same few responses, see
-/// model/response_basis.hpp.
-enum class Sharing { kSlopes, kRows, kShapes, kIndices };
-constexpr std::array kSharings = {Sharing::kSlopes, Sharing::kRows, Sharing::kShapes, Sharing::kIndices};
+/// model/response_basis.hpp. kPoints: the responses of many points are interpolated between zeniths and slope
+/// distributions.
+enum class Sharing { kSlopes, kRows, kShapes, kIndices, kPoints };
+constexpr std::array kSharings = {Sharing::kSlopes, Sharing::kRows, Sharing::kShapes, Sharing::kIndices,
+                                  Sharing::kPoints};
 
 std::vector<double> in_ratios(double first, double last, std::size_t count, double origin = 0.0) {
   std::vector<double> values;
@@ -75,6 +77,26 @@ MomentsRequest random_grid(Random& random, const Model& model, Scattering scatte
   return request;
 }
 
+/// Many random points. Their largest sigma is up to 6 times their smallest, and q - 1 varies by a factor of up to 1.5.
+MomentsRequest random_points(Random& random, const Model& model) {
+  constexpr std::size_t kPoints = 6'000;
+  MomentsRequest request = request_of(model, {}, random.log_uniform(3e-4, 1e-2));
+  const bool has_direct = model.masking == Masking::kVCavity || model.masking == Masking::kSmith;
+  request.wants_direct = has_direct && random.chance(0.5);
+  const double sigma = random.log_uniform(1e-3, 2.0), sigma_ratio = random.log_uniform(1.2, 6.0);
+  const double q = (model.masking == Masking::kSmith ? 1.5 : 1.0) + random.log_uniform(0.02, 8.0);
+  const double q_ratio = random.chance(0.2) ? random.log_uniform(1.0, 1.5) : 1.0;
+  const std::vector<FacetOptics> indices = many_indices(random);
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    const SlopeShape shape{std::min(10.0, sigma * random.log_uniform(1.0, sigma_ratio)),
+                           1.0 + (q - 1.0) * random.log_uniform(1.0, q_ratio)};
+    const auto index = static_cast<std::size_t>(random.uniform(0.0, static_cast<double>(indices.size())));
+    request.append({std::min(random.theta_deg(), 89.999), shape, indices[index]});
+  }
+  request.basis = ResponseBasis::of(indices, request.tolerance, response_passes(request.wants_direct, 0));
+  return request;
+}
+
 class Grids : public testing::TestWithParam<std::tuple<Kernel, Sharing>> {
  protected:
   /// Compares entries of the grid with separate computations in double, at a hundredth of the tolerance.
@@ -111,11 +133,15 @@ TEST_P(Grids, StatedErrors_HoldAgainstEveryEntryByItself) {
     for (const Model& model : kModels) {
       const bool is_multiple = scattering == Scattering::kMultiple;
       // With multiple bounces the program computes the moments of each index separately, so indices share no work.
-      if (is_multiple && (model.masking != Masking::kVCavity || sharing == Sharing::kIndices)) continue;
-      Random random(kSeed + 10 * static_cast<std::uint64_t>(kernel) + static_cast<std::uint64_t>(sharing));
+      const bool has_responses = sharing == Sharing::kIndices || sharing == Sharing::kPoints;
+      if (is_multiple && (model.masking != Masking::kVCavity || has_responses)) continue;
+      const auto model_seed = static_cast<std::uint64_t>(sharing == Sharing::kPoints ? &model - kModels.data() : 0);
+      Random random(kSeed + 10 * static_cast<std::uint64_t>(kernel) + static_cast<std::uint64_t>(sharing) +
+                    100 * model_seed);
       for (std::size_t grid = 0; grid < grids; ++grid) {
         SCOPED_TRACE(to_name(model) + " grid " + std::to_string(grid));
-        MomentsRequest request = random_grid(random, model, scattering, sharing);
+        MomentsRequest request = sharing == Sharing::kPoints ? random_points(random, model)
+                                                             : random_grid(random, model, scattering, sharing);
         request.precision = is_double(kernel) ? Precision::kDouble : Precision::kFloat;
         const std::vector<Moments> moments = planned_moments(MomentsPlan(request), *evaluator, {}, work).all();
         entries += moments.size();
@@ -123,17 +149,19 @@ TEST_P(Grids, StatedErrors_HoldAgainstEveryEntryByItself) {
       }
     }
   }
-  // For kIndices the number is not known: `interpolated` also counts entries that are sums of responses, and only some
-  // of the grids use responses.
+  // With responses the number is not known: `interpolated` also counts entries that are sums of responses, and only
+  // some of the requests use responses.
   if (sharing == Sharing::kShapes) {
     EXPECT_GT(2 * work.interpolated, entries);
+  } else if (sharing == Sharing::kPoints) {
+    EXPECT_GT(5 * work.interpolated, entries);
   } else if (sharing != Sharing::kIndices) {
     EXPECT_EQ(work.interpolated, 0U);
   }
 }
 
 std::string case_name(const testing::TestParamInfo<std::tuple<Kernel, Sharing>>& test) {
-  constexpr std::array kNames = {"Slopes", "Rows", "Shapes", "Indices"};
+  constexpr std::array kNames = {"Slopes", "Rows", "Shapes", "Indices", "Points"};
   return to_name(std::get<0>(test.param)) + kNames[static_cast<std::size_t>(std::get<1>(test.param))];
 }
 

@@ -1,7 +1,6 @@
 // dolp-bench and its plot script as a user runs them: options, JSON, table and figure.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <string>
@@ -58,10 +57,8 @@ TEST_F(BenchProgram, Accuracy_Json_Results_HaveErrorAndTimesForEverySetting) {
 }
 
 TEST_F(BenchProgram, NoVulkanDevice_OtherMethodsRunAndTheReasonIsNamed) {
-  const Outcome outcome =
-      bench(split_at("accuracy --quick --case easy --method gauss --method vulkan-double --json -", ' '), kNoDriver);
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const json study = json::parse(outcome.out);
+  const json study =
+      printed_json(bench("accuracy --quick --case easy --method gauss --method vulkan-double --json -", kNoDriver));
   ASSERT_EQ(study["results"].size(), 3U + 3U);
   for (const json& row : study["results"]) {
     EXPECT_EQ(row.contains("not_run"), row["method"] == "vulkan-double") << row.dump();
@@ -86,67 +83,45 @@ TEST_F(BenchProgram, Throughput_Json_GridsHaveTheirRows) {
   }
 }
 
-struct BadUsage {
-  std::string line;
-  int status;
-  std::string message;
-};
-
 TEST_F(BenchProgram, BadUsage_OneLineThatSaysWhatIsAllowed) {
-  const std::vector<BadUsage> list = {
-      {"", 2, "subcommand"},
-      {"speed", 2, "see dolp-bench --help"},
-      {"accuracy --fast", 2, "--fast"},
-      {"accuracy --entries 0", 2, "--entries"},
-      {"accuracy --case simple", 2, "--case simple: there is none of this name; choose among easy, median, "},
-      {"accuracy --method simpson", 2, "choose among midpoint, gauss, "},
-      {"accuracy --json no/such/folder/r.json", 4, "there is no folder no/such/folder"},
-      {"accuracy --device nosuch", 3, "nosuch"},
-      {"throughput --case smell", 2, "--case smell: there is none of this name; choose among grids, materials"},
-      {"throughput --entries 0", 2, "--entries"},
-      {"throughput --json no/such/folder/r.json", 4, "there is no folder no/such/folder"}};
-  for (const BadUsage& bad : list) {
-    const Outcome outcome = bench(split_at(bad.line, ' '));
-    EXPECT_EQ(outcome.status, bad.status) << outcome.err;
-    EXPECT_TRUE(outcome.err.starts_with("dolp-bench: ")) << outcome.err;
-    EXPECT_NE(outcome.err.find(bad.message), std::string::npos) << outcome.err;
-    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
-    EXPECT_EQ(outcome.out, "");
-  }
+  for (const auto& [line, status, message] :
+       {std::tuple("", 2, "subcommand"),
+        {"speed", 2, "see dolp-bench --help"},
+        {"accuracy --fast", 2, "--fast"},
+        {"accuracy --entries 0", 2, "--entries"},
+        {"accuracy --case simple", 2, "--case simple: there is none of this name; choose among easy, median, "},
+        {"accuracy --method simpson", 2, "choose among midpoint, gauss, "},
+        {"accuracy --json no/such/folder/r.json", 4, "there is no folder no/such/folder"},
+        {"accuracy --device nosuch", 3, "nosuch"},
+        {"throughput --case smell", 2, "--case smell: there is none of this name; choose among grids, materials"},
+        {"throughput --entries 0", 2, "--entries"},
+        {"throughput --json no/such/folder/r.json", 4, "there is no folder no/such/folder"}})
+    expect_refused(bench(line), message, status, "dolp-bench");
 }
 
 TEST_F(BenchProgram, StudiesOfTheDevice_WithoutOne_AreExit3) {
-  const Outcome outcome = bench({"throughput", "--quick"}, kNoDriver);
+  const Outcome outcome = bench("throughput --quick", kNoDriver);
   EXPECT_EQ(outcome.status, 3) << outcome.err;
   EXPECT_EQ(outcome.out, "");
 }
 
-struct Plotted {
-  std::string study;
-  std::string row;  ///< text that the Markdown table of the study must contain
-};
-
 TEST_F(BenchProgram, Plot_OfEveryStudy_GivesFigureAndTable) {
-  const std::vector<Plotted> list = {
-      {"accuracy --quick --entries 16 --case easy --method gauss --method cpu-double", "| Gauss-Legendre rule |"},
-      {"throughput --quick --entries 64 --case grids", "| v-cavity | 4 × 4 × 4 |"}};
-  for (const Plotted& plotted : list) {
-    SCOPED_TRACE(plotted.study);
-    const Outcome made = bench(split_at(plotted.study + " --json r.json", ' '));
-    ASSERT_EQ(made.status, 0) << made.err;
-    const std::string study = plotted.study.substr(0, plotted.study.find(' '));
-    const Outcome figure = plot({study, "r.json", "-o", study + ".png"});
-    ASSERT_EQ(figure.status, 0) << figure.err;
-    EXPECT_TRUE(read_file(at(study + ".png")).starts_with("\x89PNG"));
-    const Outcome table = plot({study, "r.json", "--markdown"});
-    ASSERT_EQ(table.status, 0) << table.err;
-    EXPECT_NE(table.out.find(plotted.row), std::string::npos) << table.out;
+  for (const auto& [study, options, row] :
+       {std::tuple("accuracy", " --quick --entries 16 --case easy --method gauss --method cpu-double",
+                   "| Gauss-Legendre rule |"),
+        {"throughput", " --quick --entries 64 --case grids", "| v-cavity | 4 × 4 × 4 |"}}) {
+    SCOPED_TRACE(study);
+    succeeded(bench(std::string(study) + options + " --json r.json"));
+    succeeded(plot({study, "r.json", "-o", "r.png"}));
+    EXPECT_TRUE(content("r.png").starts_with("\x89PNG"));
+    fs::remove(at("r.png"));
+    EXPECT_TRUE(contains(succeeded(plot({study, "r.json", "--markdown"})).out, row));
     EXPECT_EQ(plot({study, "r.json", "-o", "none/r.png"}).status, 4);
   }
-  EXPECT_EQ(plot({"accuracy", "r.json", "--markdown"}).status, 2);  // r.json has results of the study `throughput`
-  const Outcome missing = plot({"accuracy", "none.json", "-o", "r.png"});
+  EXPECT_EQ(plot("accuracy r.json --markdown").status, 2);  // r.json has results of the study `throughput`
+  const Outcome missing = plot("accuracy none.json -o r.png");
   EXPECT_EQ(missing.status, 2);
-  EXPECT_NE(missing.err.find("none.json"), std::string::npos) << missing.err;
+  EXPECT_TRUE(contains(missing.err, "none.json"));
   EXPECT_FALSE(fs::exists(at("r.png")));
 }
 

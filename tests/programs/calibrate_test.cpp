@@ -1,14 +1,14 @@
 // The two parts of dolp-calibrate: the fit of the quadrature rules' constants, and the test of the error bounds.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <string>
-#include <vector>
 
 #include "calibrate/hold_out.hpp"
 #include "calibrate/rule_fit.hpp"
-#include "program.hpp"
+#include "cli_support.hpp"
 
 namespace dolp {
 namespace {
@@ -56,49 +56,38 @@ TEST(HoldOut, PlantedUnderstatement_IsFound) {
 
 // ---- The program ---------------------------------------------------------------------------------------------------
 
-Outcome calibrate(std::vector<std::string> arguments) {
+Outcome calibrate(Words arguments) {
   arguments.insert(arguments.begin(), DOLP_CALIBRATE);
   const TemporaryFolder folder;
   return run({.arguments = arguments, .folder = folder.path()});
 }
 
-std::ptrdiff_t lines_of(const std::string& text) { return std::ranges::count(text, '\n'); }
+std::ptrdiff_t line_count(const std::string& text) { return std::ranges::count(text, '\n'); }
 
 TEST(Calibrate, CheckOfOrdinaryEntries_SaysALinePerModelAndExitsWith0) {
-  const Outcome outcome = calibrate({"check", "--entries", "20", "--tolerance", "1e-4", "--seed", "3"});
-  EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+  const Outcome outcome = succeeded(calibrate("check --entries 20 --tolerance 1e-4 --seed 3"));
   EXPECT_EQ(outcome.err, "");
-  EXPECT_EQ(lines_of(outcome.out), 10) << outcome.out;
+  EXPECT_EQ(line_count(outcome.out), 10) << outcome.out;
   for (const char* masking : {"none", "v-cavity", "integral", "smith", "multiple"}) {
-    for (const char* distribution : {"cauchy", "gaussian"}) {
-      std::string line = masking;
-      line.resize(9, ' ');
-      EXPECT_NE(outcome.out.find(line + distribution), std::string::npos) << outcome.out;
-    }
+    for (const char* distribution : {"cauchy", "gaussian"})
+      EXPECT_TRUE(contains(outcome.out, fmt::format("{:9}{}", masking, distribution)));
   }
 }
 
 TEST(Calibrate, CheckAgainstTheReference_ExitsWith0) {
-  const Outcome outcome = calibrate({"check", "v-cavity", "--reference", "--entries", "1", "--tolerance", "1e-2"});
-  EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
-  EXPECT_EQ(lines_of(outcome.out), 2) << outcome.out;
+  const Outcome outcome = succeeded(calibrate("check v-cavity --reference --entries 1 --tolerance 1e-2"));
+  EXPECT_EQ(line_count(outcome.out), 2) << outcome.out;
 }
 
 TEST(Calibrate, Fit_SaysItsStepsAndExitsWith0) {
-  const Outcome outcome = calibrate({"fit", "none", "--entries", "1", "--rounds", "1"});
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_GE(lines_of(outcome.out), 2);
-  EXPECT_NE(outcome.out.find(rule_text(kFitStart)), std::string::npos) << outcome.out;
+  const Outcome outcome = succeeded(calibrate("fit none --entries 1 --rounds 1"));
+  EXPECT_GE(line_count(outcome.out), 2);
+  EXPECT_TRUE(contains(outcome.out, rule_text(kFitStart)));
 }
 
 TEST(Calibrate, BadArguments_ExitWith2) {
-  for (const std::vector<std::string>& arguments : {std::vector<std::string>{},
-                                                    {"fit"},
-                                                    {"fit", "glass"},
-                                                    {"check", "--domain", "all"},
-                                                    {"check", "--entries", "x"}}) {
-    EXPECT_EQ(calibrate(arguments).status, 2);
-  }
+  for (const char* arguments : {"", "fit", "fit glass", "check --domain all", "check --entries x"})
+    EXPECT_EQ(calibrate(arguments).status, 2) << arguments;
 }
 
 }  // namespace

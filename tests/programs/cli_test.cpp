@@ -21,10 +21,8 @@ namespace fs = std::filesystem;
 constexpr std::size_t kSceneEntries = 16;
 
 TEST_F(CommandLine, TableNetcdf_OtherReader_HasAxesVariablesAndAttributes) {
-  const Outcome made = dolp({"table", "scene.toml", "-o", "t.nc", "--set", "surface.k=0.2"});
-  ASSERT_EQ(made.status, 0) << made.err;
-  const Outcome dump = run({.arguments = {"ncdump", "-h", at("t.nc").string()}, .folder = at("")});
-  ASSERT_EQ(dump.status, 0) << dump.err;
+  succeeded(dolp("table scene.toml -o t.nc --set surface.k=0.2"));
+  const Outcome dump = succeeded(run({.arguments = {"ncdump", "-h", at("t.nc").string()}, .folder = at("")}));
   std::vector<std::string> expected = {"theta = 4 ;",
                                        "sigma = 2 ;",
                                        "q = 2 ;",
@@ -55,22 +53,19 @@ TEST_F(CommandLine, TableNetcdf_OtherReader_HasAxesVariablesAndAttributes) {
     expected.push_back(name + ":_FillValue = NaN");
     if (*described.ancillary) expected.push_back(name + ":ancillary_variables = \"" + described.ancillary + '"');
   }
-  for (const std::string& text : expected)
-    EXPECT_NE(dump.out.find(text), std::string::npos) << text << "\n" << dump.out;
+  for (const std::string& text : expected) EXPECT_TRUE(contains(dump.out, text));
   const TableValues table = read_table(at("t.nc"));
   const Attribute verbatim{"scene", kScene};
   EXPECT_NE(std::ranges::find(table.attributes, verbatim), table.attributes.end());
 }
 
 TEST_F(CommandLine, PlotTable_OfFurtherAxes_DrawsTheNearestAndNamesThoseThatThereAre) {
-  ASSERT_EQ(dolp({"table", "scene.toml", "-o", "t.nc", "--set", "grid.n=[1.4,1.6]", "--set", "grid.k=[0.1]"}).status,
-            0);
+  succeeded(dolp("table scene.toml -o t.nc --set grid.n=[1.4,1.6] --set grid.k=[0.1]"));
   const auto plot = [&](const std::string& option, const std::string& value) {
     return run({.arguments = {"/usr/bin/python3", DOLP_HOST_DIR "/plot_table.py", "t.nc", "t.png", option, value},
                 .folder = at("")});
   };
-  const Outcome drawn = plot("--n", "1.55");
-  EXPECT_EQ(drawn.status, 0) << drawn.err;
+  const Outcome drawn = succeeded(plot("--n", "1.55"));
   EXPECT_EQ(drawn.err, "t.nc: has no n = 1.55; the nearest, 1.6, is drawn\n");
   EXPECT_EQ(plot("--n", "1.6").err, "");
   EXPECT_TRUE(content("t.png").starts_with("\x89PNG"));
@@ -89,26 +84,19 @@ int an_allowed_core() {
 }
 
 TEST_F(CommandLine, Table_OneCoreOrAll_SameNumbers) {
-  const std::vector<std::string> arguments = split_at(
+  const Command on_all = command(
       "table scene.toml -o - --quiet --tolerance 1e-2 --set grid.theta_deg={from=0,to=90,count=24} "
-      "--set grid.sigma={from=0.05,to=1.0,count=16} --set grid.q={from=1.6,to=8,count=24}",
-      ' ');
-  const Command on_all = command(arguments);
+      "--set grid.sigma={from=0.05,to=1.0,count=16} --set grid.q={from=1.6,to=8,count=24}");
   Command on_one = on_all;
   const std::vector<std::string> pinned = {"taskset", "--cpu-list", std::to_string(an_allowed_core())};
   on_one.arguments.insert(on_one.arguments.begin(), pinned.begin(), pinned.end());
-  const Outcome all = run(on_all);
-  const Outcome one = run(on_one);
-  ASSERT_EQ(all.status, 0) << all.err;
-  ASSERT_EQ(one.status, 0) << one.err;
-  const std::vector<std::string> lines = data_lines(all.out);
+  const std::vector<std::string> lines = data_lines(succeeded(run(on_all)).out);
   EXPECT_EQ(lines.size(), 24U * 16U * 24U + 1U);
-  EXPECT_EQ(data_lines(one.out), lines);
+  EXPECT_EQ(data_lines(succeeded(run(on_one)).out), lines);
 }
 
 TEST_F(CommandLine, Eval_StdinToStdout_ReportOnStderr) {
-  const Outcome outcome = dolp({"eval", "scene.toml", "--points", "-", "-o", "-"}, kPoints);
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Outcome outcome = succeeded(dolp("eval scene.toml --points - -o -", kPoints));
   const std::vector<std::string> lines = split_at(outcome.out, '\n');
   ASSERT_EQ(lines.size(), 4U);
   std::string header = "theta_deg,sigma,q";
@@ -116,18 +104,16 @@ TEST_F(CommandLine, Eval_StdinToStdout_ReportOnStderr) {
   EXPECT_EQ(lines[0], header);
   EXPECT_TRUE(lines[2].starts_with("60.0,0.4,3.5,0.")) << lines[2];
   EXPECT_TRUE(lines[3].starts_with("80.5,0.1,2,0.")) << lines[3];
-  EXPECT_NE(outcome.err.find("3 points"), std::string::npos) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "3 points"));
 }
 
 TEST_F(CommandLine, Eval_SceneFromStdin_SameAsFromFile) {
-  const Outcome outcome = dolp({"eval", "-", "--points", "points.csv", "-o", "-", "--quiet"}, kScene);
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(parse_csv(outcome.out).at("dolp"), eval({}).at("dolp"));
+  const Outcome outcome = dolp("eval - --points points.csv -o - --quiet", kScene);
+  EXPECT_EQ(parse_csv(succeeded(outcome).out).at("dolp"), eval({}).at("dolp"));
 }
 
 TEST_F(CommandLine, Eval_HeaderWithoutRows_HeaderWithoutRows) {
-  const Outcome outcome = dolp({"eval", "scene.toml", "--points", "-", "-o", "-", "--quiet"}, "q,theta_deg\n");
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Outcome outcome = succeeded(dolp("eval scene.toml --points - -o - --quiet", "q,theta_deg\n"));
   EXPECT_TRUE(outcome.out.starts_with("q,theta_deg,rho_i,")) << outcome.out;
   EXPECT_EQ(data_lines(outcome.out).size(), 1U);
 }
@@ -181,29 +167,25 @@ TEST_F(CommandLine, Json_EachEvaluator_HasTheContractsKeys) {
 }
 
 TEST_F(CommandLine, Report_SettingsOfTheCall_StandBelowTheTitle) {
-  const Outcome outcome = dolp({"table", "scene.toml", "-o", "t.nc", "--evaluator", "cpu", "--set",
-                                "spectrum.wavelength_um=9", "--set", "grid.theta_deg=[30]", "--tolerance", "1e-3"});
-  EXPECT_NE(outcome.out.find("\n  changed    spectrum.wavelength_um=9\n"), std::string::npos) << outcome.out;
-  EXPECT_EQ(report({"plan", "scene.toml", "--set", "surface.n=2", "--set", "surface.k=1"})["changed"],
-            "surface.n=2, surface.k=1");
-  EXPECT_EQ(report({"plan", "scene.toml", "--set", "grid.theta_deg=[30]"})["changed"], "");
+  const Outcome outcome = dolp(
+      "table scene.toml -o t.nc --evaluator cpu --set spectrum.wavelength_um=9 --set grid.theta_deg=[30] --tolerance "
+      "1e-3");
+  EXPECT_TRUE(contains(outcome.out, "\n  changed    spectrum.wavelength_um=9\n"));
+  EXPECT_EQ(report("plan scene.toml --set surface.n=2 --set surface.k=1")["changed"], "surface.n=2, surface.k=1");
+  EXPECT_EQ(report("plan scene.toml --set grid.theta_deg=[30]")["changed"], "");
 }
 
 // Two emission models differ in the light that meets a second facet. In the model 1 - rho, all this light counts as
 // emitted. In direct emission, none of it does. For a rough metal the DOLP of the two models differs much. The summary
 // must report this difference.
 TEST_F(CommandLine, Summary_MaskingWithADirectEmission_SaysWhatSingleScatteringLeavesOpen) {
-  const std::vector<std::string> metal = {"--set", "surface.masking=smith", "--set", "surface.n=10",
-                                          "--set", "surface.k=60"};
-  for (const std::vector<std::string>& start :
-       {std::vector<std::string>{"table", "scene.toml", "-o", "t.nc"},
-        std::vector<std::string>{"eval", "scene.toml", "--points", "points.csv", "-o", "e.csv"}}) {
-    const Outcome text = dolp(joined(start, metal));
-    EXPECT_NE(text.out.find("direct emission differs by up to "), std::string::npos) << text.out;
+  const Words metal = "--set surface.masking=smith --set surface.n=10 --set surface.k=60";
+  for (const char* start : {"table scene.toml -o t.nc", "eval scene.toml --points points.csv -o e.csv"}) {
+    EXPECT_TRUE(contains(dolp(joined(start, metal)).out, "direct emission differs by up to "));
     EXPECT_GT(report(joined(start, metal))["scattering_gap"], 0.01);
     // scene.toml has `integral` masking, for which there is no direct emission
     EXPECT_TRUE(report(start)["scattering_gap"].is_null());
-    EXPECT_EQ(dolp(start).out.find("  scattering "), std::string::npos);
+    EXPECT_FALSE(contains(dolp(start).out, "  scattering "));
   }
 }
 
@@ -213,17 +195,11 @@ TEST_F(CommandLine, Json_WallTime_CountsTheWriting) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1500));
     content("pipe");
   });
-  const Outcome outcome =
-      dolp({"eval", "scene.toml", "--points", "points.csv", "-o", "pipe", "--json", "--evaluator", "cpu"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_GT(json::parse(outcome.out)["wall_s"], 1.0);
+  EXPECT_GT(report("eval scene.toml --points points.csv -o pipe --evaluator cpu")["wall_s"], 1.0);
 }
 
 TEST_F(CommandLine, Json_StatusCounts_AreThoseOfTheEntries) {
-  const Outcome outcome =
-      dolp({"table", "scene.toml", "-o", "t.nc", "--json", "--set", "grid.theta_deg=[0, 89.9, 90]"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const json counts = json::parse(outcome.out)["status"];
+  const json counts = report("table scene.toml -o t.nc --set grid.theta_deg=[0,89.9,90]")["status"];
   const TableValues table = read_table(at("t.nc"));
   ASSERT_EQ(counts.size(), 6U);
   std::size_t all = 0;
@@ -237,48 +213,39 @@ TEST_F(CommandLine, Json_StatusCounts_AreThoseOfTheEntries) {
 }
 
 TEST_F(CommandLine, Summary_NoTerminal_OnStdoutWithoutProgress) {
-  const Outcome outcome = dolp({"table", "scene.toml", "-o", "t.nc"});
-  EXPECT_EQ(outcome.status, 0);
+  const Outcome outcome = succeeded(dolp("table scene.toml -o t.nc"));
   EXPECT_EQ(outcome.err, "");
-  for (const char* text : {"Sixteen entries\n", "4 x 2 x 2", "device", "time", "error", "status", "albedo", "t.nc\n"}) {
-    EXPECT_NE(outcome.out.find(text), std::string::npos) << text << "\n" << outcome.out;
-  }
+  for (const char* text : {"Sixteen entries\n", "4 x 2 x 2", "device", "time", "error", "status", "albedo", "t.nc\n"})
+    EXPECT_TRUE(contains(outcome.out, text));
 }
 
 TEST_F(CommandLine, Progress_OnATerminal_ShownAndCleared) {
-  const std::vector<std::string> arguments = {"table", "scene.toml", "-o", "t.nc", "--evaluator", "cpu"};
-  TerminalProcess process(command(arguments));
-  const Outcome shown = process.finish();
-  EXPECT_EQ(shown.status, 0);
-  EXPECT_NE(shown.err.find("/16 entries, "), std::string::npos) << shown.err;
-  EXPECT_NE(shown.err.find(" s left"), std::string::npos) << shown.err;
+  const Outcome shown = succeeded(TerminalProcess(command("table scene.toml -o t.nc --evaluator cpu")).finish());
+  EXPECT_TRUE(contains(shown.err, "/16 entries, "));
+  EXPECT_TRUE(contains(shown.err, " s left"));
   EXPECT_TRUE(shown.err.ends_with("\r\033[K")) << shown.err;
 }
 
 TEST_F(CommandLine, Progress_QuietOnATerminal_Nothing) {
-  TerminalProcess process(command({"table", "scene.toml", "-o", "t.nc", "--evaluator", "cpu", "--quiet"}));
-  const Outcome outcome = process.finish();
-  EXPECT_EQ(outcome.status, 0);
-  EXPECT_EQ(outcome.err, "");
+  TerminalProcess process(command("table scene.toml -o t.nc --evaluator cpu --quiet"));
+  EXPECT_EQ(succeeded(process.finish()).err, "");
 }
 
 TEST_F(CommandLine, Folders_RelativePathsFromElsewhere_AreTheCallers) {
   fs::create_directory(at("elsewhere"));
-  Command wanted = command({"table", "../scene.toml", "-o", "sub.nc"});
+  Command wanted = command("table ../scene.toml -o sub.nc");
   wanted.folder = at("elsewhere");
-  const Outcome outcome = run(wanted);
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  succeeded(run(wanted));
   EXPECT_EQ(read_table(at("elsewhere/sub.nc")).size(), kSceneEntries);
   EXPECT_EQ(names(), (std::vector<std::string>{"elsewhere", "points.csv", "scene.toml"}));
 }
 
 TEST_F(CommandLine, Eval_OwnOutputAsPoints_GivesTheSameAgain) {
   put("p.csv", "theta_deg,sigma\n30,0.1\n60,0.2\n");
-  ASSERT_EQ(dolp({"eval", "scene.toml", "--points", "p.csv", "-o", "a.csv"}).status, 0);
-  const Outcome again = dolp({"eval", "scene.toml", "--points", "a.csv", "-o", "b.csv"});
-  ASSERT_EQ(again.status, 0) << again.err;
+  succeeded(dolp("eval scene.toml --points p.csv -o a.csv"));
+  const Outcome again = succeeded(dolp("eval scene.toml --points a.csv -o b.csv"));
   EXPECT_EQ(read_file(at("a.csv")), read_file(at("b.csv")));
-  EXPECT_NE(again.out.find("left out   rho_i"), std::string::npos) << again.out;
+  EXPECT_TRUE(contains(again.out, "left out   rho_i"));
 }
 
 TEST_F(CommandLine, Eval_MoreThanAPart_RowsAreThoseOfEachPoint) {
@@ -286,26 +253,23 @@ TEST_F(CommandLine, Eval_MoreThanAPart_RowsAreThoseOfEachPoint) {
   std::string points = "theta_deg,sigma\n";
   for (int i = 0; i < kRows; ++i) points += fmt::format("{},0\n", i * 6e-4);
   put("p.csv", points);
-  ASSERT_EQ(dolp({"eval", "scene.toml", "--points", "p.csv", "-o", "all.csv"}).status, 0);
+  succeeded(dolp("eval scene.toml --points p.csv -o all.csv"));
   const std::vector<std::string> all = data_lines(read_file(at("all.csv")));
   ASSERT_EQ(all.size(), kRows + 1U);
   for (const int row : {0, 65'535, 65'536, 131'071, 131'072, kRows - 1}) {
     put("one.csv", fmt::format("theta_deg,sigma\n{},0\n", row * 6e-4));
-    ASSERT_EQ(dolp({"eval", "scene.toml", "--points", "one.csv", "-o", "r.csv"}).status, 0);
+    succeeded(dolp("eval scene.toml --points one.csv -o r.csv"));
     EXPECT_EQ(all[static_cast<std::size_t>(row) + 1], data_lines(read_file(at("r.csv")))[1]);
   }
 }
 
 TEST_F(CommandLine, Keys_OneOrATable_SayWhatIsAllowed) {
-  const Outcome one = dolp({"keys", "surface.sigma"});
-  EXPECT_EQ(one.status, 0);
-  EXPECT_NE(one.out.find("a number in [0, 10]; required"), std::string::npos) << one.out;
-  const auto table = nlohmann::json::parse(dolp({"keys", "surface", "--json"}).out);
-  EXPECT_GT(table["keys"].size(), 5U);
+  EXPECT_TRUE(contains(succeeded(dolp("keys surface.sigma")).out, "a number in [0, 10]; required"));
+  EXPECT_GT(report("keys surface")["keys"].size(), 5U);
 }
 
 TEST_F(CommandLine, Help_OfEveryCommand_HasTwoExamples) {
-  const std::string help = dolp({"--help"}).out;
+  const std::string help = dolp("--help").out;
   std::istringstream lines(help.substr(help.find("Subcommands:")));
   std::string line;
   std::getline(lines, line);
@@ -318,14 +282,11 @@ TEST_F(CommandLine, Help_OfEveryCommand_HasTwoExamples) {
 }
 
 TEST_F(CommandLine, Materials_List_HasNameRangeAndSource) {
-  const Outcome text = dolp({"materials"});
-  const Outcome report = dolp({"materials", "--json"});
-  ASSERT_EQ(report.status, 0) << report.err;
-  EXPECT_EQ(text.status, 0) << text.err;
-  const json materials = json::parse(report.out)["materials"];
+  const Outcome text = succeeded(dolp("materials"));
+  const json materials = report("materials")["materials"];
   EXPECT_EQ(materials.size(), 41U);
   EXPECT_EQ(std::ranges::count(text.out, '\n'), 41);
-  const std::string one = dolp({"materials", "iron"}).out;
+  const std::string one = dolp("materials iron").out;
   EXPECT_EQ(one, text.out.substr(0, one.size()));
   EXPECT_EQ(std::ranges::count(one, '\n'), 1);
   EXPECT_EQ(materials.at(0), json({{"name", "iron"},
@@ -345,35 +306,31 @@ TEST_F(CommandLine, Materials_OneAtAWavelength_HasNAndKOfItsTable) {
   // Values of host/data/materials.csv. The first words of a material's name suffice, in upper or lower case.
   constexpr double kWaterN = 1.218;
   constexpr double kWaterK = 0.0508;
-  const Outcome text = dolp({"materials", "WATER", "--at", "10"});
-  EXPECT_EQ(text.status, 0) << text.err;
-  EXPECT_EQ(text.out.find("water 25C at 10 um: n = "), 0U) << text.out;
-  const json one = json::parse(dolp({"materials", "water 25C", "--at", "10", "--json"}).out);
+  EXPECT_TRUE(succeeded(dolp("materials WATER --at 10")).out.starts_with("water 25C at 10 um: n = "));
+  const json one = report({"materials", "water 25C", "--at", "10"});
   EXPECT_EQ(one["n"], kWaterN);
   EXPECT_EQ(one["k"], kWaterK);
   EXPECT_EQ(one["wavelength_um"], 10.0);
-  EXPECT_FALSE(std::regex_search(dolp({"materials", "iron", "--at", "8:14"}).out, std::regex("\\.[0-9]{10}")));
-  const json range = json::parse(dolp({"materials", "water 25C", "--at", "8:10:3", "--json"}).out);
+  EXPECT_FALSE(std::regex_search(dolp("materials iron --at 8:14").out, std::regex("\\.[0-9]{10}")));
+  const json range = report({"materials", "water 25C", "--at", "8:10:3"});
   EXPECT_EQ(range["wavelength_um"], json({8.0, 9.0, 10.0}));
   EXPECT_EQ(range["n"][2], kWaterN);
   EXPECT_EQ(range["k"][2], kWaterK);
 }
 
 TEST_F(CommandLine, Device_ByPositionAndName_ReportedAsTheDevice) {
-  const std::vector<std::string> start = {"table", "scene.toml", "-o", "t.nc", "--device"};
-  const std::string name = report(joined(start, {"0"}))["device"];
+  const Words start = "table scene.toml -o t.nc --device";
+  const std::string name = report(joined(start, "0"))["device"];
   EXPECT_EQ(report(joined(start, {name.substr(0, 6)}))["device"], name);
 }
 
 TEST_F(CommandLine, HelpAndVersion_OnStdout_Exit0) {
   for (const char* line : {"--help", "table --help", "eval --help", "materials --help", "devices --help", ""}) {
-    const Outcome outcome = dolp(split_at(line, ' '));
-    EXPECT_EQ(outcome.status, 0);
-    EXPECT_NE(outcome.out.find("Usage: dolp"), std::string::npos) << outcome.out;
+    const Outcome outcome = succeeded(dolp(line));
+    EXPECT_TRUE(contains(outcome.out, "Usage: dolp"));
     EXPECT_EQ(outcome.err, "");
   }
-  const Outcome version = dolp({"--version"});
-  EXPECT_EQ(version.status, 0);
+  const Outcome version = succeeded(dolp("--version"));
   EXPECT_TRUE(std::regex_match(version.out, std::regex("dolp " DOLP_VERSION " \\([-0-9a-z]+\\)\n"))) << version.out;
 }
 

@@ -22,13 +22,11 @@ class FitProgram : public CommandLine {
     put("points.csv", points);
     measure("data.csv", "theta_deg", {"dolp"}, {});
   }
-  /// Writes noise-free measured data: the model's `columns` for sigma = 0.2 and the settings `keys`. The file states an
+  /// Writes noise-free measured data: the model's `columns` for sigma = 0.2 and the settings. The file states an
   /// uncertainty of 0.001.
   void measure(const std::string& name, const std::string& zenith, const std::vector<std::string>& columns,
-               const std::vector<std::string>& keys) const {
-    std::vector<std::string> options = {"--set", "surface.sigma=0.2", "--tolerance", "1e-7", "--evaluator", "cpu"};
-    for (const std::string& one : keys) options.insert(options.end(), {"--set", one});
-    const Columns exact = eval(options);
+               const Words& settings) const {
+    const Columns exact = eval(joined("--set surface.sigma=0.2 --tolerance 1e-7 --evaluator cpu", settings));
     std::ostringstream data;
     data.precision(12);
     data << zenith;
@@ -42,11 +40,8 @@ class FitProgram : public CommandLine {
     put(name, data.str());
   }
   /// Fits sigma and n with additional options. Expects the sigma and n from which the data were computed.
-  void expect_truth(std::vector<std::string> options) const {
-    options.insert(options.end(), {"--vary", "surface.sigma=0.02:1", "--vary", "surface.n=1.1:3", "--json"});
-    const Outcome outcome = fit(options);
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
-    const json report = json::parse(outcome.out);
+  void expect_truth(const Words& options) const {
+    const json report = fit_json(joined("--vary surface.sigma=0.02:1 --vary surface.n=1.1:3", options));
     const double truth[] = {0.2, 1.5};
     for (std::size_t j = 0; j < 2; ++j) {
       const json& one = report["parameters"][j];
@@ -54,18 +49,19 @@ class FitProgram : public CommandLine {
     }
     EXPECT_LT(report["chi_square"].get<double>(), 0.01);
   }
-  Outcome fit(const std::vector<std::string>& options) const {
-    return dolp(joined({"fit", "scene.toml", "--evaluator", "cpu"}, options));
+  Outcome fit(const Words& options) const { return dolp(joined("fit scene.toml --evaluator cpu", options)); }
+  json fit_json(const Words& options) const { return printed_json(fit(joined(options, "--json"))); }
+  /// Results of the scene that a fit wrote, at the ends of the measured zeniths.
+  Columns fitted_ends(const std::string& setting) const {
+    put("points.csv", "theta_deg\n20\n75\n");
+    const Words start = "eval fitted.toml --points points.csv -o - --quiet --evaluator cpu --set";
+    return parse_csv(succeeded(dolp(joined(start, {setting}))).out);
   }
-  void expect_message(const std::vector<std::string>& options, const std::string& message) const {
-    expect_refused(fit(options), message);
-  }
+  void expect_message(const Words& options, const std::string& message) const { expect_refused(fit(options), message); }
 };
 
 TEST_F(FitProgram, Json_HasAllNames_AndTheFittedSceneRuns) {
-  const Outcome outcome = fit({"--data", "data.csv", "--vary", "surface.sigma=0.02:1", "--json", "-o", "fitted.toml"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const json report = json::parse(outcome.out);
+  const json report = fit_json("--data data.csv --vary surface.sigma=0.02:1 -o fitted.toml");
   for (const char* name : {"parameters", "correlation", "chi_square", "degrees_of_freedom", "reduced_chi_square",
                            "p_value", "evaluations", "starts", "minima", "numerical_error", "residuals"}) {
     EXPECT_TRUE(report.contains(name)) << name;
@@ -83,28 +79,24 @@ TEST_F(FitProgram, Json_HasAllNames_AndTheFittedSceneRuns) {
   double sum = 0.0;
   for (const json& residual : report["residuals"]) sum += std::pow(residual.get<double>(), 2);
   EXPECT_NEAR(sum, report["chi_square"].get<double>(), 1e-9);
-  EXPECT_EQ(dolp({"table", "fitted.toml", "-o", "t.csv", "--quiet", "--evaluator", "cpu"}).status, 0);
+  succeeded(dolp("table fitted.toml -o t.csv --quiet --evaluator cpu"));
 }
 
 TEST_F(FitProgram, Compare_RanksTheTrueModelFirst) {
-  const Outcome outcome = fit({"--data", "data.csv", "--vary", "surface.sigma=0.02:1", "--compare",
-                               "surface.masking=v-cavity,integral,smith", "--json"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const json models = json::parse(outcome.out)["models"];
+  const Words options = "--data data.csv --vary surface.sigma=0.02:1 --compare surface.masking=v-cavity,integral,smith";
+  const json models = fit_json(options)["models"];
   ASSERT_EQ(models.size(), 3U);
   EXPECT_EQ(models[0]["overrides"][0], "surface.masking=integral");
   EXPECT_LT(models[0]["aic"].get<double>(), models[1]["aic"].get<double>());
 }
 
 TEST_F(FitProgram, CompareOfModelsAlike_SaysSoAndGivesTheRangesOverAll) {
-  const std::vector<std::string> options = {
-      "--data", "uncertain.csv",   "--vary",    "surface.sigma=0.02:1",
-      "--vary", "surface.n=1.1:3", "--compare", "surface.masking=integral,none,v-cavity"};
+  const Words options =
+      "--data uncertain.csv --vary surface.sigma=0.02:1 --vary surface.n=1.1:3 --compare "
+      "surface.masking=integral,none,v-cavity";
   const auto fitted_with = [&](const std::string& uncertainty) {
     put("uncertain.csv", std::regex_replace(content("data.csv"), std::regex(",0\\.001\n"), "," + uncertainty + "\n"));
-    const Outcome outcome = fit(joined(options, {"--json"}));
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return json::parse(outcome.out);
+    return fit_json(options);
   };
   const json apart = fitted_with("0.00002");
   EXPECT_TRUE(apart["alike"].empty()) << apart["alike"];
@@ -119,84 +111,75 @@ TEST_F(FitProgram, CompareOfModelsAlike_SaysSoAndGivesTheRangesOverAll) {
       for (const json& model : alike["models"]) {
         EXPECT_LT(model["delta_aic"].get<double>(), 1.3);
         const json& one = model["parameters"][j][interval];
-        hull[0] = hull[0].is_null() || one[0].is_null() ? json()
-                                                        : json(std::min(hull[0].get<double>(), one[0].get<double>()));
-        hull[1] = hull[1].is_null() || one[1].is_null() ? json()
-                                                        : json(std::max(hull[1].get<double>(), one[1].get<double>()));
+        const auto is_open = [&](int end) { return hull[end].is_null() || one[end].is_null(); };
+        hull[0] = is_open(0) ? json() : std::min(hull[0], one[0]);
+        hull[1] = is_open(1) ? json() : std::max(hull[1], one[1]);
       }
       EXPECT_EQ(alike["ranges"][j][interval], hull) << interval;
     }
   }
-  EXPECT_NE(fit(options).out.find("alike      the data cannot tell the first 3 models apart"), std::string::npos);
+  EXPECT_TRUE(contains(fit(options).out, "alike      the data cannot tell the first 3 models apart"));
 }
 
 TEST_F(FitProgram, Quality_IsOneOfThreeWords) {
-  const std::vector<std::string> options = {"--data", "data.csv", "--vary", "surface.sigma=0.02:1"};
+  const Words options = "--data data.csv --vary surface.sigma=0.02:1";
   for (const auto& [n, word] : {std::pair("1.5", "good"), {"1.8", "doubtful"}, {"2", "bad"}}) {
-    const std::vector<std::string> set = {"--set", std::string("surface.n=") + n};
-    const json report = json::parse(fit(joined(joined(options, set), {"--json"})).out);
+    const Words with_n = joined(options, {"--set", std::string("surface.n=") + n});
+    const json report = fit_json(with_n);
     EXPECT_EQ(report["fit_quality"], word) << report["p_value"];
     EXPECT_EQ(report["parameters"][0].contains("scaled_68"), std::string(word) != "good");
-    const std::string text = fit(joined(options, set)).out;
-    EXPECT_NE(text.find(std::string(": ") + word), std::string::npos) << text;
-    EXPECT_EQ(text.find("scaled     surface.sigma: uncertainties ") != std::string::npos, std::string(word) != "good");
+    const std::string text = fit(with_n).out;
+    EXPECT_TRUE(contains(text, std::string(": ") + word));
+    EXPECT_EQ(bool{contains(text, "scaled     surface.sigma: uncertainties ")}, std::string(word) != "good");
   }
 }
 
 TEST_F(FitProgram, ModelOfSingleScatteringThatFails_IsSaidUnlessItsBracketIsUsed) {
-  const std::vector<std::string> keys = {"surface.masking=smith", "surface.q=3", "surface.k=8"};
-  measure("metal.csv", "theta_deg", {"dolp"}, keys);
-  std::vector<std::string> options = {"--data", "metal.csv", "--vary", "surface.sigma=0.1:0.4"};
-  for (const std::string& one : keys) options.insert(options.end(), {"--set", one});
+  const Words settings = "--set surface.masking=smith --set surface.q=3 --set surface.k=8";
+  measure("metal.csv", "theta_deg", {"dolp"}, settings);
+  const Words options = joined(settings, "--data metal.csv --vary surface.sigma=0.1:0.4");
   const Outcome ignored = fit(options);
-  EXPECT_NE(ignored.out.find("status     32 at some point: light that single scattering loses"), std::string::npos);
-  EXPECT_NE(ignored.out.find("uncertainties) from the fit: the fit is at most doubtful"), std::string::npos)
-      << ignored.out;
-  EXPECT_NE(ignored.err.find("which the intervals ignore; --model-error bracket includes it"), std::string::npos);
-  EXPECT_EQ(json::parse(fit(joined(options, {"--json"})).out)["fit_quality"], "doubtful");
-  const Outcome included = fit(joined(options, {"--model-error", "bracket"}));
+  EXPECT_TRUE(contains(ignored.out, "status     32 at some point: light that single scattering loses"));
+  EXPECT_TRUE(contains(ignored.out, "uncertainties) from the fit: the fit is at most doubtful"));
+  EXPECT_TRUE(contains(ignored.err, "which the intervals ignore; --model-error bracket includes it"));
+  EXPECT_EQ(fit_json(options)["fit_quality"], "doubtful");
+  const Outcome included = fit(joined(options, "--model-error bracket"));
   EXPECT_EQ(included.err, "");
-  const std::string bracket = included.out;
-  EXPECT_EQ(bracket.find("status     32"), std::string::npos) << bracket;
-  EXPECT_NE(bracket.find("surface.masking \"v-cavity\" with surface.scattering \"multiple\" follows all bounces"),
-            std::string::npos)
-      << bracket;
+  EXPECT_FALSE(contains(included.out, "status     32"));
+  EXPECT_TRUE(contains(included.out, R"(surface.masking "v-cavity" with surface.scattering "multiple" follows all)"));
 }
 
 TEST_F(FitProgram, ZenithOfTheSource_IsFittedInBistaticScenes) {
-  const std::vector<std::string> keys = {"geometry.mode=bistatic", "geometry.view_zenith_deg=40",
-                                         "source.relative_irradiance=20"};
-  measure("bistatic.csv", "theta_i_deg", {"dolp"}, keys);
-  expect_truth({"--data", "bistatic.csv", "--set", keys[0], "--set", keys[1], "--set", keys[2]});
-  expect_message({"--data", "bistatic.csv", "--vary", "surface.sigma=0.1:1"},
+  const Words settings =
+      "--set geometry.mode=bistatic --set geometry.view_zenith_deg=40 --set source.relative_irradiance=20";
+  measure("bistatic.csv", "theta_i_deg", {"dolp"}, settings);
+  expect_truth(joined(settings, "--data bistatic.csv"));
+  expect_message("--data bistatic.csv --vary surface.sigma=0.1:1",
                  "\"theta_i_deg\" needs geometry.mode = \"bistatic\"");
 }
 
 TEST_F(FitProgram, DataSets_HaveKeysOfTheirOwn) {
-  measure("cold.csv", "theta_deg", {"dolp"}, {"emission.temperature_K=260", "spectrum.wavelength_um=4"});
-  expect_truth({"--data", "data.csv", "--data", "cold.csv:emission.temperature_K=260,spectrum.wavelength_um=4"});
+  measure("cold.csv", "theta_deg", {"dolp"}, "--set emission.temperature_K=260 --set spectrum.wavelength_um=4");
+  expect_truth("--data data.csv --data cold.csv:emission.temperature_K=260,spectrum.wavelength_um=4");
 }
 
 TEST_F(FitProgram, Emissivities_AreFittedTogether) {
   measure("emissivity.csv", "theta_deg", {"emissivity_s", "emissivity_p"}, {});
-  expect_truth({"--data", "emissivity.csv"});
+  expect_truth("--data emissivity.csv");
 }
 
 TEST_F(FitProgram, BadData_AreOneLineThatNamesThePlace) {
   put("bad.csv", "theta_deg,dolp\n95,0.1\n");
-  expect_message({"--data", "bad.csv", "--vary", "surface.sigma=0.1:1"}, "bad.csv:2: theta_deg = 95: out of range");
+  expect_message("--data bad.csv --vary surface.sigma=0.1:1", "bad.csv:2: theta_deg = 95: out of range");
   put("bad.csv", std::string("\0\1", 2));
-  expect_message({"--data", "bad.csv", "--vary", "surface.sigma=0.1:1"}, "bad.csv: is not a text");
+  expect_message("--data bad.csv --vary surface.sigma=0.1:1", "bad.csv: is not a text");
   put("bad.csv", "theta_deg,emissivity_s\n20,0.9\n30,0.9\n");
-  expect_message({"--data", "bad.csv", "--vary", "surface.sigma=0.1:1", "--set", "emission=none"},
+  expect_message("--data bad.csv --vary surface.sigma=0.1:1 --set emission=none",
                  "emissivities need the table [emission]");
 }
 
 TEST_F(FitProgram, Plot_IsAPng) {
-  const Outcome outcome = fit({"--data", "data.csv", "--vary", "surface.sigma=0.02:1", "--vary", "surface.n=1.1:3",
-                               "--plot", "fit.png", "--json"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const nlohmann::json report = nlohmann::json::parse(outcome.out);
+  const json report = fit_json("--data data.csv --vary surface.sigma=0.02:1 --vary surface.n=1.1:3 --plot fit.png");
   const json& contours = report["contours"];
   EXPECT_EQ(contours["levels"].size(), 2U);
   EXPECT_GT(contours["growth"].size(), 10U);
@@ -213,60 +196,49 @@ TEST_F(FitProgram, Pictures_OnAFullDisk_StayAsTheyWere) {
       "mkdir -p target && mount -t tmpfs -o size=64k none target || exit 77; echo kept > target/p.png; "
       "cat /dev/zero > target/filled 2> none; \"$@\"; status=$?; test \"$(cat target/p.png)\" = kept && "
       "test \"$(ls -A target)\" = \"$(printf 'filled\\np.png')\" && exit $status; exit 99";
-  ASSERT_EQ(dolp({"table", "scene.toml", "-o", "t.nc", "--evaluator", "cpu"}).status, 0);
-  for (const std::vector<std::string>& command :
-       {std::vector<std::string>{DOLP_PROGRAM, "fit", "scene.toml", "--evaluator", "cpu", "--data", "data.csv",
-                                 "--vary", "surface.sigma=0.02:1", "--plot", "target/p.png"},
-        {"/usr/bin/python3", DOLP_HOST_DIR "/plot_table.py", "t.nc", "target/p.png"}}) {
-    const Outcome outcome =
-        run({.arguments =
-                 joined({"unshare", "--user", "--map-root-user", "--mount", "sh", "-c", in_full_disk, "sh"}, command),
-             .folder = at("")});
+  succeeded(dolp("table scene.toml -o t.nc --evaluator cpu"));
+  const Words fit =
+      DOLP_PROGRAM " fit scene.toml --evaluator cpu --data data.csv --vary surface.sigma=0.02:1 --plot target/p.png";
+  const Words plot = "/usr/bin/python3 " DOLP_HOST_DIR "/plot_table.py t.nc target/p.png";
+  for (const Words& command : {fit, plot}) {
+    const Words start = {"unshare", "--user", "--map-root-user", "--mount", "sh", "-c", in_full_disk, "sh"};
+    const Outcome outcome = run({.arguments = joined(start, command), .folder = at("")});
     if (outcome.status == 77) GTEST_SKIP() << "a user may not mount here";
     EXPECT_EQ(outcome.status, 4) << outcome.err;
-    EXPECT_NE(outcome.err.find("No space left on device"), std::string::npos) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "No space left on device"));
   }
 }
 
 TEST_F(FitProgram, Plot_WithoutContours_SaysWhy) {
   put("same.csv", "theta_deg,dolp,uncertainty\n0,0,0.01\n0,0,0.01\n0,0,0.01\n");
   put("flat.csv", "theta_deg,dolp,uncertainty\n20,0.005,0.9\n40,0.01,0.9\n60,0.03,0.9\n70,0.05,0.9\n");
-  const std::vector<std::string> sigma = {"--vary", "surface.sigma=0.02:1"};
-  const std::vector<std::string> drawn = {"--plot", "fit.svg", "--json"};
-  const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
-      {joined(sigma, {"--data", "data.csv", "--vary", "surface.n=1.1:1.4"}), "surface.n: it is at its bound"},
-      {joined(sigma, {"--data", "same.csv", "--vary", "surface.n=1.1:3"}), "surface.n: the data do not determine it"},
-      {{"--data", "flat.csv", "--vary", "surface.n=1:20", "--vary", "surface.k=0:60"}, "grows by less than 2.30"},
-      {joined(sigma, {"--data", "data.csv"}), ""}};
+  const Words sigma = "--vary surface.sigma=0.02:1";
+  const std::vector<std::pair<Words, std::string>> cases = {
+      {joined(sigma, "--data data.csv --vary surface.n=1.1:1.4"), "surface.n: it is at its bound"},
+      {joined(sigma, "--data same.csv --vary surface.n=1.1:3"), "surface.n: the data do not determine it"},
+      {"--data flat.csv --vary surface.n=1:20 --vary surface.k=0:60", "grows by less than 2.30"},
+      {joined(sigma, "--data data.csv"), ""}};
   for (const auto& [options, reason] : cases) {
-    const Outcome outcome = fit(joined(options, drawn));
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
-    const json report = json::parse(outcome.out);
+    const json report = fit_json(joined(options, "--plot fit.svg"));
     EXPECT_FALSE(report.contains("contours"));
     EXPECT_EQ(report.contains("no_contours"), !reason.empty());
     const auto& named = report["degeneracies"];
     EXPECT_EQ(std::set<std::string>(named.begin(), named.end()).size(), named.size()) << named;
-    EXPECT_NE(report.value("no_contours", "").find(reason), std::string::npos) << report["no_contours"];
-    EXPECT_TRUE(content("fit.svg").find("<svg") != std::string::npos);
+    EXPECT_TRUE(contains(report.value("no_contours", ""), reason)) << report["no_contours"];
+    EXPECT_TRUE(contains(content("fit.svg"), "<svg"));
   }
   const Outcome text = fit(cases.front().first);
-  EXPECT_NE(text.out.find("no error   surface.n: it is at its bound"), std::string::npos) << text.out;
-  EXPECT_NE(text.out.find("errors     hold with surface.n kept at the bound"), std::string::npos) << text.out;
+  EXPECT_TRUE(contains(text.out, "no error   surface.n: it is at its bound"));
+  EXPECT_TRUE(contains(text.out, "errors     hold with surface.n kept at the bound"));
 }
 
 TEST_F(FitProgram, Plot_OfSignedData_HasTheBracketOfQOverI) {
-  const std::vector<std::string> keys = {"surface.masking=smith", "surface.q=3"};
-  measure("signed.csv", "theta_deg", {"q_over_i"}, keys);
-  const Outcome outcome = fit({"--data", "signed.csv", "--set", keys[0], "--set", keys[1], "--vary",
-                               "surface.sigma=0.02:1", "--plot", "fit.png", "--json", "-o", "fitted.toml"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const json bracket = json::parse(outcome.out)["brackets"][0];
-  put("points.csv", "theta_deg\n20\n75\n");
+  const Words settings = "--set surface.masking=smith --set surface.q=3";
+  measure("signed.csv", "theta_deg", {"q_over_i"}, settings);
+  const Words options = "--data signed.csv --vary surface.sigma=0.02:1 --plot fit.png -o fitted.toml";
+  const json bracket = fit_json(joined(settings, options))["brackets"][0];
   for (const std::string model : {"moments", "direct"}) {
-    const Outcome exact = dolp({"eval", "fitted.toml", "--points", "points.csv", "-o", "-", "--quiet", "--evaluator",
-                                "cpu", "--set", "emission.model=" + model});
-    ASSERT_EQ(exact.status, 0) << exact.err;
-    const double end = parse_csv(exact.out).at("q_over_i").back();
+    const double end = fitted_ends("emission.model=" + model).at("q_over_i").back();
     const double distance = std::min(std::abs(bracket["low"].back().get<double>() - end),
                                      std::abs(bracket["high"].back().get<double>() - end));
     EXPECT_LT(distance, 1e-3) << bracket["low"].back() << ' ' << bracket["high"].back() << ' ' << end;
@@ -274,9 +246,8 @@ TEST_F(FitProgram, Plot_OfSignedData_HasTheBracketOfQOverI) {
 }
 
 TEST_F(FitProgram, Plot_OfDataWithWavelengths_HasACurveForEachAndNoBracket) {
-  const std::vector<std::string> keys = {"surface.masking=v-cavity", "surface.material=water"};
-  const std::vector<std::string> options = {"--set", keys[0], "--set", keys[1], "--vary", "surface.sigma=0.02:1"};
-  measure("alone.csv", "theta_deg", {"dolp"}, keys);
+  const Words settings = "--set surface.masking=v-cavity --set surface.material=water";
+  measure("alone.csv", "theta_deg", {"dolp"}, settings);
   std::string wavelengths = "wavelength_um,theta_deg,dolp\n";
   for (const std::string wavelength : {"4", "10"}) {
     for (const std::string zenith : {"20", "50", "75"})
@@ -284,9 +255,8 @@ TEST_F(FitProgram, Plot_OfDataWithWavelengths_HasACurveForEachAndNoBracket) {
   }
   put("wavelengths.csv", wavelengths);
   const auto plotted = [&](const std::string& data) {
-    const Outcome outcome = fit(joined(options, {"--data", data, "--plot", "fit.png", "--json", "-o", "fitted.toml"}));
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return json::parse(outcome.out);
+    const Words options = "--vary surface.sigma=0.02:1 --plot fit.png -o fitted.toml --data " + data;
+    return fit_json(joined(settings, options));
   };
   EXPECT_FALSE(plotted("alone.csv")["brackets"][0].is_null());
   const json report = plotted("wavelengths.csv");
@@ -295,11 +265,7 @@ TEST_F(FitProgram, Plot_OfDataWithWavelengths_HasACurveForEachAndNoBracket) {
   ASSERT_EQ(report["curves"].size(), 2U);
   for (const json& curve : report["curves"]) {
     const std::string wavelength = "spectrum.wavelength_um=" + curve["wavelength_um"].dump();
-    put("points.csv", "theta_deg\n20\n75\n");
-    const Outcome exact = dolp({"eval", "fitted.toml", "--points", "points.csv", "-o", "-", "--quiet", "--evaluator",
-                                "cpu", "--set", wavelength});
-    ASSERT_EQ(exact.status, 0) << exact.err;
-    const std::vector<double> ends = parse_csv(exact.out).at("dolp");
+    const std::vector<double> ends = fitted_ends(wavelength).at("dolp");
     EXPECT_NEAR(curve["model"].front().get<double>(), ends.front(), 1e-3);
     EXPECT_NEAR(curve["model"].back().get<double>(), ends.back(), 1e-3);
   }
@@ -312,9 +278,8 @@ TEST_F(FitProgram, Spectrum_SharesItsPasses_AndIsDrawnOverWavelength) {
     for (const char* zenith : {"40", "60", "75"}) points += fmt::format("{},{}\n", zenith, 8.0 + 0.4 * i);
   }
   put("points.csv", points);
-  const std::vector<std::string> water = {"--set", "surface.material=water", "--set", "surface.sigma=0.2"};
-  const Columns exact =
-      eval(joined(water, {"--tolerance", "1e-6", "--evaluator", "cpu", "--set", "accuracy.interpolation=off"}));
+  const Words water = "--set surface.material=water --set surface.sigma=0.2";
+  const Columns exact = eval(joined(water, "--tolerance 1e-6 --evaluator cpu --set accuracy.interpolation=off"));
   std::string data = "theta_deg,wavelength_um,q_over_i,uncertainty\n";
   for (std::size_t i = 0; i < exact.at("dolp").size(); ++i) {
     data += fmt::format("{},{},{:.12g},0.001\n", exact.at("theta_deg")[i], exact.at("wavelength_um")[i],
@@ -322,9 +287,8 @@ TEST_F(FitProgram, Spectrum_SharesItsPasses_AndIsDrawnOverWavelength) {
   }
   put("data.csv", data);
   const Outcome outcome =
-      fit({"--set", "surface.material=water", "--data", "data.csv", "--vary", "surface.sigma=0.02:1", "--vary",
-           "emission.temperature_K=280:320", "--plot", "fit.png", "--json"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
+      succeeded(fit("--set surface.material=water --data data.csv --vary surface.sigma=0.02:1 --vary "
+                    "emission.temperature_K=280:320 --plot fit.png --json"));
   EXPECT_EQ(outcome.err, "");
   const json report = json::parse(outcome.out);
   EXPECT_NEAR(report["parameters"][0]["value"].get<double>(), 0.2, 1e-3);
@@ -335,31 +299,30 @@ TEST_F(FitProgram, Spectrum_SharesItsPasses_AndIsDrawnOverWavelength) {
 }
 
 TEST_F(FitProgram, BadInput_IsOneLineThatSaysWhatIsAllowed) {
-  const std::vector<std::string> good = {"--data", "data.csv", "--vary", "surface.sigma=0.02:1"};
-  const auto with = [&](const std::vector<std::string>& more) { return joined(good, more); };
-  expect_message(with({"--vary", "surface.m=1:2"}), "surface.m is no number of a scene that can vary");
-  expect_message(with({"--vary", "surface.n=3:2"}), "LOW must be below HIGH");
-  expect_message(with({"--vary", "surface.n=1:2:3"}), "START must lie in LOW:HIGH");
-  expect_message(with({"--vary", "surface.n=-1:2"}), "-1 is out of range, surface.n in (0, 1e6]");
-  expect_message(with({"--vary", "surface.sigma=0.1:1"}), "surface.sigma: varies twice");
-  expect_message(with({"--loss", "least"}), "--loss");
-  expect_message(with({"--plot", "fit.jpg"}), "plot fit.jpg: must end in .png, .pdf or .svg");
-  expect_message(with({"--starts", "0"}), "--starts");
-  expect_message(with({"--model-error", "half"}), "--model-error");
-  expect_message(with({"--loss", "huber", "--model-error", "bracket"}), "loss huber: cannot be combined");
-  expect_message({"--data", "data.csv:surface.sigma=1", "--vary", "surface.sigma=0.1:1"}, "cannot be fixed too");
-  expect_message(with({"--compare", "surface.masking"}), "must be KEY=WORD,WORD,...");
-  expect_message(with({"--compare", "surface.masking=some,other"}), "must be one of none, v-cavity, integral, smith");
-  expect_message(with({"--compare", "surface.sigma=0.1,0.2"}), "surface.sigma: varies and cannot be compared too");
-  expect_message(with({"--compare", "surface.masking=none", "--compare", "surface.masking=smith"}),
+  const Words good = "--data data.csv --vary surface.sigma=0.02:1";
+  const auto with = [&](const Words& more) { return joined(good, more); };
+  expect_message(with("--vary surface.m=1:2"), "surface.m is no number of a scene that can vary");
+  expect_message(with("--vary surface.n=3:2"), "LOW must be below HIGH");
+  expect_message(with("--vary surface.n=1:2:3"), "START must lie in LOW:HIGH");
+  expect_message(with("--vary surface.n=-1:2"), "-1 is out of range, surface.n in (0, 1e6]");
+  expect_message(with("--vary surface.sigma=0.1:1"), "surface.sigma: varies twice");
+  expect_message(with("--loss least"), "--loss");
+  expect_message(with("--plot fit.jpg"), "plot fit.jpg: must end in .png, .pdf or .svg");
+  expect_message(with("--starts 0"), "--starts");
+  expect_message(with("--model-error half"), "--model-error");
+  expect_message(with("--loss huber --model-error bracket"), "loss huber: cannot be combined");
+  expect_message("--data data.csv:surface.sigma=1 --vary surface.sigma=0.1:1", "cannot be fixed too");
+  expect_message(with("--compare surface.masking"), "must be KEY=WORD,WORD,...");
+  expect_message(with("--compare surface.masking=some,other"), "must be one of none, v-cavity, integral, smith");
+  expect_message(with("--compare surface.sigma=0.1,0.2"), "surface.sigma: varies and cannot be compared too");
+  expect_message(with("--compare surface.masking=none --compare surface.masking=smith"),
                  "surface.masking: is compared twice; give all of its values at once");
-  expect_message(with({"--compare", "surface.masking=smith,none,smith"}), "surface.masking = smith: is compared twice");
-  expect_message({"--data", "none.csv", "--vary", "surface.sigma=0.1:1"}, "none.csv: cannot be read");
+  expect_message(with("--compare surface.masking=smith,none,smith"), "surface.masking = smith: is compared twice");
+  expect_message("--data none.csv --vary surface.sigma=0.1:1", "none.csv: cannot be read");
   put("one.csv", "theta_deg,dolp\n30,0.1\n");
-  expect_message({"--data", "one.csv", "--vary", "surface.sigma=0.1:1", "--vary", "surface.n=1:2"},
+  expect_message("--data one.csv --vary surface.sigma=0.1:1 --vary surface.n=1:2",
                  "2 parameters and 1 measured points");
-  expect_message({"--data", "one.csv", "--data", "data.csv", "--vary", "surface.n=1:2"},
-                 "all data sets have it, or none");
+  expect_message("--data one.csv --data data.csv --vary surface.n=1:2", "all data sets have it, or none");
 }
 
 }  // namespace

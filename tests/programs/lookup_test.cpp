@@ -13,40 +13,29 @@ using nlohmann::json;
 
 class TableAsScene : public CommandLine {
  protected:
-  void make_table(const std::vector<std::string>& options) const {
-    const Outcome outcome = dolp(joined({"table", "scene.toml", "-o", "t.nc", "--quiet"}, options));
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
-  }
-  Outcome lookup(std::vector<std::string> options = {}) const {
-    options.insert(options.begin(), {"lookup", "t.nc", "--points", "points.csv", "-o", "-"});
-    return dolp(options);
-  }
+  void make_table(const Words& options) const { succeeded(dolp(joined("table scene.toml -o t.nc --quiet", options))); }
+  Outcome lookup() const { return dolp("lookup t.nc --points points.csv -o -"); }
 };
 
 TEST_F(TableAsScene, Lookup_IsEvalWithTheTablesSettings) {
-  const std::vector<std::string> settings = {"--set", "surface.masking=v-cavity", "--tolerance", "1e-6"};
-  make_table(joined(settings, {"--evaluator", "cpu"}));
+  const Words settings = "--set surface.masking=v-cavity --tolerance 1e-6";
+  make_table(joined(settings, "--evaluator cpu"));
   put("points.csv", "theta_deg,sigma,q\n33.3,0.17,2.5\n71,0.3,4\n");
-  const Outcome found = lookup();
-  ASSERT_EQ(found.status, 0) << found.err;
-  EXPECT_EQ(found.out, dolp({"eval", "t.nc", "--points", "points.csv", "-o", "-"}).out);
-  EXPECT_EQ(
-      found.out,
-      dolp(joined({"eval", "scene.toml", "--points", "points.csv", "-o", "-", "--evaluator", "cpu"}, settings)).out);
+  const Outcome found = succeeded(lookup());
+  EXPECT_EQ(found.out, dolp("eval t.nc --points points.csv -o -").out);
+  EXPECT_EQ(found.out, dolp(joined("eval scene.toml --points points.csv -o - --evaluator cpu", settings)).out);
   for (const double error : parse_csv(found.out).at("error_estimate")) EXPECT_LE(error, 1e-6);
 }
 
 TEST_F(TableAsScene, Evaluator_IsTheTables_UnlessAnOptionNamesAnother) {
-  make_table({"--evaluator", "cpu"});
-  EXPECT_EQ(report({"lookup", "t.nc", "--points", "points.csv", "-o", "l.csv"})["evaluator"], "cpu");
-  EXPECT_EQ(
-      report({"lookup", "t.nc", "--points", "points.csv", "-o", "l.csv", "--evaluator", "reference"})["evaluator"],
-      "reference");
-  EXPECT_EQ(report({"eval", "t.nc", "--points", "points.csv", "-o", "l.csv", "--device", "0"})["evaluator"], "vulkan");
+  make_table("--evaluator cpu");
+  EXPECT_EQ(report("lookup t.nc --points points.csv -o l.csv")["evaluator"], "cpu");
+  EXPECT_EQ(report("lookup t.nc --points points.csv -o l.csv --evaluator reference")["evaluator"], "reference");
+  EXPECT_EQ(report("eval t.nc --points points.csv -o l.csv --device 0")["evaluator"], "vulkan");
 }
 
 TEST_F(TableAsScene, AxisWithOneValue_IsThatOfPointsWithoutTheColumn) {
-  make_table({"--set", "grid.sigma=[0.27]", "--set", "grid.q=[2.25]"});
+  make_table("--set grid.sigma=[0.27] --set grid.q=[2.25]");
   put("points.csv", "theta_deg\n60\n");
   const Columns few = parse_csv(lookup().out);
   put("points.csv", "theta_deg,sigma,q\n60,0.27,2.25\n");
@@ -54,44 +43,41 @@ TEST_F(TableAsScene, AxisWithOneValue_IsThatOfPointsWithoutTheColumn) {
 }
 
 TEST_F(TableAsScene, EveryCommand_TakesATable) {
-  make_table({"--set", "grid.theta_deg=[0,40,60]", "--set", "grid.sigma=[0.2,0.3]", "--set", "grid.q=[3]"});
-  ASSERT_EQ(dolp({"table", "t.nc", "-o", "again.nc", "--quiet"}).status, 0);
+  make_table("--set grid.theta_deg=[0,40,60] --set grid.sigma=[0.2,0.3] --set grid.q=[3]");
+  succeeded(dolp("table t.nc -o again.nc --quiet"));
   put("points.csv", "theta_deg,sigma,q\n40,0.2,3\n");
   const std::string values = lookup().out;
-  EXPECT_EQ(dolp({"lookup", "again.nc", "--points", "points.csv", "-o", "-"}).out, values);
-  EXPECT_EQ(report({"plan", "t.nc"})["entries"], 6);
-  EXPECT_EQ(dolp({"response", "t.nc", "-o", "r.nc", "--quiet"}).status, 0);
+  EXPECT_EQ(dolp("lookup again.nc --points points.csv -o -").out, values);
+  EXPECT_EQ(report("plan t.nc")["entries"], 6);
+  succeeded(dolp("response t.nc -o r.nc --quiet"));
   put("geometries.csv", "theta_i_deg,theta_r_deg,delta_phi_deg\n30,30,180\n");
-  EXPECT_EQ(dolp({"mueller", "t.nc", "--points", "geometries.csv", "-o", "-"}).out,
-            dolp({"mueller", "scene.toml", "--points", "geometries.csv", "-o", "-"}).out);
-  expect_refused(dolp({"table", "t.nc", "-o", "t.nc"}), "t.nc: the output would overwrite an input");
+  EXPECT_EQ(dolp("mueller t.nc --points geometries.csv -o -").out,
+            dolp("mueller scene.toml --points geometries.csv -o -").out);
+  expect_refused(dolp("table t.nc -o t.nc"), "t.nc: the output would overwrite an input");
   EXPECT_EQ(lookup().out, values);
 }
 
 // The table stores n and k of the file, so the file may go. At another wavelength only the file would know them.
 TEST_F(TableAsScene, DataOfFiles_ComeFromTheTable) {
   put("glass.csv", "wavelength_um,n,k\n8,1.5,0.1\n12,1.9,0.3\n");
-  const std::vector<std::string> glass = {"--set", "surface.material_file=glass.csv", "--set", "grid.sigma=[0.2]"};
+  const Words glass = "--set surface.material_file=glass.csv --set grid.sigma=[0.2]";
   make_table(glass);
   put("points.csv", "theta_deg,sigma,q\n60,0.2,3\n");
-  const Columns expected =
-      parse_csv(dolp(joined({"eval", "scene.toml", "--points", "points.csv", "-o", "-"}, glass)).out);
+  const Columns expected = parse_csv(dolp(joined("eval scene.toml --points points.csv -o -", glass)).out);
   std::filesystem::remove(at("glass.csv"));
   EXPECT_EQ(parse_csv(lookup().out).at("dolp"), expected.at("dolp"));
-  const Outcome other =
-      dolp({"eval", "t.nc", "--points", "points.csv", "-o", "-", "--set", "spectrum.wavelength_um=9"});
-  expect_refused(other, "\"glass.csv\" are known at ");
+  expect_refused(dolp("eval t.nc --points points.csv -o - --set spectrum.wavelength_um=9"),
+                 "\"glass.csv\" are known at ");
   put("points.csv", "theta_deg,wavelength_um\n60,9\n");
   expect_refused(lookup(), "points.csv:2: wavelength_um = 9: ");
 }
 
 TEST_F(TableAsScene, OtherMaterialByName_IsBuiltIn) {
-  make_table({"--set", "surface.material=iron", "--set", "grid.sigma=[0.2]"});
+  make_table("--set surface.material=iron --set grid.sigma=[0.2]");
   put("points.csv", "theta_deg,sigma,q,wavelength_um\n60,0.2,3,9\n");
   const auto eval_of = [&](const char* source, const char* material) {
-    return parse_csv(dolp({"eval", source, "--points", "points.csv", "-o", "-", "--set",
-                           std::string("surface.material=") + material, "--set", "grid.sigma=[0.2]"})
-                         .out);
+    const Words start = std::string("eval ") + source + " --points points.csv -o - --set grid.sigma=[0.2] --set";
+    return parse_csv(dolp(joined(start, {std::string("surface.material=") + material})).out);
   };
   for (const char* material : {"iron", "gold (Ordal)"})
     EXPECT_EQ(eval_of("t.nc", material).at("dolp"), eval_of("scene.toml", material).at("dolp")) << material;
@@ -104,13 +90,12 @@ TEST_F(TableAsScene, LongProfile_ComesFromTheTable) {
     for (int i = 0; i < 1000; ++i) rows += fmt::format("{},{},{}\n", wavelength, i / 999.0 * 90.0, 220 + wavelength);
   }
   put("sky.csv", rows);
-  const std::vector<std::string> settings = {"--set", "surroundings={profile=\"sky.csv\"}",    "--evaluator", "cpu",
-                                             "--set", "grid={theta_deg=[0,30,60],sigma=[0.2]}"};
+  const Words settings =
+      "--set surroundings={profile=\"sky.csv\"} --evaluator cpu --set grid={theta_deg=[0,30,60],sigma=[0.2]}";
   make_table(settings);
   EXPECT_LT(std::filesystem::file_size(at("t.nc")), rows.size() + 100'000);
   put("points.csv", "theta_deg,sigma\n30,0.2\n");
-  const Columns expected =
-      parse_csv(dolp(joined({"eval", "scene.toml", "--points", "points.csv", "-o", "-"}, settings)).out);
+  const Columns expected = parse_csv(dolp(joined("eval scene.toml --points points.csv -o -", settings)).out);
   std::filesystem::remove(at("sky.csv"));
   EXPECT_EQ(parse_csv(lookup().out).at("dolp"), expected.at("dolp"));
 }
@@ -119,18 +104,18 @@ TEST_F(TableAsScene, NoTable_IsRefusedInOneLine) {
   expect_refused(lookup(), "t.nc: there is no such file");
   put("t.nc", "title = 1\n");
   expect_refused(lookup(), "t.nc: is not a NetCDF table of dolp");
-  ASSERT_EQ(dolp({"table", "scene.toml", "-o", "t.csv", "--quiet"}).status, 0);
-  expect_refused(dolp({"plan", "t.csv"}), "t.csv: only a table written as .nc holds its scene");
-  expect_refused(dolp({"lookup", "scene.toml", "--points", "points.csv", "-o", "-"}),
-                 "scene.toml: is a scene and no table");
+  succeeded(dolp("table scene.toml -o t.csv --quiet"));
+  expect_refused(dolp("plan t.csv"), "t.csv: only a table written as .nc holds its scene");
+  expect_refused(dolp("lookup scene.toml --points points.csv -o -"), "scene.toml: is a scene and no table");
 }
 
 // Along theta a parabola through the entries would be exact for a quantity a + b theta^2; here the right values come
 // from `eval` at the point that the report names.
 TEST_F(TableAsScene, VerifyBetween_ReportsWhatInterpolationCosts) {
-  make_table({"--set", "grid.theta_deg={from=0,to=80,count=17}", "--set", "grid.sigma=[0.2]", "--set", "grid.q=[3]",
-              "--evaluator", "cpu", "--tolerance", "1e-7"});
-  const json found = report({"verify", "t.nc", "--between", "200", "--quantities", "dolp,rho_i"})["between"];
+  make_table(
+      "--set grid.theta_deg={from=0,to=80,count=17} --set grid.sigma=[0.2] --set grid.q=[3] --evaluator cpu "
+      "--tolerance 1e-7");
+  const json found = report("verify t.nc --between 200 --quantities dolp,rho_i")["between"];
   ASSERT_EQ(found.size(), 4U);
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(found[i]["quantity"], i < 2 ? "dolp" : "rho_i");
@@ -146,18 +131,18 @@ TEST_F(TableAsScene, VerifyBetween_ReportsWhatInterpolationCosts) {
   const double linear = std::lerp(right[1], right[2], (theta_deg - below) / 5.0);
   constexpr double kTwoTolerances = 2e-7;
   EXPECT_NEAR(found[0]["largest"], std::abs(linear - right[0]), kTwoTolerances);
-  expect_refused(dolp({"verify", "t.nc", "--between", "9", "--quantities", "dolps"}),
-                 "t.nc: has no quantity \"dolps\"; it has dolp, ");
+  expect_refused(dolp("verify t.nc --between 9 --quantities dolps"), "t.nc: has no quantity \"dolps\"; it has dolp, ");
 }
 
 // The angle 179 differs from 1 by 2. Slopes along and across turn it through 0.
 TEST_F(TableAsScene, VerifyBetween_AnglesDifferByAtMostARightAngle) {
-  make_table({"--set", "surface.masking=v-cavity", "--set", "surface.sigma_cross=0.4", "--set", "grid.theta_deg=[40]",
-              "--set", "grid.surface_azimuth_deg={from=-60,to=60,count=5}", "--set", "grid.sigma=[0.2]", "--set",
-              "grid.q=[3]", "--set", "surroundings.temperature_K=400", "--evaluator", "cpu"});
+  make_table(
+      "--set surface.masking=v-cavity --set surface.sigma_cross=0.4 --set grid.theta_deg=[40] --set "
+      "grid.surface_azimuth_deg={from=-60,to=60,count=5} --set grid.sigma=[0.2] --set grid.q=[3] --set "
+      "surroundings.temperature_K=400 --evaluator cpu");
   const auto [least, most] = std::ranges::minmax(dolp::read_table(at("t.nc"))[dolp::Quantity::kAolp]);
   ASSERT_GT(most - least, 90.0);
-  const json found = report({"verify", "t.nc", "--between", "50", "--quantities", "aolp_deg"})["between"];
+  const json found = report("verify t.nc --between 50 --quantities aolp_deg")["between"];
   EXPECT_GT(found[0]["largest"], 1.0);
   EXPECT_LE(found[0]["largest"], 90.0);
 }
@@ -165,20 +150,18 @@ TEST_F(TableAsScene, VerifyBetween_AnglesDifferByAtMostARightAngle) {
 // On an axis with logarithmic spacing the interpolation is linear in the logarithm, so two more values in each decade
 // than a linear axis would need suffice. The advice of plan makes both kinds of table good enough.
 TEST_F(TableAsScene, PlansNumbersOfValues_AreAboutEnough_AndHalfOfThemAreTooFew) {
-  const std::vector<std::string> common = {"--set", "grid.q=[3]", "--tolerance", "1e-4"};
-  const std::string theta = "grid.theta_deg={{from=0,to=80,count={}}}";
-  const std::string sigma = "grid.sigma={{from=0.05,to=0.5,count={},spacing=\"log\"}}";
+  const Words common = "--set grid.q=[3] --tolerance 1e-4";
   const auto grid = [&](int thetas, int sigmas) {
-    return joined(
-        common, {"--set", fmt::format(fmt::runtime(theta), thetas), "--set", fmt::format(fmt::runtime(sigma), sigmas)});
+    const std::string theta = fmt::format("--set grid.theta_deg={{from=0,to=80,count={}}}", thetas);
+    const std::string sigma = fmt::format(" --set grid.sigma={{from=0.05,to=0.5,count={},spacing=\"log\"}}", sigmas);
+    return joined(common, theta + sigma);
   };
-  const std::vector<std::string> planned = grid(20, 10);
-  const json advice = report(joined({"plan", "scene.toml"}, planned))["between"];
+  const json advice = report(joined("plan scene.toml", grid(20, 10)))["between"];
   ASSERT_EQ(advice.size(), 2U);
   const int thetas = advice[0]["needed_values"], sigmas = advice[1]["needed_values"];
   const auto typical_error = [&](int of_theta, int of_sigma) {
-    make_table(joined(grid(of_theta, of_sigma), {"--evaluator", "cpu"}));
-    return report({"verify", "t.nc", "--between", "300"})["between"][0]["p95"].get<double>();
+    make_table(joined(grid(of_theta, of_sigma), "--evaluator cpu"));
+    return report("verify t.nc --between 300")["between"][0]["p95"].get<double>();
   };
   EXPECT_LT(typical_error(thetas, sigmas), 1e-4);
   EXPECT_GT(typical_error(thetas / 3, sigmas / 3), 1e-4);

@@ -20,23 +20,18 @@ class Mueller : public CommandLine {
     CommandLine::SetUp();
     put("points.csv", kGeometries);
   }
-  Outcome mueller(const std::vector<std::string>& options, const std::string& output = "out.csv") const {
-    return dolp(joined({"mueller", "scene.toml", "--points", "points.csv", "-o", output}, options));
+  Outcome mueller(const Words& options, const std::string& output = "out.csv") const {
+    return dolp(joined("mueller scene.toml --points points.csv -o " + output, options));
   }
-  Columns columns(const std::vector<std::string>& options) const {
-    std::vector<std::string> arguments = options;
-    arguments.emplace_back("--quiet");
-    const Outcome outcome = mueller(arguments, "-");
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return parse_csv(outcome.out);
+  Columns columns(const Words& options) const {
+    return parse_csv(succeeded(mueller(joined(options, "--quiet"), "-")).out);
   }
 };
 
 std::vector<std::string> element_names() { return split_at(kElements, ','); }
 
 TEST_F(Mueller, Points_RepeatedInOrderWithAllElements) {
-  const Outcome outcome = mueller({"--quiet"}, "-");
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Outcome outcome = succeeded(mueller("--quiet", "-"));
   EXPECT_EQ(outcome.err, "");
   const std::vector<std::string> lines = data_lines(outcome.out);
   ASSERT_EQ(lines.size(), 5U);
@@ -53,14 +48,13 @@ TEST_F(Mueller, Points_RepeatedInOrderWithAllElements) {
 }
 
 TEST_F(Mueller, Evaluators_AgreeWithinTheirStatedErrors) {
-  const Columns reference = columns({"--evaluator", "reference"});
-  const auto worst = [&](const std::vector<std::string>& options) {
+  const Columns reference = columns("--evaluator reference");
+  const auto worst = [&](const Words& options) {
     const Columns f = columns(options);
     double error = 0.0;
     for (const std::string& name : element_names()) {
-      for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t i = 0; i < 4; ++i)
         error = std::max(error, std::abs(f.at(name)[i] - reference.at(name)[i]) / reference.at("m00")[i]);
-      }
     }
     return error;
   };
@@ -75,17 +69,15 @@ TEST_F(Mueller, SetAndColumns_SayTheSame) {
   put("points.csv", "theta_i_deg,theta_r_deg,delta_phi_deg,sigma,q,n,k\n30,40,100,0.4,2.5,3,1\n");
   const Columns by_columns = columns({});
   put("points.csv", "theta_i_deg,theta_r_deg,delta_phi_deg\n30,40,100\n");
-  const Columns by_scene = columns({"--set", "surface.sigma=0.4", "--set", "surface.q=2.5", "--set", "surface.n=3",
-                                    "--set", "surface.k=1", "--set", "grid.sigma=[0.1]"});
+  const Columns by_scene =
+      columns("--set surface.sigma=0.4 --set surface.q=2.5 --set surface.n=3 --set surface.k=1 --set grid.sigma=[0.1]");
   for (const std::string& name : element_names()) EXPECT_EQ(by_columns.at(name), by_scene.at(name)) << name;
   EXPECT_NE(by_scene.at("m00"), columns({}).at("m00"));
 }
 
 TEST_F(Mueller, Json_SaysWhatRan) {
   put("points.csv", "theta_i_deg,theta_r_deg,delta_phi_deg\n30,40,100\n90,40,100\n");
-  const Outcome outcome = mueller({"--json"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const json report = json::parse(outcome.out);
+  const json report = printed_json(mueller("--json"));
   EXPECT_EQ(report["title"], "Sixteen entries");
   EXPECT_EQ(report["output"], "out.csv");
   EXPECT_EQ(report["entries"], 2);
@@ -93,39 +85,29 @@ TEST_F(Mueller, Json_SaysWhatRan) {
   EXPECT_EQ(report["evaluator"], "cpu");  // beams need no device
   EXPECT_EQ(report["precision"], "double");
   EXPECT_EQ(report["worst_error_estimate"], 1e-11);
-  for (const char* key : {"device", "wall_s", "beams_s", "tolerance"}) {
-    EXPECT_TRUE(report.contains(key)) << key;
-  }
+  for (const char* key : {"device", "wall_s", "beams_s", "tolerance"}) EXPECT_TRUE(report.contains(key)) << key;
   EXPECT_TRUE(std::isnan(parse_csv(content("out.csv")).at("m33").at(1)));
 }
 
 TEST_F(Mueller, HeaderWithoutRows_HeaderWithoutRows) {
   put("points.csv", "theta_i_deg,theta_r_deg,delta_phi_deg\n");
-  const Outcome outcome = mueller({});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  succeeded(mueller({}));
   EXPECT_EQ(content("out.csv"), "theta_i_deg,theta_r_deg,delta_phi_deg," + kElements + "\n");
 }
 
 TEST_F(Mueller, WithoutADevice_Computes) {
-  EXPECT_EQ(without_device({"mueller", "scene.toml", "--points", "points.csv", "-o", "out.csv", "--strict"}).status, 0);
+  succeeded(without_device("mueller scene.toml --points points.csv -o out.csv --strict"));
   EXPECT_EQ(parse_csv(content("out.csv")).at("m00").size(), 4U);
 }
 
-struct Mistake {
-  std::string points;
-  std::string options;
-  std::vector<std::string> message;  ///< text that the message must contain
-  int status = 2;
-};
-
 TEST_F(Mueller, Mistake_OneLineAndNothingWritten) {
   const std::string header = "theta_i_deg,theta_r_deg,delta_phi_deg";
-  for (const Mistake& mistake : std::vector<Mistake>{
-           {header + ",q\n1,2,3,1.4\n", "--set surface.masking=smith", {"points.csv:2", "q = 1.4", "smith"}},
-           {header + "\n1,2,3\n", "--keep-all", {"--keep-all"}}}) {
-    put("points.csv", mistake.points);
-    const Outcome outcome = mueller(split_at(mistake.options, ' '));
-    for (const std::string& part : mistake.message) expect_refused(outcome, part, mistake.status);
+  for (const auto& [points, options, message] :
+       {std::tuple(header + ",q\n1,2,3,1.4\n", "--set surface.masking=smith", "points.csv:2: q = 1.4"),
+        {header + ",q\n1,2,3,1.4\n", "--set surface.masking=smith", "smith"},
+        {header + "\n1,2,3\n", "--keep-all", "--keep-all"}}) {
+    put("points.csv", points);
+    expect_refused(mueller(options), message);
     EXPECT_EQ(names(), (std::vector<std::string>{"points.csv", "scene.toml"}));
   }
 }

@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string>
 
-#include "in_folder.hpp"
-#include "program.hpp"
+#include "cli_support.hpp"
 
 namespace {
 
@@ -25,20 +23,16 @@ constexpr std::size_t kLargestPictureBytes = 120'000;
 
 class PaperFigure : public InFolder {
  protected:
-  Outcome figure(std::vector<std::string> arguments, const std::string& program = DOLP_PROGRAM) const {
-    arguments.insert(arguments.begin(), {"/usr/bin/python3", DOLP_PAPER_FIGURE});
+  Outcome figure(const Words& options, const std::string& program = DOLP_PROGRAM) const {
+    Words arguments = joined({"/usr/bin/python3", DOLP_PAPER_FIGURE}, options);
     if (!program.empty()) arguments.insert(arguments.end(), {"--program", program});
     return run({.arguments = std::move(arguments), .folder = folder()});
   }
-  json numbers(const std::string& number, const std::vector<std::string>& options = {}) const {
-    std::vector<std::string> arguments = {number, "--json", "--evaluator", "cpu"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    const Outcome outcome = figure(arguments);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return json::parse(outcome.out);
+  json numbers(const std::string& number, const Words& options = {}) const {
+    return printed_json(figure(joined(number + " --json --evaluator cpu", options)));
   }
   json numbers_and_picture(const std::string& number) const {
-    json report = numbers(number, {"-o", "f.png"});
+    json report = numbers(number, "-o f.png");
     const std::string picture = content("f.png");
     EXPECT_TRUE(picture.starts_with("\x89PNG"));
     EXPECT_LT(picture.size(), kLargestPictureBytes);
@@ -156,69 +150,47 @@ TEST_F(PaperFigure, Figure7_HasTheCurvesThatTheModelsReadmeStates) {
 }
 
 TEST_F(PaperFigure, Table_DefaultEvaluator_PrintsAttenuation) {
-  const Outcome outcome = figure({"4", "--table"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("| v-cavity | cauchy | 30° | 1.000 | 1.000 | 1.000 | 1.000 | 0.786 | 0.000 | −2.33/rad"),
-            std::string::npos)
-      << outcome.out;
+  EXPECT_TRUE(contains(succeeded(figure("4 --table")).out,
+                       "| v-cavity | cauchy | 30° | 1.000 | 1.000 | 1.000 | 1.000 | 0.786 | 0.000 | −2.33/rad"));
 }
 
 TEST_F(PaperFigure, Table_Sample_PrintsPeaksAndThePapersAngles) {
-  const Outcome outcome = figure({"5", "--table", "--evaluator", "cpu"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("| integral | bistatic | steel | cauchy | 14.00 at 70."), std::string::npos)
-      << outcome.out;
-  for (const std::string angle : {"\n| 0° |", "\n| 54° |", "\n| 63° |", "\n| 90° |"})
-    EXPECT_NE(outcome.out.find(angle), std::string::npos) << angle;
+  const Outcome outcome = succeeded(figure("5 --table --evaluator cpu"));
+  EXPECT_TRUE(contains(outcome.out, "| integral | bistatic | steel | cauchy | 14.00 at 70."));
+  for (const char* angle : {"\n| 0° |", "\n| 54° |", "\n| 63° |", "\n| 90° |"})
+    EXPECT_TRUE(contains(outcome.out, angle));
 }
 
 TEST_F(PaperFigure, Set_UnprintedValue_ChangesTheCurves) {
   // Without reflection the surface is black, and its emission is unpolarised.
-  const json black = numbers("5", {"--set", "surface.diffuse=0", "--set", "surface.specular=0"});
+  const json black = numbers("5", "--set surface.diffuse=0 --set surface.specular=0");
   for (const json& curve : black["curves"])
     for (const json& value : curve["dolp_percent"]) EXPECT_LT(value.get<double>(), 1e-9) << curve.dump();
-  const json sunlit = numbers("5", {"--set", "source.relative_irradiance=0.006"});
+  const json sunlit = numbers("5", "--set source.relative_irradiance=0.006");
   const json curve = curve_of(sunlit, "steel", "integral", "bistatic", "cauchy");
   EXPECT_TRUE(curve["peak"].is_null());
   for (const json& value : curve["dolp_percent"]) EXPECT_TRUE(value > 4.4 - kPointTolerance && value < 4.7) << value;
 }
 
-struct Bad {
-  std::vector<std::string> arguments;
-  int status;
-  std::string message;
-};
-
 TEST_F(PaperFigure, BadUsage_OneLineThatSaysWhatIsWrong) {
-  const std::vector<Bad> list = {
-      {{}, 2, "figure"},
-      {{"8", "--table"}, 2, "choose from 4, 5, 6, 7"},
-      {{"5"}, 2, "-o FIGURE.png, --table or --json"},
-      {{"5", "-o", "f.jpg"}, 2, "f.jpg: the name of the picture must end in .png"},
-      {{"5", "-o", "none/f.png"}, 4, "none/f.png: there is no folder none"},
-      {{"5", "--table", "--set", "surface.sigma=1"}, 2, "surface.sigma=1: the key must be one of surface.q, "},
-      {{"5", "--table", "--set", "surface.q=wide"}, 2, "surface.q=wide: the value must be a number"},
-      {{"5", "--table", "--evaluator", "cpu", "--set", "surface.q=0.5"}, 2, "0.5 is out of range"},
-      {{"4", "--table", "--set", "surface.q=3"}, 2, "--set is for figures 5, 6 and 7"}};
-  for (const Bad& bad : list) {
-    const Outcome outcome = figure(bad.arguments);
-    EXPECT_EQ(outcome.status, bad.status) << outcome.err;
-    EXPECT_TRUE(outcome.err.starts_with("paper_figure.py: ")) << outcome.err;
-    EXPECT_NE(outcome.err.find(bad.message), std::string::npos) << outcome.err;
-    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
-    EXPECT_EQ(outcome.out, "");
-  }
+  for (const auto& [line, status, message] :
+       {std::tuple("", 2, "figure"),
+        {"8 --table", 2, "choose from 4, 5, 6, 7"},
+        {"5", 2, "-o FIGURE.png, --table or --json"},
+        {"5 -o f.jpg", 2, "f.jpg: the name of the picture must end in .png"},
+        {"5 -o none/f.png", 4, "none/f.png: there is no folder none"},
+        {"5 --table --set surface.sigma=1", 2, "surface.sigma=1: the key must be one of surface.q, "},
+        {"5 --table --set surface.q=wide", 2, "surface.q=wide: the value must be a number"},
+        {"5 --table --evaluator cpu --set surface.q=0.5", 2, "0.5 is out of range"},
+        {"4 --table --set surface.q=3", 2, "--set is for figures 5, 6 and 7"}})
+    expect_refused(figure(line), message, status, "paper_figure.py");
 }
 
 TEST_F(PaperFigure, ProgramThatFails_OneLineAndNotZero) {
-  for (const auto& [program, status, message] :
-       {std::tuple("/no/such/dolp", 2, "/no/such/dolp: No such file"), std::tuple("/bin/false", 1, "has failed"),
-        std::tuple("/bin/true", 5, "/bin/true: wrote 0 rows for 901 points")}) {
-    const Outcome outcome = figure({"6", "--json"}, program);
-    EXPECT_EQ(outcome.status, status) << outcome.err;
-    EXPECT_NE(outcome.err.find(message), std::string::npos) << outcome.err;
-    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
-  }
+  for (const auto& [program, status, message] : {std::tuple("/no/such/dolp", 2, "/no/such/dolp: No such file"),
+                                                 {"/bin/false", 1, "has failed"},
+                                                 {"/bin/true", 5, "/bin/true: wrote 0 rows for 901 points"}})
+    expect_refused(figure("6 --json", program), message, status, "paper_figure.py");
 }
 
 struct Values {

@@ -23,8 +23,8 @@ q = [2, 3.5]
 
 class Response : public CommandLine {
  protected:
-  Outcome response(const std::vector<std::string>& options, const std::string& output = "r.nc") const {
-    return dolp(joined({"response", "surface.toml", "-o", output, "--evaluator", "cpu"}, options));
+  Outcome response(const Words& options, const std::string& output = "r.nc") const {
+    return dolp(joined("response surface.toml --evaluator cpu -o " + output, options));
   }
   void SetUp() override {
     CommandLine::SetUp();
@@ -34,8 +34,7 @@ class Response : public CommandLine {
 
 TEST_F(Response, SceneWithoutAMaterial_HasOneForEachMasking) {
   for (const std::string masking : {"none", "v-cavity", "integral", "smith"}) {
-    const Outcome outcome = response({"--set", "surface.masking=" + masking, "--quiet", "--strict"});
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const Outcome outcome = succeeded(response("--quiet --strict --set surface.masking=" + masking));
     EXPECT_EQ(outcome.out + outcome.err, "");
     const TableReader reader(at("r.nc"));
     const TableBox all{{}, reader.head().counts()};
@@ -55,20 +54,17 @@ TEST_F(Response, SceneWithoutAMaterial_HasOneForEachMasking) {
 }
 
 TEST_F(Response, WhatItDoesNotDependOn_ChangesNoWeight) {
-  ASSERT_EQ(response({"--quiet"}).status, 0);
-  const std::vector<std::string> scene = {"response", "scene.toml", "-o", "same.nc", "--evaluator", "cpu", "--quiet"};
+  succeeded(response("--quiet"));
   // The settings name files that do not exist. The command must not open them.
-  ASSERT_EQ(dolp(joined(scene, {"--set", "surface.masking=smith", "--set", "grid.theta_deg=[0,60,89]", "--set",
-                                "surface.material_file=missing.csv", "--set", "source.file=missing.csv"}))
-                .status,
-            0);
+  succeeded(
+      dolp("response scene.toml -o same.nc --evaluator cpu --quiet --set surface.masking=smith --set "
+           "grid.theta_deg=[0,60,89] --set surface.material_file=missing.csv --set source.file=missing.csv"));
   const TableReader a(at("r.nc")), b(at("same.nc"));
   EXPECT_EQ(a.read({{}, a.head().counts()}).responses, b.read({{}, b.head().counts()}).responses);
 }
 
 TEST_F(Response, Report_SaysHowLargeTheErrorIs) {
-  const nlohmann::json json =
-      report({"response", "surface.toml", "-o", "r.nc", "--evaluator", "cpu", "--tolerance", "1e-3"});
+  const nlohmann::json json = report("response surface.toml -o r.nc --evaluator cpu --tolerance 1e-3");
   EXPECT_EQ(json["entries"], 12);
   EXPECT_EQ(json["angles"], 24);
   EXPECT_EQ(json["missed_tolerance"], 0);
@@ -76,42 +72,38 @@ TEST_F(Response, Report_SaysHowLargeTheErrorIs) {
 }
 
 TEST_F(Response, ToleranceOutOfReach_FailsStrictAlone) {
-  const std::vector<std::string> hard = {"--set", "accuracy.precision=float", "--tolerance", "1e-8", "--quiet"};
-  EXPECT_EQ(response(hard).status, 0);
-  const Outcome strict = response(joined(hard, {"--strict"}));
+  const Words hard = "--set accuracy.precision=float --tolerance 1e-8 --quiet";
+  succeeded(response(hard));
+  const Outcome strict = response(joined(hard, "--strict"));
   EXPECT_EQ(strict.status, 1);
   expect_one_line(strict.err, "--strict: the tolerance is not met everywhere");
 }
 
 TEST_F(Response, WhatIsWrong_IsRefusedInOneLine) {
-  struct Row {
-    std::vector<std::string> options;
-    std::string output, message;
-  };
-  for (const Row& row : {Row{{}, "r.csv", "r.csv: the name of a response table must end in .nc"},
-                         {{}, "-", "-: the name of a response table must end in .nc"},
-                         {{"--set", "surface.masking=v-cavity", "--set", "surface.scattering=multiple"},
-                          "r.nc",
-                          "surface.scattering = \"multiple\": must be \"single\" for a response table"},
-                         {{"--set", "surface.sigmas=1"}, "r.nc", "surface.sigmas"},
-                         {{"--shard", "1/2"}, "r.nc", "--shard"}}) {
-    expect_refused(response(row.options, row.output), row.message);
-    EXPECT_FALSE(std::filesystem::exists(at(row.output)));
+  for (const auto& [options, output, message] :
+       {std::tuple("", "r.csv", "r.csv: the name of a response table must end in .nc"),
+        {"", "-", "-: the name of a response table must end in .nc"},
+        {"--set surface.masking=v-cavity --set surface.scattering=multiple", "r.nc",
+         "surface.scattering = \"multiple\": must be \"single\" for a response table"},
+        {"--set surface.sigmas=1", "r.nc", "surface.sigmas"},
+        {"--shard 1/2", "r.nc", "--shard"}}) {
+    expect_refused(response(options, output), message);
+    EXPECT_FALSE(std::filesystem::exists(at(output)));
   }
-  ASSERT_EQ(response({"--quiet"}).status, 0);
-  expect_refused(dolp({"response", "r.nc", "-o", "r.nc", "--evaluator", "cpu"}), "would overwrite an input");
+  succeeded(response("--quiet"));
+  expect_refused(dolp("response r.nc -o r.nc --evaluator cpu"), "would overwrite an input");
 }
 
 TEST_F(Response, AsATable_IsRefused) {
-  ASSERT_EQ(response({"--quiet"}).status, 0);
-  expect_refused(dolp({"verify", "r.nc", "--between", "9"}), "r.nc: has no quantity \"dolp\"");
-  expect_refused(dolp({"merge", "r.nc", "-o", "m.nc"}), "r.nc: ");
+  succeeded(response("--quiet"));
+  expect_refused(dolp("verify r.nc --between 9"), "r.nc: has no quantity \"dolp\"");
+  expect_refused(dolp("merge r.nc -o m.nc"), "r.nc: ");
 }
 
 TEST_F(Response, Verify_ComparesWithTheReference) {
   for (const std::string masking : {"none", "smith"}) {
-    ASSERT_EQ(response({"--set", "surface.masking=" + masking, "--set", "grid.q=2", "--quiet"}).status, 0);
-    const nlohmann::json json = report({"verify", "r.nc", "--samples", "2"});
+    succeeded(response("--set grid.q=2 --quiet --set surface.masking=" + masking));
+    const nlohmann::json json = report("verify r.nc --samples 2");
     EXPECT_EQ(json["checked"], 2);
     EXPECT_EQ(json["quantities"].size(), masking == "smith" ? 4U : 2U);
     for (const auto& quantity : json["quantities"]) {
@@ -122,14 +114,14 @@ TEST_F(Response, Verify_ComparesWithTheReference) {
 }
 
 TEST_F(Response, Verify_FindsWrongWeights) {
-  ASSERT_EQ(response({"--set", "grid.q=2", "--set", "surface.masking=none", "--quiet"}).status, 0);
+  succeeded(response("--set grid.q=2 --set surface.masking=none --quiet"));
   TableValues table = read_table(at("r.nc"));
   // each entry has 24 weights, so weight 30 belongs to the second entry
   table.responses[ResponseVariable::kResponseQ][30] += 1e-3;
   write_table(table, at("r.nc"));
-  const Outcome outcome = dolp({"verify", "r.nc"});
+  const Outcome outcome = dolp("verify r.nc");
   EXPECT_EQ(outcome.status, 1) << outcome.err;
-  EXPECT_NE(outcome.out.find("response_q at theta 0, sigma 0.4, q 2 is too far"), std::string::npos) << outcome.out;
+  EXPECT_TRUE(contains(outcome.out, "response_q at theta 0, sigma 0.4, q 2 is too far"));
 }
 
 }  // namespace

@@ -33,11 +33,10 @@ q = { from = 1.6, to = 6, count = 20 }
 )";
 
 // A table that a run computes in more than one part.
-const std::vector<std::string> kLarge = split_at(
+const Words kLarge =
     "--set grid.theta_deg={from=0,to=89,count=320} --set grid.sigma={from=0.1,to=0.8,count=64} --set "
     "grid.q={from=1.8,to=6,count=64} --set grid.wavelength_um=[10.0,8.0] --set grid.n=[1.5] --tolerance 1e-2 "
-    "--quantities dolp,status",
-    ' ');
+    "--quantities dolp,status";
 
 class Shards : public CommandLine {
  protected:
@@ -65,76 +64,59 @@ class Shards : public CommandLine {
 
 // There are 14 shards but only 7 zeniths. So the shards also divide the axis of the two wavelengths.
 TEST_F(Shards, OfSeveralAxes_MergeIntoTheTableAndItsCsv) {
-  ASSERT_EQ(dolp({"table", "grid.toml", "-o", "one.csv"}).status, 0);
-  for (int i = 1; i <= 14; ++i) {
-    ASSERT_EQ(dolp({"table", "grid.toml", "-o", "t.nc", "--shard", std::to_string(i) + "/14"}).status, 0);
-  }
-  ASSERT_EQ(dolp(joined(joined({"merge"}, shard_names(14)), {"-o", "m.csv"})).status, 0);
+  succeeded(dolp("table grid.toml -o one.csv"));
+  for (int i = 1; i <= 14; ++i) succeeded(dolp("table grid.toml -o t.nc --shard " + std::to_string(i) + "/14"));
+  succeeded(dolp(joined(joined("merge", shard_names(14)), "-o m.csv")));
   EXPECT_EQ(data_lines(read_file(at("m.csv"))), data_lines(read_file(at("one.csv"))));
-  const Outcome refused = dolp({"table", "grid.toml", "-o", "t.nc", "--shard", "1/11"});
-  EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(
-      refused.err.find("the values of the axes, 7 of theta, 2 of wavelength, 2 of n, cannot be cut into 11 parts"),
-      std::string::npos)
-      << refused.err;
+  expect_refused(dolp("table grid.toml -o t.nc --shard 1/11"),
+                 "the values of the axes, 7 of theta, 2 of wavelength, 2 of n, cannot be cut into 11 parts");
 }
 
 TEST_F(Shards, MissingForeignOrDoubled_AreNamed) {
-  for (int i = 1; i <= 2; ++i)
-    ASSERT_EQ(dolp({"table", "grid.toml", "-o", "t.nc", "--shard", std::to_string(i) + "/2"}).status, 0);
-  ASSERT_EQ(dolp({"table", "grid.toml", "-o", "f.nc", "--shard", "2/2", "--set", "surface.k=0.3"}).status, 0);
-  ASSERT_EQ(dolp({"table", "scene.toml", "-o", "whole.nc"}).status, 0);
-  const auto error = [&](const std::vector<std::string>& names) {
-    const Outcome outcome = dolp(joined(joined({"merge"}, names), {"-o", "m.nc"}));
-    EXPECT_EQ(outcome.status, 2);
+  for (const std::string shard : {"1/2", "2/2"}) succeeded(dolp("table grid.toml -o t.nc --shard " + shard));
+  succeeded(dolp("table grid.toml -o f.nc --shard 2/2 --set surface.k=0.3"));
+  succeeded(dolp("table scene.toml -o whole.nc"));
+  for (const auto& [shards, error] :
+       {std::pair("t.1-of-2.nc", "missing shards: 2/2\n"),
+        {"t.1-of-2.nc t.1-of-2.nc", "t.1-of-2.nc: is shard 1/2, as t.1-of-2.nc is\n"},
+        {"t.1-of-2.nc f.2-of-2.nc", "f.2-of-2.nc: is a shard of another table: it has scene"},
+        {"t.1-of-2.nc whole.nc", "whole.nc: is no shard of a table (attribute shard)\n"},
+        {"t.1-of-2.nc none.nc", "none.nc: there is no such file\n"}}) {
+    expect_refused(dolp(joined(joined("merge", shards), "-o m.nc")), std::string("dolp: ") + error);
     EXPECT_FALSE(fs::exists(at("m.nc")));
-    return outcome.err;
-  };
-  EXPECT_EQ(error({"t.1-of-2.nc"}), "dolp: missing shards: 2/2\n");
-  EXPECT_EQ(error({"t.1-of-2.nc", "t.1-of-2.nc"}), "dolp: t.1-of-2.nc: is shard 1/2, as t.1-of-2.nc is\n");
-  EXPECT_EQ(error({"t.1-of-2.nc", "f.2-of-2.nc"}).find("dolp: f.2-of-2.nc: is a shard of another table: it has scene"),
-            0U);
-  EXPECT_EQ(error({"t.1-of-2.nc", "whole.nc"}), "dolp: whole.nc: is no shard of a table (attribute shard)\n");
-  EXPECT_EQ(error({"t.1-of-2.nc", "none.nc"}), "dolp: none.nc: there is no such file\n");
+  }
 }
 
 TEST_F(Shards, ThereAlready_IsKept_AndOneOfAnotherSceneIsNot) {
-  const std::vector<std::string> wanted = {"table", "grid.toml", "-o", "t.nc", "--shard", "1/2"};
-  ASSERT_EQ(dolp(wanted).status, 0);
+  const Words wanted = "table grid.toml -o t.nc --shard 1/2";
+  succeeded(dolp(wanted));
   const auto written = fs::last_write_time(at("t.1-of-2.nc"));
-  const Outcome again = dolp(wanted);
-  EXPECT_EQ(again.status, 0);
-  EXPECT_NE(again.out.find("the whole shard is there already"), std::string::npos) << again.out;
+  EXPECT_TRUE(contains(succeeded(dolp(wanted)).out, "the whole shard is there already"));
   EXPECT_EQ(fs::last_write_time(at("t.1-of-2.nc")), written);
-  ASSERT_EQ(dolp(joined(wanted, {"--set", "surface.k=0.3"})).status, 0);
+  succeeded(dolp(joined(wanted, "--set surface.k=0.3")));
   EXPECT_NE(fs::last_write_time(at("t.1-of-2.nc")), written);
 }
 
 TEST_F(Shards, Auto_TakesTheTaskOfTheSlurmArray) {
-  const std::vector<std::string> wanted = {"table", "grid.toml", "-o", "t.nc", "--shard", "auto"};
-  const Outcome alone = dolp(wanted);
-  EXPECT_EQ(alone.status, 2);
-  EXPECT_NE(alone.err.find("SLURM_ARRAY_TASK_ID is not set"), std::string::npos) << alone.err;
+  const Words wanted = "table grid.toml -o t.nc --shard auto";
+  expect_refused(dolp(wanted), "SLURM_ARRAY_TASK_ID is not set");
   Command in_array = command(wanted);
   in_array.environment = {
       {"SLURM_ARRAY_TASK_ID", "12"}, {"SLURM_ARRAY_TASK_MIN", "10"}, {"SLURM_ARRAY_TASK_COUNT", "4"}};
-  const Outcome made = run(in_array);
-  ASSERT_EQ(made.status, 0) << made.err;
+  succeeded(run(in_array));
   EXPECT_TRUE(fs::exists(at("t.3-of-4.nc")));
 }
 
 TEST_F(Shards, BadNumbers_OneLineEach) {
-  for (const std::string text : {"0/2", "3/2", "1", "a/b", "0/0", "1/0", "-1/2", "1.5/2"}) {
+  for (const std::string text : {"0/2", "3/2", "1", "a/b", "0/0", "1/0", "-1/2", "1.5/2"})
     expect_refused(dolp({"table", "grid.toml", "-o", "t.nc", "--shard=" + text}), "shard");
-  }
 }
 
 TEST_F(Shards, OneOfOne_HasTheNameOfAShard_AndMerges) {
-  ASSERT_EQ(dolp({"table", "grid.toml", "-o", "t.nc", "--shard", "1/1"}).status, 0);
+  succeeded(dolp("table grid.toml -o t.nc --shard 1/1"));
   EXPECT_FALSE(fs::exists(at("t.nc")));
-  ASSERT_EQ(dolp({"table", "grid.toml", "-o", "one.nc"}).status, 0);
-  const Outcome merged = dolp({"merge", "t.1-of-1.nc", "-o", "t.nc"});
-  ASSERT_EQ(merged.status, 0) << merged.err;
+  succeeded(dolp("table grid.toml -o one.nc"));
+  succeeded(dolp("merge t.1-of-1.nc -o t.nc"));
   expect_same("one.nc", "t.nc");
 }
 
@@ -159,44 +141,38 @@ q = [2.0]
     put("e.csv", "8,1.0\n12,1.0\n");
   }
 
-  Outcome shard(int number, const std::vector<std::string>& options = {}) {
-    return dolp(
-        joined({"table", "named.toml", "-o", "t.nc", "--shard", std::to_string(number) + "/2", "--evaluator", "cpu"},
-               options));
+  Outcome shard(int number, const Words& options = {}) {
+    const Words start = "table named.toml -o t.nc --evaluator cpu --shard " + std::to_string(number) + "/2";
+    return dolp(joined(start, options));
   }
-  Outcome merge() { return dolp(joined(joined({"merge"}, shard_names(2)), {"-o", "m.nc"})); }
+  Outcome merge() { return dolp(joined(joined("merge", shard_names(2)), "-o m.nc")); }
 };
 
 TEST_F(Inputs, NamedFileChangedBetweenShards_IsNamed_AndTheStaleShardIsComputedAgain) {
   for (const std::string name : {"m.csv", "e.csv"}) {
-    ASSERT_EQ(shard(1).status, 0);
+    succeeded(shard(1));
     put(name, name == "m.csv" ? "wavelength_um,n,k\n8,3.5,0.1\n12,3.5,0.1\n" : "8,2.0\n12,2.0\n");
-    ASSERT_EQ(shard(2).status, 0);
+    succeeded(shard(2));
     expect_refused(merge(), "t.2-of-2.nc: is a shard of another table: it has data fnv1a64:");
     EXPECT_FALSE(fs::exists(at("m.nc")));
-    const Outcome again = shard(1);
-    EXPECT_EQ(again.out.find("is there already"), std::string::npos) << again.out;
+    EXPECT_FALSE(contains(shard(1).out, "is there already"));
     EXPECT_EQ(merge().status, 0);
-    ASSERT_EQ(dolp({"table", "named.toml", "-o", "one.nc", "--evaluator", "cpu"}).status, 0);
+    succeeded(dolp("table named.toml -o one.nc --evaluator cpu"));
     expect_same("one.nc", "m.nc");
     fs::remove(at("m.nc"));
   }
 }
 
 TEST_F(Inputs, OtherEvaluatorOrOptions_AreNamed_AndAShardOfThemIsNotKept) {
-  const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
-      {{"--evaluator", "reference"}, "evaluator reference, not cpu"},
-      {{"--keep-all"}, "keep_all yes, not no"},
-      {{"--precision", "double"}, "precision double, not auto"},
-      {{"--quantities", "status,dolp"}, "quantities dolp,status, not all"}};
-  for (const auto& [options, part] : cases) {
-    ASSERT_EQ(shard(1).status, 0);
-    std::vector<std::string> other = {"table", "named.toml", "-o", "t.nc", "--shard", "2/2"};
-    if (options.front() != "--evaluator") other = joined(other, {"--evaluator", "cpu"});
-    ASSERT_EQ(dolp(joined(other, options)).status, 0);
+  for (const auto& [options, part] :
+       {std::pair("--evaluator reference", "evaluator reference, not cpu"),
+        {"--evaluator cpu --keep-all", "keep_all yes, not no"},
+        {"--evaluator cpu --precision double", "precision double, not auto"},
+        {"--evaluator cpu --quantities status,dolp", "quantities dolp,status, not all"}}) {
+    succeeded(shard(1));
+    succeeded(dolp(joined("table named.toml -o t.nc --shard 2/2", options)));
     expect_refused(merge(), part);
-    const Outcome again = shard(2);
-    EXPECT_EQ(again.out.find("is there already"), std::string::npos) << again.out;
+    EXPECT_FALSE(contains(shard(2).out, "is there already"));
     EXPECT_EQ(merge().status, 0);
   }
 }
@@ -206,19 +182,19 @@ class Edited : public Inputs {
  protected:
   void edit(const std::string& name, const std::string& text) {
     const std::string script = "import netCDF4; table = netCDF4.Dataset('" + name + "', 'a'); " + text;
-    ASSERT_EQ(run({.arguments = {"/usr/bin/python3", "-c", script}, .folder = at("")}).status, 0);
+    succeeded(run({.arguments = {"/usr/bin/python3", "-c", script}, .folder = at("")}));
   }
 };
 
 TEST_F(Edited, HashOfValuesMissing_IsRefusedByMergeAndVerify) {
   for (const std::string text : {"table.delncattr('values_hash')", "table.values_hash = 1.0"}) {
-    ASSERT_EQ(shard(1).status, 0);
-    ASSERT_EQ(shard(2).status, 0);
+    succeeded(shard(1));
+    succeeded(shard(2));
     edit("t.2-of-2.nc", text);
     expect_refused(merge(), "t.2-of-2.nc: has no text attribute values_hash");
-    expect_refused(dolp({"verify", "t.2-of-2.nc", "--between", "9"}), "t.2-of-2.nc: has no text attribute values_hash");
+    expect_refused(dolp("verify t.2-of-2.nc --between 9"), "t.2-of-2.nc: has no text attribute values_hash");
     // A later run computes the shard again.
-    EXPECT_EQ(shard(2).out.find("is there already"), std::string::npos);
+    EXPECT_FALSE(contains(shard(2).out, "is there already"));
     EXPECT_EQ(merge().status, 0);
   }
 }
@@ -227,8 +203,8 @@ TEST_F(Edited, VariableOfOneShardMissing_IsNamed) {
   for (const std::string name : {"status", "dolp", "stokes_i", "irradiance", "index_n"}) {
     for (const std::string of : {"t.1-of-2.nc", "t.2-of-2.nc"}) {
       for (const std::string& shard_file : shard_names(2)) fs::remove(at(shard_file));
-      ASSERT_EQ(shard(1).status, 0);
-      ASSERT_EQ(shard(2).status, 0);
+      succeeded(shard(1));
+      succeeded(shard(2));
       edit(of, "table.renameVariable('" + name + "', 'gone')");
       expect_refused(merge(), "");
       EXPECT_FALSE(fs::exists(at("m.nc")));
@@ -237,8 +213,8 @@ TEST_F(Edited, VariableOfOneShardMissing_IsNamed) {
 }
 
 TEST_F(Edited, AttributesOfOneShardMissing_AreNamed_AndOthersMayBeAdded) {
-  ASSERT_EQ(shard(1).status, 0);
-  ASSERT_EQ(shard(2).status, 0);
+  succeeded(shard(1));
+  succeeded(shard(2));
   edit("t.1-of-2.nc", "table.note = 'seen'; table.createVariable('mine', 'f8', ('theta',))[:] = 2.0");
   EXPECT_EQ(merge().status, 0);
   edit("t.1-of-2.nc", "table.shard = '1/99999999999999'");
@@ -249,13 +225,13 @@ TEST_F(Edited, AttributesOfOneShardMissing_AreNamed_AndOthersMayBeAdded) {
 
 class Resume : public Shards {
  protected:
-  const std::vector<std::string> command_ = joined({"table", "grid.toml", "-o", "t.nc", "--resume"}, kLarge);
+  const Words command_ = joined("table grid.toml -o t.nc --resume", kLarge);
 
-  void make_whole() { ASSERT_EQ(dolp(joined({"table", "grid.toml", "-o", "one.nc"}, kLarge)).status, 0); }
+  void make_whole() { succeeded(dolp(joined("table grid.toml -o one.nc", kLarge))); }
 
   /// Starts a run and sends it the signal after it has written its first part.
   Outcome interrupted(int signal) { return interrupted(signal, command_); }
-  Outcome interrupted(int signal, const std::vector<std::string>& words) {
+  Outcome interrupted(int signal, const Words& words) {
     TerminalProcess process(command(words));
     std::error_code missing;
     while (fs::file_size(at("t.nc.partial.txt"), missing) == 0 || missing)
@@ -269,19 +245,16 @@ TEST_F(Resume, AfterCtrlC_SaysHowToGoOn_AndGivesTheSameBits) {
   make_whole();
   const Outcome stopped = interrupted(SIGINT);
   EXPECT_EQ(stopped.status, 130);
-  EXPECT_NE(stopped.err.find("interrupted; 1 of 3 parts are in t.nc.partial: the same command with --resume goes on"),
-            std::string::npos)
-      << stopped.err;
+  EXPECT_TRUE(
+      contains(stopped.err, "interrupted; 1 of 3 parts are in t.nc.partial: the same command with --resume goes on"));
   EXPECT_FALSE(fs::exists(at("t.nc")));
-  const Outcome foreign = dolp(joined(command_, {"--set", "surface.k=0.3"}));
-  EXPECT_EQ(foreign.status, 2);
-  expect_one_line(foreign.err, "t.nc.partial: is of another run: it has scene fnv1a64:");
-  const Outcome resumed = dolp(command_);
-  ASSERT_EQ(resumed.status, 0) << resumed.err;
+  expect_refused(dolp(joined(command_, "--set surface.k=0.3")),
+                 "t.nc.partial: is of another run: it has scene fnv1a64:");
+  const Outcome resumed = succeeded(dolp(command_));
   expect_same("t.nc", "one.nc");
   EXPECT_FALSE(fs::exists(at("t.nc.partial")));
   EXPECT_FALSE(fs::exists(at("t.nc.partial.txt")));
-  EXPECT_NE(resumed.out.find("2621440"), std::string::npos) << resumed.out;
+  EXPECT_TRUE(contains(resumed.out, "2621440"));
 }
 
 // An interrupted run leaves its values in t.nc.partial and its progress in t.nc.partial.txt. One of the files is
@@ -308,8 +281,7 @@ TEST_F(Resume, OverADamagedPartialFile_GivesTheSameBits) {
     put("t.nc.partial", damaged[i].first);
     put("t.nc.partial.txt", damaged[i].second);
     if (i == 0) fs::remove(at("t.nc.partial"));
-    const Outcome resumed = dolp(command_);
-    ASSERT_EQ(resumed.status, 0) << resumed.err;
+    succeeded(dolp(command_));
     expect_same("t.nc", "one.nc");
     // Sizes differ only because attributes contain times and command lines.
     EXPECT_EQ(fs::file_size(at("t.nc")) / 10'000, fs::file_size(at("one.nc")) / 10'000);
@@ -323,7 +295,7 @@ TEST_F(Resume, PartialFileIsALink_IsRefused_AndWhatItPointsToStays) {
       put("precious", "mine");
       is_symbolic ? fs::create_symlink("precious", at(name)) : fs::create_hard_link(at("precious"), at(name));
       for (const bool is_resumed : {true, false}) {
-        std::vector<std::string> words = command_;
+        Words words = command_;
         if (!is_resumed) std::erase(words, "--resume");
         expect_refused(dolp(words), name + ": is a", 4);
         EXPECT_EQ(content("precious"), "mine");
@@ -335,7 +307,7 @@ TEST_F(Resume, PartialFileIsALink_IsRefused_AndWhatItPointsToStays) {
 
 TEST_F(Resume, AfterANamedFileChanged_IsRefused) {
   put("m.csv", "wavelength_um,n,k\n8,1.5,0\n12,1.5,0\n");
-  const std::vector<std::string> words = {"table", "named.toml", "-o", "t.nc", "--resume", "--tolerance", "1e-2"};
+  const Words words = "table named.toml -o t.nc --resume --tolerance 1e-2";
   put("named.toml", R"([surface]
 material_file = "m.csv"
 masking = "v-cavity"
@@ -353,9 +325,9 @@ q = { from = 1.8, to = 6, count = 64 }
 }
 
 TEST_F(Resume, OfACsv_IsTheCsvOfOneRun) {
-  const std::vector<std::string> small = {"--set", "grid.sigma=[0.1]", "--set", "grid.q=[2]"};
-  ASSERT_EQ(dolp(joined({"table", "grid.toml", "-o", "a.csv"}, small)).status, 0);
-  ASSERT_EQ(dolp(joined({"table", "grid.toml", "-o", "b.csv", "--resume"}, small)).status, 0);
+  const Words small = "--set grid.sigma=[0.1] --set grid.q=[2]";
+  succeeded(dolp(joined("table grid.toml -o a.csv", small)));
+  succeeded(dolp(joined("table grid.toml -o b.csv --resume", small)));
   EXPECT_EQ(data_lines(read_file(at("a.csv"))), data_lines(read_file(at("b.csv"))));
 }
 

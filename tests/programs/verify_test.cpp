@@ -51,16 +51,16 @@ TEST(CheckTable, NothingToCompare_IsRefused) {
   TableValues table = small_table();
   table[Quantity::kAlbedo] = {1.0};
   table[Quantity::kDolp] = {0.1};  // without error_estimate DOLP is not compared
-  EXPECT_NE(refusal(table, kScene).find("t.nc: has nothing to compare"), std::string::npos);
+  EXPECT_TRUE(contains(refusal(table, kScene), "t.nc: has nothing to compare"));
 }
 
 TEST(CheckTable, AxisOutOfRange_IsRefused) {
   TableValues table = small_table();
   table[Quantity::kDolp] = table[Quantity::kErrorEstimate] = {0.1};
   table.axes[Axis::kTheta] = {90.5};
-  EXPECT_NE(refusal(table, kScene).find("t.nc: axis theta: 90.5 is out of range"), std::string::npos);
+  EXPECT_TRUE(contains(refusal(table, kScene), "t.nc: axis theta: 90.5 is out of range"));
   table.axes[Axis::kTheta] = {std::numeric_limits<double>::quiet_NaN()};
-  EXPECT_NE(refusal(table, kScene).find("axis theta: nan"), std::string::npos);
+  EXPECT_TRUE(contains(refusal(table, kScene), "axis theta: nan"));
 }
 
 TEST(CheckTable, EmptyStatusAndNoEstimates_PromiseNothing) {
@@ -90,23 +90,19 @@ void put_attribute(const std::filesystem::path& path, const std::string& name, c
 }
 
 /// A grid of one entry. The reference takes most of the time of `dolp verify`, for each entry.
-const std::vector<std::string> kOneEntry = {"--set", "grid.theta_deg=60", "--set", "grid.sigma=0.1",
-                                            "--set", "grid.q=3.5"};
+const Words kOneEntry = "--set grid.theta_deg=60 --set grid.sigma=0.1 --set grid.q=3.5";
 /// A grid of four entries: two zeniths and two q.
-const std::vector<std::string> kFourEntries = {"--set", "grid.theta_deg=[30,60]", "--set", "grid.sigma=0.1",
-                                               "--set", "grid.q=[2,3.5]"};
+const Words kFourEntries = "--set grid.theta_deg=[30,60] --set grid.sigma=0.1 --set grid.q=[2,3.5]";
 
 class Verify : public CommandLine {
  protected:
   /// Makes a table of the grid in scene.toml: 16 entries.
-  TableValues make_table(const std::vector<std::string>& options = {}) const {
-    const Outcome outcome =
-        dolp(joined({"table", "scene.toml", "-o", "t.nc", "--quiet", "--evaluator", "cpu"}, options));
-    EXPECT_EQ(outcome.status, kDone) << outcome.err;
+  TableValues make_table(const Words& options = {}) const {
+    succeeded(dolp(joined("table scene.toml -o t.nc --quiet --evaluator cpu", options)));
     return read_table(at("t.nc"));
   }
-  nlohmann::json verify_json(Status expected, const std::vector<std::string>& options = {}) const {
-    const Outcome outcome = dolp(joined({"verify", "t.nc", "--json"}, options));
+  nlohmann::json verify_json(Status expected, const Words& options = {}) const {
+    const Outcome outcome = dolp(joined("verify t.nc --json", options));
     EXPECT_EQ(outcome.status, expected) << outcome.out << outcome.err;
     return nlohmann::json::parse(outcome.out);
   }
@@ -125,10 +121,8 @@ TEST_F(Verify, GoodTable_Exit0AndEveryQuantityIsCompared) {
   }
   EXPECT_EQ(names, (std::set<std::string>{"dolp", "q_over_i", "aolp_deg", "rho_i", "rho_q", "stokes_i", "stokes_q",
                                           "stokes_u", "stokes_v", "albedo", "emissivity_s", "emissivity_p"}));
-  const Outcome text = dolp({"verify", "t.nc"});
-  EXPECT_EQ(text.status, kDone);
-  EXPECT_NE(text.out.find("verdict    passed: 16 of 16 entries"), std::string::npos) << text.out;
-  EXPECT_EQ(dolp({"verify", "t.nc", "--quiet"}).out, "");
+  EXPECT_TRUE(contains(succeeded(dolp("verify t.nc")).out, "verdict    passed: 16 of 16 entries"));
+  EXPECT_EQ(dolp("verify t.nc --quiet").out, "");
 }
 
 TEST_F(Verify, AlbedoAndEmissivitiesOffByThreeBounds_AreFoundInEveryEntry) {
@@ -150,15 +144,14 @@ TEST_F(Verify, AlbedoAndEmissivitiesOffByThreeBounds_AreFoundInEveryEntry) {
 
 // The bound of rho is relative to rho_I, which is mostly diffuse here. The albedo is that of the specular part.
 TEST_F(Verify, AlbedoBesideAStrongDiffusePart_HasItsOwnBound) {
-  make_table(joined(kOneEntry, {"--set", "surface.masking=v-cavity", "--set", "surface.diffuse=1", "--set",
-                                "surface.diffuse_exponent=-0.9", "--set", "grid.theta_deg=89.99", "--set",
-                                "surface.n=3", "--set", "surface.k=90", "--set", "grid.sigma=0.06"}));
-  const nlohmann::json json = verify_json(kDone);
-  EXPECT_EQ(json["passed"], true);
+  make_table(joined(kOneEntry,
+                    "--set surface.masking=v-cavity --set surface.diffuse=1 --set surface.diffuse_exponent=-0.9 --set "
+                    "grid.theta_deg=89.99 --set surface.n=3 --set surface.k=90 --set grid.sigma=0.06"));
+  EXPECT_EQ(verify_json(kDone)["passed"], true);
 }
 
 TEST_F(Verify, RadiationWithoutPolarisation_HasABoundFromRho) {
-  const TableValues table = make_table({"--set", "grid.theta_deg=0"});
+  const TableValues table = make_table("--set grid.theta_deg=0");
   ASSERT_LT(table[Quantity::kDolp][0], 1e-8);  // the bound of DOLP divided by DOLP is useless
   // The bound is rho_error_estimate * rho_I times the emitted and the incident radiation. Both are at most this one.
   const double most = table[Quantity::kStokesI][0] / (1.0 - table[Quantity::kRhoI][0]);
@@ -172,16 +165,15 @@ TEST_F(Verify, RadiationWithoutPolarisation_HasABoundFromRho) {
 
 TEST_F(Verify, RadiationThatTheRunDropped_IsNoError) {
   // Diffuse light is unpolarised, so the surroundings change no DOLP, and the table lacks their light.
-  make_table({"--set", "surface.specular=0", "--set", "surface.diffuse=0.3"});
-  const nlohmann::json json = verify_json(kDone);
-  EXPECT_EQ(json["checked"], 16);
+  make_table("--set surface.specular=0 --set surface.diffuse=0.3");
+  EXPECT_EQ(verify_json(kDone)["checked"], 16);
 }
 
 TEST_F(Verify, Samples_AreThoseOfTheSeed) {
   make_table();
-  EXPECT_EQ(verify_json(kDone, {"--samples", "3"})["checked"], 3);
-  nlohmann::json first = verify_json(kDone, {"--samples", "3", "--seed", "5"});
-  nlohmann::json again = verify_json(kDone, {"--samples", "3", "--seed", "5"});
+  EXPECT_EQ(verify_json(kDone, "--samples 3")["checked"], 3);
+  nlohmann::json first = verify_json(kDone, "--samples 3 --seed 5");
+  nlohmann::json again = verify_json(kDone, "--samples 3 --seed 5");
   first.erase("wall_s");
   again.erase("wall_s");
   EXPECT_EQ(first, again);
@@ -196,16 +188,16 @@ TEST_F(Verify, Overrides_BelongToTheScene) {
 }
 
 TEST_F(Verify, EveryKindOfScene_Passes) {
-  for (const std::vector<std::string>& options :
-       {std::vector<std::string>{"--set", "geometry.mode=bistatic", "--set", "source.irradiance=1"},
-        {"--set", "spectrum.band_um=[8, 12]", "--set", "emission.model=fresnel"},
-        {"--set", "emission.bracket=true", "--set", "surface.masking=smith"},
-        {"--set", "emission.model=direct", "--set", "surface.masking=v-cavity", "--set", "grid.theta_deg=[0, 50]"},
-        {"--set", "surroundings.profile=clear-sky", "--set", "grid.theta_deg=40", "--set", "grid.sigma=0.2"},
-        {"--set", "surface.distribution=gaussian", "--set", "surface.diffuse=0.1", "--set", "path.transmittance=0.5"},
-        {"--set", "grid.sigma=[0, 0.4]"}}) {
+  for (const char* options :
+       {"--set geometry.mode=bistatic --set source.irradiance=1",
+        "--set spectrum.band_um=[8,12] --set emission.model=fresnel",
+        "--set emission.bracket=true --set surface.masking=smith",
+        "--set emission.model=direct --set surface.masking=v-cavity --set grid.theta_deg=[0,50]",
+        "--set surroundings.profile=clear-sky --set grid.theta_deg=40 --set grid.sigma=0.2",
+        "--set surface.distribution=gaussian --set surface.diffuse=0.1 --set path.transmittance=0.5",
+        "--set grid.sigma=[0,0.4]"}) {
     make_table(joined(kFourEntries, options));
-    EXPECT_EQ(verify_json(kDone)["passed"], true) << options[1];
+    EXPECT_EQ(verify_json(kDone)["passed"], true) << options;
   }
 }
 
@@ -218,30 +210,20 @@ TEST_F(Verify, RightAngle_IsTheReferencesLimit) {
 
 TEST_F(Verify, OneCorruptedValue_Exit1AndIsNamed) {
   const TableValues table =
-      make_table(joined(kFourEntries, {"--set", "surface.masking=v-cavity", "--set", "emission.bracket=true"}));
+      make_table(joined(kFourEntries, "--set surface.masking=v-cavity --set emission.bracket=true"));
   const std::size_t at_entry = table.position(1, 0, 1);  // theta 60, sigma 0.1, q 3.5
-  struct Corruption {
-    Quantity quantity;
-    bool is_dolp;
-  };
-  for (const Corruption& corruption : {Corruption{Quantity::kDolp, true},
-                                       {Quantity::kDolpLow, true},
-                                       {Quantity::kDolpHigh, true},
-                                       {Quantity::kQOverI, true},
-                                       {Quantity::kRhoI, false},
-                                       {Quantity::kRhoQ, false},
-                                       {Quantity::kStokesQ, true},
-                                       {Quantity::kStokesU, true},
-                                       {Quantity::kStokesV, true},
-                                       {Quantity::kStokesI, true}}) {
-    const std::string name = describe(corruption.quantity).name;
-    double bound = corruption.is_dolp ? table[Quantity::kErrorEstimate][at_entry]
-                                      : table[Quantity::kRhoErrorEstimate][at_entry] * table[Quantity::kRhoI][at_entry];
+  for (const Quantity quantity :
+       {Quantity::kDolp, Quantity::kDolpLow, Quantity::kDolpHigh, Quantity::kQOverI, Quantity::kRhoI, Quantity::kRhoQ,
+        Quantity::kStokesQ, Quantity::kStokesU, Quantity::kStokesV, Quantity::kStokesI}) {
+    const std::string name = describe(quantity).name;
+    double bound = name.starts_with("rho")
+                       ? table[Quantity::kRhoErrorEstimate][at_entry] * table[Quantity::kRhoI][at_entry]
+                       : table[Quantity::kErrorEstimate][at_entry];
     if (name.starts_with("stokes")) bound *= table[Quantity::kStokesI][at_entry];
-    if (corruption.quantity == Quantity::kStokesI) bound /= table[Quantity::kDolp][at_entry];
+    if (quantity == Quantity::kStokesI) bound /= table[Quantity::kDolp][at_entry];
     // The value in the table has an error of at most `bound`. After the change the error is at least two bounds.
     TableValues wrong = table;
-    wrong[corruption.quantity][at_entry] += 3.0 * bound;
+    wrong[quantity][at_entry] += 3.0 * bound;
     write_table(wrong, at("t.nc"));
     const nlohmann::json json = verify_json(kAccuracy);
     EXPECT_EQ(json["passed"], false);
@@ -251,10 +233,10 @@ TEST_F(Verify, OneCorruptedValue_Exit1AndIsNamed) {
     EXPECT_EQ(failure["theta_deg"], 60.0);
     EXPECT_EQ(failure["sigma"], 0.1);
     EXPECT_EQ(failure["q"], 3.5);
-    const Outcome text = dolp({"verify", "t.nc"});
+    const Outcome text = dolp("verify t.nc");
     EXPECT_EQ(text.status, kAccuracy);
-    EXPECT_NE(text.out.find(std::string(name) + " at theta 60, sigma 0.1, q 3.5"), std::string::npos);
-    EXPECT_NE(text.out.find("verdict    failed: 1 values"), std::string::npos) << text.out;
+    EXPECT_TRUE(contains(text.out, name + " at theta 60, sigma 0.1, q 3.5"));
+    EXPECT_TRUE(contains(text.out, "verdict    failed: 1 values"));
   }
 }
 
@@ -274,7 +256,7 @@ TEST_F(Verify, EstimateBeyondTheToleranceWithoutStatus2_IsFoundByTheTolerance) {
 
 TEST_F(Verify, EntriesThatAreNan_AreComparedAsSuch) {
   // Without masking rho diverges at 90 degrees. It is NaN there, and the status has the bits with the values 1 and 4.
-  const TableValues table = make_table({"--set", "surface.masking=none", "--set", "grid.theta_deg=[30, 90]"});
+  const TableValues table = make_table("--set surface.masking=none --set grid.theta_deg=[30,90]");
   const std::size_t diverges = table.position(1, 0, 0);
   ASSERT_TRUE(std::isnan(table[Quantity::kRhoI][diverges]));
   verify_json(kDone);
@@ -290,11 +272,10 @@ TEST_F(Verify, EntriesThatAreNan_AreComparedAsSuch) {
 
 TEST_F(Verify, IntensityThatOverflows_IsNotWrong) {
   put("sky.csv", "zenith_deg,radiance\n0,1e308\n90,9e307\n");
-  const TableValues table = make_table(joined(kFourEntries, {"--set", "surroundings.profile=sky.csv"}));
+  const TableValues table = make_table(joined(kFourEntries, "--set surroundings.profile=sky.csv"));
   EXPECT_EQ(table.status, std::vector<std::uint32_t>(4, 4));
   EXPECT_EQ(table[Quantity::kStokesU], std::vector<double>(4, 0.0));
-  const nlohmann::json json = verify_json(kDone);
-  EXPECT_EQ(json["passed"], true);
+  EXPECT_EQ(verify_json(kDone)["passed"], true);
   put_value(at("t.nc"), Quantity::kRhoI, 3, table[Quantity::kRhoI][3] * 1.01);
   EXPECT_EQ(verify_json(kAccuracy)["failures"].size(), 1U);
 }
@@ -306,21 +287,17 @@ TEST_F(Verify, ReducedVariables_AreComparedAsFarAsTheyAreThere) {
     table[quantity].clear();
   }
   write_table(table, at("t.nc"));
-  const nlohmann::json json = verify_json(kDone);
   // These are dolp, q_over_i, aolp_deg, stokes_i, stokes_q, albedo, emissivity_s and emissivity_p.
-  EXPECT_EQ(json["quantities"].size(), 8U);
+  EXPECT_EQ(verify_json(kDone)["quantities"].size(), 8U);
 }
 
 TEST_F(Verify, ChangedScene_IsRefused) {
   make_table();
   std::string scene = kScene;
   put_attribute(at("t.nc"), "scene", scene.replace(scene.find("sigma = 0.3"), 11, "sigma = 0.4"));
-  const Outcome outcome = dolp({"verify", "t.nc"});
-  EXPECT_EQ(outcome.status, kInput);
-  EXPECT_NE(outcome.err.find("t.nc: attribute \"scene_hash\""), std::string::npos) << outcome.err;
+  expect_refused(dolp("verify t.nc"), "t.nc: attribute \"scene_hash\"");
   put_attribute(at("t.nc"), "scene", "[surface");
-  EXPECT_NE(dolp({"verify", "t.nc"}).err.find("t.nc: attribute \"scene\": scene.toml:1: not valid TOML"),
-            std::string::npos);
+  expect_refused(dolp("verify t.nc"), "t.nc: attribute \"scene\": scene.toml:1: not valid TOML");
 }
 
 TEST_F(Verify, FilesOfTheScene_AreFoundFromWhereTheTableWasMade) {
@@ -329,37 +306,31 @@ TEST_F(Verify, FilesOfTheScene_AreFoundFromWhereTheTableWasMade) {
   std::string scene = kScene;
   scene.replace(scene.find("n = 1.5\nk = 0.1"), 15, "material_file = \"index.csv\"");
   put("folder/scene.toml", scene);
-  const Outcome made = dolp({"table", "folder/scene.toml", "-o", "t.nc", "--quiet", "--evaluator", "cpu"});
-  ASSERT_EQ(made.status, kDone) << made.err;
-  verify_json(kDone, {"--named-files"});
+  succeeded(dolp("table folder/scene.toml -o t.nc --quiet --evaluator cpu"));
+  verify_json(kDone, "--named-files");
   std::filesystem::remove(at("folder/index.csv"));
-  const Outcome outcome = dolp({"verify", "t.nc", "--named-files"});
-  EXPECT_EQ(outcome.status, kInput);
-  EXPECT_NE(outcome.err.find("surface.material_file = \"index.csv\": cannot be read"), std::string::npos)
-      << outcome.err;
+  expect_refused(dolp("verify t.nc --named-files"), "surface.material_file = \"index.csv\": cannot be read");
 }
 
 TEST_F(Verify, TheTableAlone_IsSufficient) {
   put("index.csv", "wavelength_um,n,k\n7,1.4,0.1\n9,1.5,0.1\n13,1.6,0.1\n");
   put("formula.yml", "DATA:\n  - type: formula 5\n    wavelength_range: 7 13\n    coefficients: 1.5 0.01 1\n");
   put("light.csv", "7,1\n9,3\n13,2\n");
-  for (const std::vector<std::string>& options : {std::vector<std::string>{"--set", "surface.material_file=index.csv"},
-                                                  {"--set", "surface.material_file=formula.yml", "--set",
-                                                   "spectrum.band_um=[8, 12]", "--set", "source.file=light.csv"},
-                                                  {"--set", "surface.material=iron", "--set", "source.preset=sun"}}) {
+  for (const char* options :
+       {"--set surface.material_file=index.csv",
+        "--set surface.material_file=formula.yml --set spectrum.band_um=[8,12] --set source.file=light.csv",
+        "--set surface.material=iron --set source.preset=sun"}) {
     put("index.csv", "wavelength_um,n,k\n7,1.4,0.1\n9,1.5,0.1\n13,1.6,0.1\n");
     const TableValues table = make_table(options);
     EXPECT_FALSE(table.index_n.values.empty());
-    const nlohmann::json before = verify_json(kDone, {"--named-files", "--samples", "1"})["quantities"];
+    const nlohmann::json before = verify_json(kDone, "--named-files --samples 1")["quantities"];
     put("index.csv", "wavelength_um,n,k\n7,2.4,0.1\n13,2.6,0.1\n");
-    EXPECT_EQ(verify_json(kDone, {"--samples", "1"})["quantities"], before) << options[1];
+    EXPECT_EQ(verify_json(kDone, "--samples 1")["quantities"], before) << options;
   }
-  TableValues old = make_table({"--set", "surface.material_file=index.csv"});
+  TableValues old = make_table("--set surface.material_file=index.csv");
   old.index_n = {};
   write_table(old, at("t.nc"));
-  const Outcome outcome = dolp({"verify", "t.nc"});
-  EXPECT_EQ(outcome.status, kInput);
-  EXPECT_NE(outcome.err.find("is not in the table; dolp verify --named-files"), std::string::npos) << outcome.err;
+  expect_refused(dolp("verify t.nc"), "is not in the table; dolp verify --named-files");
 }
 
 TEST_F(Verify, FilesThatATableNames_AreNotQuoted) {
@@ -376,14 +347,13 @@ TEST_F(Verify, FilesThatATableNames_AreNotQuoted) {
     put("index.csv", index);
     put("light.csv", light);
     put("record.yml", record);
-    make_table(name == "light.csv" ? std::vector<std::string>{"--set", "source.file=light.csv"}
-                                   : std::vector<std::string>{"--set", "surface.material_file=" + name});
+    const std::string key = name == "light.csv" ? "source.file" : "surface.material_file";
+    make_table("--set " + key + "=" + name);
     for (const std::string& secret : secrets) {
       put(name, secret);
-      const Outcome outcome = dolp({"verify", "t.nc", "--named-files"});
-      EXPECT_EQ(outcome.status, kInput) << secret;
-      EXPECT_EQ(outcome.err.find("secret"), std::string::npos) << outcome.err;
-      EXPECT_NE(outcome.err.find(name), std::string::npos) << outcome.err;
+      const Outcome outcome = dolp("verify t.nc --named-files");
+      EXPECT_FALSE(contains(outcome.err, "secret"));
+      expect_refused(outcome, name);
     }
   }
 }
@@ -394,20 +364,20 @@ TEST_F(Verify, WrongFiles_Exit2InOneLine) {
   foreign[Quantity::kDolp] = {0.1};
   write_table(foreign, at("foreign.nc"));
   put("table.csv", "theta_deg,sigma,q\n");
-  const std::vector<std::pair<std::vector<std::string>, std::string>> mistakes = {
-      {{"verify"}, "name a TABLE, or --hard-cases"},
-      {{"verify", "none.nc"}, "none.nc: there is no such file"},
-      {{"verify", "scene.toml"}, "scene.toml: is not a NetCDF table of dolp"},
-      {{"verify", "table.csv"}, "table.csv: only a table written as .nc"},
-      {{"verify", "foreign.nc"}, "foreign.nc: has no attribute \"scene\""},
-      {{"verify", "t.nc", "--hard-cases"}, "--hard-cases"},
-      {{"verify", "t.nc", "--samples", "0"}, "--samples"},
-      {{"verify", "t.nc", "--tolerance", "1e-3"}, "--tolerance"},
-      {{"verify", "--hard-cases", "--samples", "3"}, "--samples"},
-      {{"verify", "--hard-cases", "--tolerance", "much"}, "--tolerance much: must be a number in [1e-10, 0.01]"},
-      {{"verify", "--hard-cases", "--tolerance", "1"}, "tolerance 1: must be a number in [1e-10, 0.01]"},
-      {{"verify", "--hard-cases", "--evaluator", "reference"}, "reference"},
-      {{"verify", "--hard-cases", "--precision", "half"}, "half"}};
+  const std::vector<std::pair<std::string, std::string>> mistakes = {
+      {"verify", "name a TABLE, or --hard-cases"},
+      {"verify none.nc", "none.nc: there is no such file"},
+      {"verify scene.toml", "scene.toml: is not a NetCDF table of dolp"},
+      {"verify table.csv", "table.csv: only a table written as .nc"},
+      {"verify foreign.nc", "foreign.nc: has no attribute \"scene\""},
+      {"verify t.nc --hard-cases", "--hard-cases"},
+      {"verify t.nc --samples 0", "--samples"},
+      {"verify t.nc --tolerance 1e-3", "--tolerance"},
+      {"verify --hard-cases --samples 3", "--samples"},
+      {"verify --hard-cases --tolerance much", "--tolerance much: must be a number in [1e-10, 0.01]"},
+      {"verify --hard-cases --tolerance 1", "tolerance 1: must be a number in [1e-10, 0.01]"},
+      {"verify --hard-cases --evaluator reference", "reference"},
+      {"verify --hard-cases --precision half", "half"}};
   for (const auto& [arguments, message] : mistakes) {
     SCOPED_TRACE(message);
     expect_refused(dolp(arguments), message);
@@ -415,10 +385,8 @@ TEST_F(Verify, WrongFiles_Exit2InOneLine) {
 }
 
 TEST_F(Verify, HardCases_OneLinePerModelAndAllRowsOnRequest) {
-  const std::vector<std::string> command = {"verify", "--hard-cases", "--evaluator", "cpu", "--precision", "double"};
-  std::vector<std::string> with_json = command;
-  with_json.push_back("--json");
-  const Outcome outcome = dolp(with_json);
+  const Words command = "verify --hard-cases --evaluator cpu --precision double";
+  const Outcome outcome = dolp(joined(command, "--json"));
   const nlohmann::json json = nlohmann::json::parse(outcome.out);
   ASSERT_EQ(json["precisions"].size(), 1U);
   const nlohmann::json& rows = json["precisions"][0]["cases"];
@@ -427,20 +395,18 @@ TEST_F(Verify, HardCases_OneLinePerModelAndAllRowsOnRequest) {
   EXPECT_EQ(outcome.status, json["failures"] == 0 ? kDone : kAccuracy);
   const auto failed = std::ranges::count_if(rows, [](const nlohmann::json& row) { return row["ok"] == false; });
   EXPECT_EQ(json["failures"], failed);
-  const auto lines = [&](const std::vector<std::string>& arguments) {
+  const auto lines = [&](const Words& arguments) {
     const std::string out = dolp(arguments).out;
     return static_cast<std::size_t>(std::ranges::count(out, '\n'));
   };
   // 3 lines for title, device and verdict, and a line for each of the 8 pairs of distribution and masking.
   constexpr std::size_t kFrame = 3 + 8;
   EXPECT_EQ(lines(command), kFrame + static_cast<std::size_t>(failed));
-  std::vector<std::string> with_all = command;
-  with_all.push_back("--all");
-  EXPECT_EQ(lines(with_all), kFrame + rows.size());
+  EXPECT_EQ(lines(joined(command, "--all")), kFrame + rows.size());
 }
 
 TEST_F(Verify, Devices_AreNamedAndMeasuredInEachPrecision) {
-  const nlohmann::json devices = report({"devices"})["devices"];
+  const nlohmann::json devices = report("devices")["devices"];
   EXPECT_TRUE(std::ranges::any_of(devices, [](const auto& device) { return device["usable"] == true; })) << devices;
   for (const nlohmann::json& device : devices) {
     const nlohmann::json& in_float = device["quality"]["float"];

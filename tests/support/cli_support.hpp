@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "contains.hpp"
 #include "in_folder.hpp"
 #include "program.hpp"
 
@@ -29,34 +30,53 @@ inline const std::vector<std::string> kResultColumns = {
 inline const std::vector<std::pair<std::string, std::string>> kNoDriver = {{"VK_DRIVER_FILES", "/nonexistent.json"},
                                                                            {"VK_ICD_FILENAMES", "/nonexistent.json"}};
 
-inline std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
-/// Expects a message of dolp that is one line and contains `part`.
-inline void expect_one_line(const std::string& err, const std::string& part = "") {
-  EXPECT_EQ(std::ranges::count(err, '\n'), 1) << err;
-  EXPECT_TRUE(err.starts_with("dolp: ") && err.ends_with('\n')) << err;
-  EXPECT_NE(err.find(part), std::string::npos) << err;
-}
-
-/// Expects the exit status `status`, no output, and a message of one line that contains `part`.
-inline void expect_refused(const Outcome& outcome, const std::string& part, int status = 2) {
-  EXPECT_EQ(outcome.status, status);
-  EXPECT_EQ(outcome.out, "");
-  expect_one_line(outcome.err, part);
-}
-
-/// Columns of a CSV file, by name.
-using Columns = std::map<std::string, std::vector<double>>;
-
 inline std::vector<std::string> split_at(const std::string& text, char separator) {
   std::vector<std::string> parts;
   std::istringstream stream(text);
   for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
   return parts;
 }
+
+/// The words of a command line: a list, or a text that is cut at its spaces.
+struct Words : std::vector<std::string> {
+  Words() = default;
+  Words(std::initializer_list<std::string> words) : std::vector<std::string>(words) {}
+  Words(std::vector<std::string> words) : std::vector<std::string>(std::move(words)) {}
+  Words(const std::string& line) : Words(split_at(line, ' ')) {}
+  Words(const char* line) : Words(std::string(line)) {}
+};
+
+inline Words joined(Words a, const Words& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+/// Expects the exit status 0, and returns the outcome.
+inline Outcome succeeded(Outcome outcome) {
+  EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+  return outcome;
+}
+
+/// The JSON that a program printed. Expects the exit status 0.
+inline nlohmann::json printed_json(const Outcome& outcome) { return nlohmann::json::parse(succeeded(outcome).out); }
+
+/// Expects a message of `program` that is one line and contains `part`.
+inline void expect_one_line(const std::string& err, const std::string& part = "", const std::string& program = "dolp") {
+  EXPECT_EQ(std::ranges::count(err, '\n'), 1) << err;
+  EXPECT_TRUE(err.starts_with(program + ": ") && err.ends_with('\n')) << err;
+  EXPECT_TRUE(contains(err, part));
+}
+
+/// Expects the exit status `status`, no output, and a message of one line that contains `part`.
+inline void expect_refused(const Outcome& outcome, const std::string& part, int status = 2,
+                           const std::string& program = "dolp") {
+  EXPECT_EQ(outcome.status, status) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  expect_one_line(outcome.err, part, program);
+}
+
+/// Columns of a CSV file, by name.
+using Columns = std::map<std::string, std::vector<double>>;
 
 /// The lines of a CSV file without its attributes (#), which contain time and command line.
 inline std::vector<std::string> data_lines(const std::string& csv) {
@@ -90,33 +110,27 @@ class CommandLine : public InFolder {
     put("points.csv", kPoints);
   }
 
-  Command command(std::vector<std::string> arguments) const {
+  Command command(Words arguments) const {
     arguments.insert(arguments.begin(), DOLP_PROGRAM);
     return {.arguments = std::move(arguments), .folder = folder()};
   }
-  Outcome dolp(const std::vector<std::string>& arguments, const std::string& input = "") const {
+  Outcome dolp(const Words& arguments, const std::string& input = "") const {
     Command wanted = command(arguments);
     wanted.input = input;
     return run(wanted);
   }
   /// Runs `dolp` without a Vulkan device.
-  Outcome without_device(const std::vector<std::string>& arguments) const {
+  Outcome without_device(const Words& arguments) const {
     Command wanted = command(arguments);
     wanted.environment = kNoDriver;
     return run(wanted);
   }
   /// The JSON report of a command that must succeed.
-  nlohmann::json report(const std::vector<std::string>& arguments) const {
-    const Outcome outcome = dolp(joined(arguments, {"--json"}));
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return nlohmann::json::parse(outcome.out);
-  }
+  nlohmann::json report(const Words& arguments) const { return printed_json(dolp(joined(arguments, "--json"))); }
   /// The output of `dolp eval` for points.csv.
-  Columns eval(const std::vector<std::string>& options) const {
-    const Outcome outcome =
-        dolp(joined({"eval", "scene.toml", "--points", "points.csv", "-o", "-", "--quiet"}, options));
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return parse_csv(outcome.out);
+  Columns eval(const Words& options) const {
+    const Words start = "eval scene.toml --points points.csv -o - --quiet";
+    return parse_csv(succeeded(dolp(joined(start, options))).out);
   }
 };
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "contains.hpp"
 #include "error_text.hpp"
 #include "scene/scene_reader.hpp"
 
@@ -27,6 +28,4 @@ inline SceneValues parse(const std::string& text, const std::vector<std::string>
 inline std::string error_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
   return error_text([&] { parse(text, overrides); });
 }
-
-inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 }  // namespace dolp

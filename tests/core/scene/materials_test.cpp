@@ -1,4 +1,5 @@
 // Materials, the sun, and the data files of a scene.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -47,34 +48,27 @@ TEST(Material_BuiltIn, HasTheRowsThatItsSourceCounts) {
 TEST(Material_BuiltIn, IsWithinTheThinningOfTheWholeRecord) {
   // host/data/materials.csv omits rows of the database. This changes N = n + ik by at most kThinning |N|.
   constexpr double kThinning = 1e-3;
-  struct Case {
-    const char* name;
-    double n, k;
-  };
   // n and k at 10.6 um, interpolated by hand in the complete records of the database, to five digits.
-  const std::vector<Case> cases = {
-      {"iron", 7.3703, 29.487},
-      {"iron (Querry)", 5.5281, 30.891},
-      {"chromium", 8.1627, 34.703},
-      {"gold evaporated (Olmon)", 12.053, 69.463},
-      {"copper (Querry ingot)", 7.9376, 61.880},
-      {"silver", 11.180, 72.941},
-      {"silicon", 3.4189, 0.00012525},
-      {"SiO2 fused silica", 2.0331, 0.02096},
-      {"BK7 borosilicate", 2.4080, 0.65976},
-      {"oxidised Al mirror", 42.666, 65.844},
-      {"water 25C", 1.1786, 0.07232},
-      {"Ge germanium", 4.0036, 0.0},
-      {"Si3N4 silicon nitride film", 1.9402, 1.5458},
-      {"ZnS sulfide", 2.1895, 0.002},
-      {"CaF2 calcium fluoride (Li)", 1.2811, 0.0},
-      {"CaF2 calcium fluoride (Kaiser)", 1.286, 0.003597},
-      {"kaolinite pellet", 1.5555, 0.46781},
-      {"montmorillonite pellet", 1.8812, 0.18479},
-  };
-  for (const Case& row : cases) {
-    const OpticalConstants index = find_material(row.name, kCo2Line, "").at(10.6);
-    EXPECT_LE(std::hypot(index.n - row.n, index.k - row.k), kThinning * std::hypot(row.n, row.k)) << row.name;
+  for (const auto& [name, n, k] : {std::tuple("iron", 7.3703, 29.487),
+                                   {"iron (Querry)", 5.5281, 30.891},
+                                   {"chromium", 8.1627, 34.703},
+                                   {"gold evaporated (Olmon)", 12.053, 69.463},
+                                   {"copper (Querry ingot)", 7.9376, 61.880},
+                                   {"silver", 11.180, 72.941},
+                                   {"silicon", 3.4189, 0.00012525},
+                                   {"SiO2 fused silica", 2.0331, 0.02096},
+                                   {"BK7 borosilicate", 2.4080, 0.65976},
+                                   {"oxidised Al mirror", 42.666, 65.844},
+                                   {"water 25C", 1.1786, 0.07232},
+                                   {"Ge germanium", 4.0036, 0.0},
+                                   {"Si3N4 silicon nitride film", 1.9402, 1.5458},
+                                   {"ZnS sulfide", 2.1895, 0.002},
+                                   {"CaF2 calcium fluoride (Li)", 1.2811, 0.0},
+                                   {"CaF2 calcium fluoride (Kaiser)", 1.286, 0.003597},
+                                   {"kaolinite pellet", 1.5555, 0.46781},
+                                   {"montmorillonite pellet", 1.8812, 0.18479}}) {
+    const OpticalConstants index = find_material(name, kCo2Line, "").at(10.6);
+    EXPECT_LE(std::hypot(index.n - n, index.k - k), kThinning * std::hypot(n, k)) << name;
   }
 }
 
@@ -87,24 +81,17 @@ TEST(Material_OverABand, HasItsTable) {
 }
 
 TEST(Material_OutsideItsTable, IsRefusedWithTheRange) {
-  struct Case {
-    const char* name;
-    const char* spectrum;
-    const char* expected;
-  };
-  const std::vector<Case> cases = {
-      {"iron", "wavelength_um = 1.99", "\"iron\" are known at 2 to 20 um, and the spectrum is 1.99 um"},
-      {"iron", "wavelength_um = 20.1", "\"iron\" are known at 2 to 20 um, and the spectrum is 20.1 um"},
-      {"iron", "band_um = [1, 5]", "\"iron\" are known at 2 to 20 um, and the spectrum is 1 to 5 um"},
-      {"iron", "band_um = [15, 21]", "\"iron\" are known at 2 to 20 um, and the spectrum is 15 to 21 um"},
-      {"water", "band_um = [1, 30]", "\"water 25C\" are known at 2 to 20 um, and the spectrum is 1 to 30 um"},
-      {"oxidised", "wavelength_um = 13", "\"oxidised Al mirror\" are known at 2 to 12.5 um, and the spectrum is 13 um"},
-  };
-  for (const Case& row : cases) {
-    const std::string text = "[surface]\nsigma = 0.3\nmaterial = \"" + std::string(row.name) +
-                             "\"\n[emission]\ntemperature_K = 300\n[spectrum]\n" + row.spectrum + "\n";
-    EXPECT_EQ(error_of(text),
-              "s.toml:3: surface.material = \"" + std::string(row.name) + "\": n and k of " + row.expected);
+  for (const auto& [name, spectrum, expected] :
+       {std::tuple("iron", "wavelength_um = 1.99", "\"iron\" are known at 2 to 20 um, and the spectrum is 1.99 um"),
+        {"iron", "wavelength_um = 20.1", "\"iron\" are known at 2 to 20 um, and the spectrum is 20.1 um"},
+        {"iron", "band_um = [1, 5]", "\"iron\" are known at 2 to 20 um, and the spectrum is 1 to 5 um"},
+        {"iron", "band_um = [15, 21]", "\"iron\" are known at 2 to 20 um, and the spectrum is 15 to 21 um"},
+        {"water", "band_um = [1, 30]", "\"water 25C\" are known at 2 to 20 um, and the spectrum is 1 to 30 um"},
+        {"oxidised", "wavelength_um = 13",
+         "\"oxidised Al mirror\" are known at 2 to 12.5 um, and the spectrum is 13 um"}}) {
+    const std::string text = fmt::format(
+        "[surface]\nsigma = 0.3\nmaterial = \"{}\"\n[emission]\ntemperature_K = 300\n[spectrum]\n{}\n", name, spectrum);
+    EXPECT_EQ(error_of(text), fmt::format("s.toml:3: surface.material = \"{}\": n and k of {}", name, expected));
   }
 }
 
@@ -118,22 +105,20 @@ TEST(Material_Name, IgnoresCaseAndMayBeSomeOfItsWords) {
 }
 
 TEST(Material_NameUnknown, NamesTheNearest) {
-  EXPECT_TRUE(contains(error_of(kMinimal, {"surface.material=irom"}), "--set surface.material=irom: unknown material"));
-  EXPECT_TRUE(contains(error_of(kMinimal, {"surface.material=irom"}), "known: iron"));
-  EXPECT_TRUE(contains(error_of(kMinimal, {"surface.material=aluminium"}), "aluminium (Rakic), aluminium (Ordal)"));
-  EXPECT_TRUE(contains(error_of(kMinimal, {"surface.material=sea water"}), "known: water 25C"));
-  EXPECT_TRUE(contains(error_of(kMinimal, {"surface.material=kaolinit"}), "known: kaolinite pellet"));
-  EXPECT_TRUE(contains(error_of(kMinimal, {"surface.material=zinc sulfide"}), "known: zinc selenide, ZnS sulfide"));
+  for (const auto& [name, part] : {std::pair("irom", "--set surface.material=irom: unknown material"),
+                                   {"irom", "known: iron"},
+                                   {"aluminium", "aluminium (Rakic), aluminium (Ordal)"},
+                                   {"sea water", "known: water 25C"},
+                                   {"kaolinit", "known: kaolinite pellet"},
+                                   {"zinc sulfide", "known: zinc selenide, ZnS sulfide"}})
+    EXPECT_TRUE(contains(error_of(kMinimal, {std::string("surface.material=") + name}), part));
 }
 
 TEST(Material_NameOfNoBuiltIn, SaysHowToGiveNAndK) {
-  for (const std::string name : {"asphalt", "paint", "steel", "stainless steel", "concrete", ""}) {
-    const std::string error = error_of(kMinimal, {"surface.material=" + name});
-    EXPECT_TRUE(contains(error,
+  for (const std::string name : {"asphalt", "paint", "steel", "stainless steel", "concrete", ""})
+    EXPECT_TRUE(contains(error_of(kMinimal, {"surface.material=" + name}),
                          "is not one of the 41 built-in materials, which dolp materials lists; give its n and k as "
-                         "numbers, or as a file by material_file"))
-        << error;
-  }
+                         "numbers, or as a file by material_file"));
 }
 
 const std::string kDatabaseRecord =
@@ -182,11 +167,9 @@ TEST(MaterialFile_WithoutK, HasNone) {
 TEST(MaterialFile_OfOneRow, HoldsAtItsWavelengthOnly) {
   const TemporaryFile file("paint.csv", "wavelength_um,n,k\n10.6,1.5,0.1\n");
   EXPECT_EQ(read_material_file(file.path(), kCo2Line, "").constant, (OpticalConstants{1.5, 0.1}));
-  for (const char* spectrum : {"spectrum.wavelength_um=10.5", "spectrum.band_um=[10.5, 10.7]"}) {
+  for (const char* spectrum : {"spectrum.wavelength_um=10.5", "spectrum.band_um=[10.5, 10.7]"})
     EXPECT_TRUE(contains(error_of(kMinimal, {"surface.material_file=" + file.path(), spectrum}),
-                         "\"paint.csv\" are known at 10.6 um, and the spectrum is 10.5 "))
-        << spectrum;
-  }
+                         "\"paint.csv\" are known at 10.6 um, and the spectrum is 10.5 "));
 }
 
 std::string formula(const std::string& range, const std::string& coefficients, int number = 1) {
@@ -196,56 +179,46 @@ std::string formula(const std::string& range, const std::string& coefficients, i
 
 // Coefficients from publications. The comments name the material and, if published, its index at the wavelength.
 TEST(Dispersion_Formulas, HaveThePublishedValues) {
-  struct Case {
-    int number;
-    const char* coefficients;
-    double wavelength_um;
-    double n;
-  };
-  const std::vector<Case> cases = {
-      // fused silica, Malitson 1965: 1.4504
-      {1, "0 0.6961663 0.0684043 0.4079426 0.1162414 0.8974794 9.896161", 1.0, 1.4504174},
-      // ZnSe, Connolly 1979: 2.4028
-      {1, "0 4.45813734 0.200859853 0.467216334 0.391371166 2.89566290 47.1362108", 10.6, 2.4027809},
-      // NaCl, Li 1976: 1.4947
-      {1, "0.00055 0.198 0.05 0.48398 0.1 0.38696 0.128 0.25998 0.158 0.08796 40.5 3.17064 60.98 0.30038 120.34", 10.0,
-       1.4947343},
-      // Ge, Burnett 2016: 4.0036
-      {2, "0 0.4886331 1.393959 14.5142535 0.1626427 0.0091224 752.190", 10.6, 4.0035563},
-      // BK7: n_d = 1.51680, in two notations
-      {2, "0 1.03961212 0.00600069867 0.231792344 0.0200179144 1.01046945 103.560653", 0.5875618, 1.5168000},
-      {3, "2.2718929 -0.010108077 2 0.010592509 -2 2.0816965e-4 -4 -7.6472538e-6 -6 4.9240991e-7 -8", 0.5875618,
-       1.5167997},
-      // LiB3O5, Chen 1989: 1.5656; TiO2, DeVore 1951: 2.613
-      {4, "2.4542 0.01125 0 0.01135 1 0 0 0 1 -0.01388 2", 1.0, 1.5657903},
-      {4, "5.913 0.2441 0 0.0803 1", 0.5893, 2.6129140},
-      // BK7 with textbook coefficients
-      {5, "1.5046 0.0042 -2", 0.5893, 1.5166942},
-      // air, Ciddor 1996: 1.000277
-      {6, "0 0.05792105 238.0185 0.00167917 57.362", 0.5893, 1.0002771},
-      // Si, Edwards 1980: 3.42
-      {7, "3.41983 0.159906 -0.123109 1.26878e-6 -1.95104e-9", 10.0, 3.4215246},
-      // AgBr, Schröter 1931
-      {8, "0.452505 0.09939 0.070537 -0.0015", 0.5893, 2.2555035},
-      // urea, Rosker 1985
-      {9, "2.51527 0.0240 0.0300 0.0202 1.52 0.8771", 0.5893, 1.6062783},
-  };
-  constexpr double kShownDigits = 1e-7;  // the indices above have seven decimals
-  for (const Case& row : cases) {
-    const double um = row.wavelength_um;
+  constexpr double kShownDigits = 1e-7;  // the indices below have seven decimals
+  for (const auto& [number, coefficients, um, n] :
+       {// fused silica, Malitson 1965: 1.4504
+        std::tuple(1, "0 0.6961663 0.0684043 0.4079426 0.1162414 0.8974794 9.896161", 1.0, 1.4504174),
+        // ZnSe, Connolly 1979: 2.4028
+        {1, "0 4.45813734 0.200859853 0.467216334 0.391371166 2.89566290 47.1362108", 10.6, 2.4027809},
+        // NaCl, Li 1976: 1.4947
+        {1, "0.00055 0.198 0.05 0.48398 0.1 0.38696 0.128 0.25998 0.158 0.08796 40.5 3.17064 60.98 0.30038 120.34",
+         10.0, 1.4947343},
+        // Ge, Burnett 2016: 4.0036
+        {2, "0 0.4886331 1.393959 14.5142535 0.1626427 0.0091224 752.190", 10.6, 4.0035563},
+        // BK7: n_d = 1.51680, in two notations
+        {2, "0 1.03961212 0.00600069867 0.231792344 0.0200179144 1.01046945 103.560653", 0.5875618, 1.5168000},
+        {3, "2.2718929 -0.010108077 2 0.010592509 -2 2.0816965e-4 -4 -7.6472538e-6 -6 4.9240991e-7 -8", 0.5875618,
+         1.5167997},
+        // LiB3O5, Chen 1989: 1.5656; TiO2, DeVore 1951: 2.613
+        {4, "2.4542 0.01125 0 0.01135 1 0 0 0 1 -0.01388 2", 1.0, 1.5657903},
+        {4, "5.913 0.2441 0 0.0803 1", 0.5893, 2.6129140},
+        // BK7 with textbook coefficients
+        {5, "1.5046 0.0042 -2", 0.5893, 1.5166942},
+        // air, Ciddor 1996: 1.000277
+        {6, "0 0.05792105 238.0185 0.00167917 57.362", 0.5893, 1.0002771},
+        // Si, Edwards 1980: 3.42
+        {7, "3.41983 0.159906 -0.123109 1.26878e-6 -1.95104e-9", 10.0, 3.4215246},
+        // AgBr, Schröter 1931
+        {8, "0.452505 0.09939 0.070537 -0.0015", 0.5893, 2.2555035},
+        // urea, Rosker 1985
+        {9, "2.51527 0.0240 0.0300 0.0202 1.52 0.8771", 0.5893, 1.6062783}}) {
     const std::string range = std::to_string(0.99 * um) + " " + std::to_string(1.01 * um);
-    const TemporaryFile file("f.yml", formula(range, row.coefficients, row.number));
+    const TemporaryFile file("f.yml", formula(range, coefficients, number));
     const Material material = read_material_file(file.path(), {um, um}, "");
-    EXPECT_NEAR(material.at(um).n, row.n, kShownDigits) << row.number << ": " << row.coefficients;
+    EXPECT_NEAR(material.at(um).n, n, kShownDigits) << number << ": " << coefficients;
     EXPECT_EQ(material.at(um).k, 0.0);
   }
 }
 
 TEST(MaterialFile_FormulaAndTable, AreJoined) {
-  const TemporaryFile file("f.yml", formula("0.5 18",
-                                            "0 4.45813734 0.200859853 0.467216334 0.391371166 2.8956629 "
-                                            "47.1362108") +
-                                        "  - type: tabulated k\n    data: |\n      9 0.5\n      12 1.0\n");
+  const TemporaryFile file("f.yml",
+                           formula("0.5 18", "0 4.45813734 0.200859853 0.467216334 0.391371166 2.8956629 47.1362108") +
+                               "  - type: tabulated k\n    data: |\n      9 0.5\n      12 1.0\n");
   const Material material = read_material_file(file.path(), {9.0, 12.0}, "");
   EXPECT_FALSE(material.is_constant());
   EXPECT_NEAR(material.at(10.6).n, 2.4027809, 1e-7);
@@ -253,60 +226,54 @@ TEST(MaterialFile_FormulaAndTable, AreJoined) {
 }
 
 TEST(MaterialFile_Wrong, NamesFileAndLine) {
-  struct Case {
-    const char* name;
-    std::string text;
-    const char* expected;
-  };
-  const std::vector<Case> cases = {
-      {"e.csv", "", "e.csv:1: no values of n"},
-      {"e.csv", "8,1.5,0\n", "e.csv:1: the columns must be named first"},
-      {"e.csv", "wl,n,k\n8,0,1\n", "e.csv:2: n = 0: out of range; must be a number in (0, 1e6]"},
-      {"e.csv", "wl,n,k\n8,1,-1\n9,1,1\n", "e.csv:2: k = -1: out of range; must be a number in [-1e-05, 1e6]"},
-      {"e.csv", "wl,n,k\n8,1,1\n7,2,1\n8,1.5,1\n", "e.csv:4: wavelength_um = 8: has n = 1 and 1.5"},
-      {"e.csv", "wl,n\n8,1\nwl,n\n7,1\n", "e.csv:4: wavelength_um = 7: must be greater than 8"},
-      {"e.csv", "wl,n,k\n8,1,-2e6\n", "e.csv:2: k = -2e6: out of range"},
-      {"e.csv", "wl,n,k\n0.01,1,1\n", "e.csv:1: no values of n at wavelengths in [0.1, 1e4] um"},
-      {"e.csv", "wl,n,k\n-8,1,1\n", "e.csv:2: wavelength_um = -8: out of range"},
-      {"e.csv", "wavelength_mm,n,k\n8,1,1\n",
-       "column \"wavelength_mm\" is unknown; the nearest known is wavelength_um"},
-      {"e.txt", "# a record\nDATA:\n  - type: tabulated n\n", "e.txt:1: is a YAML record; the name must end in .yml"},
-      {"e.csv", "wl,k\n8,1\n", "e.csv:1: no values of n, only of k"},
-      {"e.yml", "DATA:\n  - type: formula 10\n", "e.yml:2: type = formula 10: must be tabulated nk"},
-      {"e.yml", "DATA:\n  - type: formula 1\n    coefficients: 0 1 0.1\n", "e.yml:2: wavelength_range: missing"},
-      {"e.yml", formula("8 14", ""), "e.yml:2: coefficients: missing; a DATA item must have it"},
-      {"e.yml", formula("8 14", "0 1"), "e.yml:4: coefficients = 0 1: 2 numbers; formula 1 takes 1, 3, 5,"},
-      {"e.yml", formula("8 14", "0 1 x"), "e.yml:4: coefficients = x: not a number"},
-      {"e.yml", formula("8", "0 1 0.1"), "e.yml:3: wavelength_range = 8: must be two numbers, in um"},
-      {"e.yml", formula("8 14", "-3 1 0.1"), "e.yml:4: n is in (0, 1e6] nowhere in the range of the formula"},
-      {"e.yml", formula("8 20", "0 1 11"), "n and k of \"e.yml\" are known at 11.01"},
-      {"e.yml", formula("8 14", "0 0.5 11"), "n = nan of \"e.yml\" at 10.6 um: the formula has a pole there"},
-      {"e.yml", formula("1 5", "0 1 0.1"), "known at 1 to 5 um, and the spectrum is 10.6 um"},
-      {"e.yml", formula("8 14", "0 1 0.1") + "  - type: tabulated n\n    data: 20 1\n",
-       "e.yml:5: type = tabulated n: n is given twice"},
-      {"e.yml", "DATA: 1\n", "e.yml:1: DATA: must be a list of items"},
-      {"e.yml", "DATA:\n  - 1\n", "e.yml:2: a DATA item has the keys type and data"},
-      {"e.yml", "DATA:\n  - type: [1]\n", "e.yml:2: type: missing"},
-      {"e.yml", "DATA:\n  - {type\n", "not valid YAML: "},
-      {"e.yml", "a: *b\n", "e.yml:1: not valid YAML: "},
-      {"e.yml", std::string(1U << 20U, '['), "e.yml:1: nested too deeply"},
-      {"e.yml", "a: &a [*a]\nDATA: *a\n", "a DATA item has the keys type and data"},
-      {"e.yml", std::string(5U << 20U, 'x'), "e.yml: is longer than 4194304 bytes without its rows of numbers"},
-      {"e.yml", "DATA:\n  - type: tabulated n\n    data: |\n        8 1 1\n",
-       "e.yml:4: 1: one value too many after column n; there are 2 columns"},
-      {"e.yml", "DATA:\n  - type: tabulated n\n    rows: 1\n",
-       "e.yml:3: rows: 1: a DATA item has the keys type and data"},
-      {"e.yml", "n: 1\n", "e.yml:1: no values of n: it has no list DATA"},
-      {"e.yml", "- SHELF: main\n", "e.yml:1: no values of n: it is a catalogue"},
-      {"e.yml", "ABOUT: a metal\n", "e.yml:1: no values of n: it describes a material"},
-      {"e.yml", "wl,n\n8,1\n", "e.yml:1: no values of n: it has no keys; a CSV must have another name"},
-      {"e.yml", "DATA:\n  - type: tabulated k\n    data: 8 1\n",
-       "e.yml:1: no values of n, only of k, at wavelengths in [0.1, 1e4] um"},
-  };
-  for (const Case& row : cases) {
-    const TemporaryFile file(row.name, row.text);
-    const std::string error = error_of(kMinimal, {"surface.material_file=" + file.path()});
-    EXPECT_TRUE(contains(error, row.expected)) << error << "\nwithout: " << row.expected;
+  using Row = std::tuple<const char*, std::string, const char*>;
+  for (const auto& [name, text, expected] : std::vector<Row>{
+           {"e.csv", "", "e.csv:1: no values of n"},
+           {"e.csv", "8,1.5,0\n", "e.csv:1: the columns must be named first"},
+           {"e.csv", "wl,n,k\n8,0,1\n", "e.csv:2: n = 0: out of range; must be a number in (0, 1e6]"},
+           {"e.csv", "wl,n,k\n8,1,-1\n9,1,1\n", "e.csv:2: k = -1: out of range; must be a number in [-1e-05, 1e6]"},
+           {"e.csv", "wl,n,k\n8,1,1\n7,2,1\n8,1.5,1\n", "e.csv:4: wavelength_um = 8: has n = 1 and 1.5"},
+           {"e.csv", "wl,n\n8,1\nwl,n\n7,1\n", "e.csv:4: wavelength_um = 7: must be greater than 8"},
+           {"e.csv", "wl,n,k\n8,1,-2e6\n", "e.csv:2: k = -2e6: out of range"},
+           {"e.csv", "wl,n,k\n0.01,1,1\n", "e.csv:1: no values of n at wavelengths in [0.1, 1e4] um"},
+           {"e.csv", "wl,n,k\n-8,1,1\n", "e.csv:2: wavelength_um = -8: out of range"},
+           {"e.csv", "wavelength_mm,n,k\n8,1,1\n",
+            "column \"wavelength_mm\" is unknown; the nearest known is wavelength_um"},
+           {"e.txt", "# a record\nDATA:\n  - type: tabulated n\n",
+            "e.txt:1: is a YAML record; the name must end in .yml"},
+           {"e.csv", "wl,k\n8,1\n", "e.csv:1: no values of n, only of k"},
+           {"e.yml", "DATA:\n  - type: formula 10\n", "e.yml:2: type = formula 10: must be tabulated nk"},
+           {"e.yml", "DATA:\n  - type: formula 1\n    coefficients: 0 1 0.1\n", "e.yml:2: wavelength_range: missing"},
+           {"e.yml", formula("8 14", ""), "e.yml:2: coefficients: missing; a DATA item must have it"},
+           {"e.yml", formula("8 14", "0 1"), "e.yml:4: coefficients = 0 1: 2 numbers; formula 1 takes 1, 3, 5,"},
+           {"e.yml", formula("8 14", "0 1 x"), "e.yml:4: coefficients = x: not a number"},
+           {"e.yml", formula("8", "0 1 0.1"), "e.yml:3: wavelength_range = 8: must be two numbers, in um"},
+           {"e.yml", formula("8 14", "-3 1 0.1"), "e.yml:4: n is in (0, 1e6] nowhere in the range of the formula"},
+           {"e.yml", formula("8 20", "0 1 11"), "n and k of \"e.yml\" are known at 11.01"},
+           {"e.yml", formula("8 14", "0 0.5 11"), "n = nan of \"e.yml\" at 10.6 um: the formula has a pole there"},
+           {"e.yml", formula("1 5", "0 1 0.1"), "known at 1 to 5 um, and the spectrum is 10.6 um"},
+           {"e.yml", formula("8 14", "0 1 0.1") + "  - type: tabulated n\n    data: 20 1\n",
+            "e.yml:5: type = tabulated n: n is given twice"},
+           {"e.yml", "DATA: 1\n", "e.yml:1: DATA: must be a list of items"},
+           {"e.yml", "DATA:\n  - 1\n", "e.yml:2: a DATA item has the keys type and data"},
+           {"e.yml", "DATA:\n  - type: [1]\n", "e.yml:2: type: missing"},
+           {"e.yml", "DATA:\n  - {type\n", "not valid YAML: "},
+           {"e.yml", "a: *b\n", "e.yml:1: not valid YAML: "},
+           {"e.yml", std::string(1U << 20U, '['), "e.yml:1: nested too deeply"},
+           {"e.yml", "a: &a [*a]\nDATA: *a\n", "a DATA item has the keys type and data"},
+           {"e.yml", std::string(5U << 20U, 'x'), "e.yml: is longer than 4194304 bytes without its rows of numbers"},
+           {"e.yml", "DATA:\n  - type: tabulated n\n    data: |\n        8 1 1\n",
+            "e.yml:4: 1: one value too many after column n; there are 2 columns"},
+           {"e.yml", "DATA:\n  - type: tabulated n\n    rows: 1\n",
+            "e.yml:3: rows: 1: a DATA item has the keys type and data"},
+           {"e.yml", "n: 1\n", "e.yml:1: no values of n: it has no list DATA"},
+           {"e.yml", "- SHELF: main\n", "e.yml:1: no values of n: it is a catalogue"},
+           {"e.yml", "ABOUT: a metal\n", "e.yml:1: no values of n: it describes a material"},
+           {"e.yml", "wl,n\n8,1\n", "e.yml:1: no values of n: it has no keys; a CSV must have another name"},
+           {"e.yml", "DATA:\n  - type: tabulated k\n    data: 8 1\n",
+            "e.yml:1: no values of n, only of k, at wavelengths in [0.1, 1e4] um"}}) {
+    const TemporaryFile file(name, text);
+    EXPECT_TRUE(contains(error_of(kMinimal, {"surface.material_file=" + file.path()}), expected));
   }
 }
 
@@ -345,9 +312,8 @@ TEST(MaterialFile_FormulaWithAPole, HoldsWhereTheSpectrumHasNone) {
   const std::string set = "surface.material_file=" + file.path();
   EXPECT_NEAR(read_material_file(file.path(), {8.0, 8.0}, "").at(8.0).n, std::sqrt(1.0 - 32.0 / 57.0), kDigits);
   EXPECT_EQ(error_of(kMinimal, {set, "grid.wavelength_um=[8, 12]", "spectrum.wavelength_um=8"}), "no error");
-  for (const std::string spectrum : {"grid.wavelength_um=[8, 10, 12]", "spectrum.band_um=[8, 12]"}) {
-    EXPECT_TRUE(contains(error_of(kMinimal, {set, spectrum}), " um: the formula has a pole there")) << spectrum;
-  }
+  for (const char* spectrum : {"grid.wavelength_um=[8, 10, 12]", "spectrum.band_um=[8, 12]"})
+    EXPECT_TRUE(contains(error_of(kMinimal, {set, spectrum}), " um: the formula has a pole there"));
 }
 
 TEST(Sun_Irradiance, HasTheValuesOfTheFile_AndIsAPowerOfWavelengthBetweenThem) {
@@ -376,26 +342,19 @@ TEST(Sun_OutsideItsTable, IsRefused) {
 }
 
 TEST(IrradianceFile_Wrong, NamesFileAndLine) {
-  struct Case {
-    const char* text;
-    const char* expected;
-  };
-  const std::vector<Case> cases = {
-      {"", "e.csv:1: no rows"},
-      {"# only\nwavelength_um,irradiance\n", "e.csv:1: no rows"},
-      {"wavelength_um,irradiance\nother,names\n", "e.csv:2: wavelength_um = other: not a number"},
-      {"wavelength_um,irradiance_W_m2_nm\n8,1\n",
-       "column \"irradiance_W_m2_nm\" is unknown; the nearest known is irradiance, allowed are wavelength_um (or "
-       "wavelength_nm, wavenumber_cm, energy_eV), irradiance (W m-2 um-1)"},
-      {"wavelength_um\n8\n", "e.csv:1: column \"irradiance\" is missing, a number in [0, inf)"},
-      {"8,-1\n", "e.csv:1: irradiance = -1: out of range; must be a number in [0, inf)"},
-      {"9,1\n8,1\n9,2\n", "e.csv:3: wavelength_um = 9: has irradiance = 1 and 2"},
-      {"8,1\n10,1\n", "known at 8 to 10 um, and the spectrum is 10.6 um"},
-  };
-  for (const Case& row : cases) {
-    const TemporaryFile file("e.csv", row.text);
-    const std::string error = error_of(kMinimal, {"source.file=" + file.path()});
-    EXPECT_TRUE(contains(error, row.expected)) << error << "\nwithout: " << row.expected;
+  for (const auto& [text, expected] :
+       {std::pair("", "e.csv:1: no rows"),
+        {"# only\nwavelength_um,irradiance\n", "e.csv:1: no rows"},
+        {"wavelength_um,irradiance\nother,names\n", "e.csv:2: wavelength_um = other: not a number"},
+        {"wavelength_um,irradiance_W_m2_nm\n8,1\n",
+         "column \"irradiance_W_m2_nm\" is unknown; the nearest known is irradiance, allowed are wavelength_um (or "
+         "wavelength_nm, wavenumber_cm, energy_eV), irradiance (W m-2 um-1)"},
+        {"wavelength_um\n8\n", "e.csv:1: column \"irradiance\" is missing, a number in [0, inf)"},
+        {"8,-1\n", "e.csv:1: irradiance = -1: out of range; must be a number in [0, inf)"},
+        {"9,1\n8,1\n9,2\n", "e.csv:3: wavelength_um = 9: has irradiance = 1 and 2"},
+        {"8,1\n10,1\n", "known at 8 to 10 um, and the spectrum is 10.6 um"}}) {
+    const TemporaryFile file("e.csv", text);
+    EXPECT_TRUE(contains(error_of(kMinimal, {"source.file=" + file.path()}), expected));
   }
 }
 
@@ -404,10 +363,8 @@ TEST(NamedFile_ThatIsNoRegularFile, IsRefused) {
   const std::string pipe = beside.path() + ".pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   for (const std::string key : {"surface.material_file", "source.file"}) {
-    for (const std::string& path : {pipe, std::string("/dev/zero"), std::string("-")}) {
-      const std::string error = error_of(kMinimal, {std::string(key).append("=").append(path)});
-      EXPECT_TRUE(error.ends_with(": is not a regular file")) << error;
-    }
+    for (const std::string& path : {pipe, std::string("/dev/zero"), std::string("-")})
+      EXPECT_TRUE(error_of(kMinimal, {key + "=" + path}).ends_with(": is not a regular file")) << key << " = " << path;
   }
 }
 

@@ -88,45 +88,40 @@ TEST(Points_EndsOfTheRanges, AreAcceptedWhereClosed) {
 }
 
 TEST(PointsError_EveryOne, NamesFileLineColumnValueAndRange) {
-  struct Case {
-    const char* text;
-    const char* expected;
-  };
-  const std::vector<Case> cases = {
-      {"", "p.csv:1: the file is empty"},
-      {"\n\n", "p.csv:1: the file is empty"},
-      {"teta_deg\n1\n", "p.csv:1: column \"teta_deg\" is unknown; the nearest known is theta_deg"},
-      {"theta\n1\n", "p.csv:1: column \"theta\" is unknown; the nearest known is theta_deg"},
-      {"theta_deg,\n1\n", "p.csv:1: column \"\" is unknown"},
-      {"theta_i_deg\n1\n", "p.csv:1: column \"theta_i_deg\" is unknown; the nearest known is theta_deg"},
-      {"1,2\n", "p.csv:1: the columns must be named first: theta_deg, sigma"},
-      {"id\n1\n", "p.csv:1: column \"id\" is unknown; allowed are theta_deg"},
-      {"k\n1 2\n", "p.csv:2: 2: one value too many after column k"},
-      {"theta_deg,material\n1\n", "p.csv:2: material: the value is missing"},
-      {"theta_deg,sigma\n1;0.1\n", "p.csv:2: 1;0.1: cells must be separated by commas, not semicolons; numbers must"},
-      {"theta_deg,sigma\n1,5,0,1\n",
-       "p.csv:2: 0: one value too many after column sigma; there are 2 columns; numbers "},
-      {"theta_deg,sigma\n\"1,5\",0.1\n",
-       "p.csv:2: theta_deg = 1,5: not a number; must be a number in [0, 90]; numbers must have a decimal point"},
-      {"q,q\n2,2\n", "p.csv:1: column \"q\" appears twice"},
-      {"theta_deg,sigma\n1,0.1\n2\n", "p.csv:3: sigma: the value is missing; must be a number in [0, 10]"},
-      {"theta_deg,sigma\n1,\n", "p.csv:2: sigma: the value is missing"},
-      {"theta_deg,sigma\n ,1\n", "p.csv:2: theta_deg: the value is missing; must be a number in [0, 90]"},
-      {"theta_deg\n1\n\n2\n", "p.csv:3: theta_deg: the value is missing"},
-      {"theta_deg,q\n1,2\n,\n1,2\n", "p.csv:3: theta_deg: the value is missing"},
-      {"theta_deg\n1,2\n", "p.csv:2: 2: one value too many after column theta_deg"},
-      {"theta_deg\n1,\n", "p.csv:2: : one value too many after column theta_deg"},
-      {"theta_deg\n91\n", "p.csv:2: theta_deg = 91: out of range; must be a number in [0, 90]"},
-      {"theta_deg\n-1e-9\n", "p.csv:2: theta_deg = -1e-9: out of range; must be a number in [0, 90]"},
-      {"sigma\n10.1\n", "p.csv:2: sigma = 10.1: out of range; must be a number in [0, 10]"},
-      {"q\n1\n", "p.csv:2: q = 1: out of range; must be a number in (1, 1e4]"},
-      {"n\n0\n", "p.csv:2: n = 0: out of range; must be a number in (0, 1e6]"},
-      {"k\n-0.1\n", "p.csv:2: k = -0.1: out of range; must be a number in [0, 1e6]"},
-      {"# comment\nteta_deg\n", "p.csv:2: column \"teta_deg\" is unknown"},
-      {"theta_deg\n# comment\n91\n", "p.csv:3: theta_deg = 91: out of range"},
-      {"theta_deg,dolp\n1,2\n", "p.csv:1: column \"dolp\" is unknown"},
-  };
-  for (const Case& row : cases) EXPECT_TRUE(error_of(row.text).starts_with(row.expected)) << error_of(row.text);
+  for (const auto& [text, expected] :
+       {std::pair("", "p.csv:1: the file is empty"),
+        {"\n\n", "p.csv:1: the file is empty"},
+        {"teta_deg\n1\n", "p.csv:1: column \"teta_deg\" is unknown; the nearest known is theta_deg"},
+        {"theta\n1\n", "p.csv:1: column \"theta\" is unknown; the nearest known is theta_deg"},
+        {"theta_deg,\n1\n", "p.csv:1: column \"\" is unknown"},
+        {"theta_i_deg\n1\n", "p.csv:1: column \"theta_i_deg\" is unknown; the nearest known is theta_deg"},
+        {"1,2\n", "p.csv:1: the columns must be named first: theta_deg, sigma"},
+        {"id\n1\n", "p.csv:1: column \"id\" is unknown; allowed are theta_deg"},
+        {"k\n1 2\n", "p.csv:2: 2: one value too many after column k"},
+        {"theta_deg,material\n1\n", "p.csv:2: material: the value is missing"},
+        {"theta_deg,sigma\n1;0.1\n", "p.csv:2: 1;0.1: cells must be separated by commas, not semicolons; numbers must"},
+        {"theta_deg,sigma\n1,5,0,1\n",
+         "p.csv:2: 0: one value too many after column sigma; there are 2 columns; numbers "},
+        {"theta_deg,sigma\n\"1,5\",0.1\n",
+         "p.csv:2: theta_deg = 1,5: not a number; must be a number in [0, 90]; numbers must have a decimal point"},
+        {"q,q\n2,2\n", "p.csv:1: column \"q\" appears twice"},
+        {"theta_deg,sigma\n1,0.1\n2\n", "p.csv:3: sigma: the value is missing; must be a number in [0, 10]"},
+        {"theta_deg,sigma\n1,\n", "p.csv:2: sigma: the value is missing"},
+        {"theta_deg,sigma\n ,1\n", "p.csv:2: theta_deg: the value is missing; must be a number in [0, 90]"},
+        {"theta_deg\n1\n\n2\n", "p.csv:3: theta_deg: the value is missing"},
+        {"theta_deg,q\n1,2\n,\n1,2\n", "p.csv:3: theta_deg: the value is missing"},
+        {"theta_deg\n1,2\n", "p.csv:2: 2: one value too many after column theta_deg"},
+        {"theta_deg\n1,\n", "p.csv:2: : one value too many after column theta_deg"},
+        {"theta_deg\n91\n", "p.csv:2: theta_deg = 91: out of range; must be a number in [0, 90]"},
+        {"theta_deg\n-1e-9\n", "p.csv:2: theta_deg = -1e-9: out of range; must be a number in [0, 90]"},
+        {"sigma\n10.1\n", "p.csv:2: sigma = 10.1: out of range; must be a number in [0, 10]"},
+        {"q\n1\n", "p.csv:2: q = 1: out of range; must be a number in (1, 1e4]"},
+        {"n\n0\n", "p.csv:2: n = 0: out of range; must be a number in (0, 1e6]"},
+        {"k\n-0.1\n", "p.csv:2: k = -0.1: out of range; must be a number in [0, 1e6]"},
+        {"# comment\nteta_deg\n", "p.csv:2: column \"teta_deg\" is unknown"},
+        {"theta_deg\n# comment\n91\n", "p.csv:3: theta_deg = 91: out of range"},
+        {"theta_deg,dolp\n1,2\n", "p.csv:1: column \"dolp\" is unknown"}})
+    EXPECT_TRUE(error_of(text).starts_with(expected)) << error_of(text);
 }
 
 TEST(PointsError_NotANumber, IsRefusedWhateverItsForm) {

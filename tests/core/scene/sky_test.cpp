@@ -23,38 +23,35 @@ std::string refusal_of(const std::string& text) {
 }
 
 TEST(SkyProfile, BadFile_IsOneLineThatNamesFileLineAndWhatIsAllowed) {
-  struct Case {
-    const char* text;
-    const char* message;
-  };
   for (const auto& [text, message] : {
-           Case{"",
-                "sky.csv:1: the file is empty; a line of column names is expected: zenith_deg, temperature_K, radiance "
-                "(W m-2 sr-1 um-1), wavelength_um (or wavelength_nm, wavenumber_cm, energy_eV)"},
-           Case{"zenith_deg,temperature_K\n", "sky.csv:1: no rows; zenith_deg from 0 to 90 is expected"},
-           Case{"temperature_K\n200\n", "sky.csv:1: column \"zenith_deg\" is missing, a number in [0, 90]"},
-           Case{"zenith_deg\n0\n",
-                "sky.csv:1: needs one of the columns temperature_K, a number in [0, 1e4], and radiance, W m-2 sr-1 "
-                "um-1"},
-           Case{"zenith_deg,temperature_K,radiance\n0,1,1\n",
-                "sky.csv:1: needs one of the columns temperature_K, a number in [0, 1e4], and radiance, W m-2 sr-1 "
-                "um-1; both are there"},
-           Case{"zenith_deg,height\n0,1\n",
-                "sky.csv:1: column \"height\" is unknown; allowed are zenith_deg, temperature_K, radiance (W m-2 sr-1 "
-                "um-1), wavelength_um (or wavelength_nm, wavenumber_cm, energy_eV)"},
-           Case{"zenith_deg,temperature_K\n10,200\n90,250\n",
-                "sky.csv:2: zenith_deg = 10: must be 0 in one row, and 90 in another"},
-           Case{"zenith_deg,temperature_K\n0,200\n80,250\n", "sky.csv:3: zenith_deg = 80: must be 90 in one row"},
-           Case{"zenith_deg,temperature_K\n0,200\n50,250\n90,270\n50,260\n",
-                "sky.csv:5: zenith_deg = 50: is in line 3 too"},
-           Case{"zenith_deg,temperature_K\n0,200\n95,250\n",
-                "sky.csv:3: zenith_deg = 95: out of range; must be a number in [0, 90]"},
-           Case{"zenith_deg,radiance\n0,-1\n90,1\n",
-                "sky.csv:2: radiance = -1: out of range; must be a number in [0, inf)"},
-           Case{"wavelength_um,zenith_deg,radiance\n8,0,1\n8,90,1\n9,0,1\n",
-                "sky.csv:4: zenith_deg = 0: must be 90 in one row"},
-           Case{"wavelength_um,zenith_deg,radiance\n8,0,1\n8,90,1\n9,0,1\n9,30,1\n9,90,1\n",
-                "sky.csv:5: zenith_deg = 30: each wavelength must have the same angles, and the first has 90"},
+           std::pair(
+               "",
+               "sky.csv:1: the file is empty; a line of column names is expected: zenith_deg, temperature_K, radiance "
+               "(W m-2 sr-1 um-1), wavelength_um (or wavelength_nm, wavenumber_cm, energy_eV)"),
+           {"zenith_deg,temperature_K\n", "sky.csv:1: no rows; zenith_deg from 0 to 90 is expected"},
+           {"temperature_K\n200\n", "sky.csv:1: column \"zenith_deg\" is missing, a number in [0, 90]"},
+           {"zenith_deg\n0\n",
+            "sky.csv:1: needs one of the columns temperature_K, a number in [0, 1e4], and radiance, W m-2 sr-1 "
+            "um-1"},
+           {"zenith_deg,temperature_K,radiance\n0,1,1\n",
+            "sky.csv:1: needs one of the columns temperature_K, a number in [0, 1e4], and radiance, W m-2 sr-1 "
+            "um-1; both are there"},
+           {"zenith_deg,height\n0,1\n",
+            "sky.csv:1: column \"height\" is unknown; allowed are zenith_deg, temperature_K, radiance (W m-2 sr-1 "
+            "um-1), wavelength_um (or wavelength_nm, wavenumber_cm, energy_eV)"},
+           {"zenith_deg,temperature_K\n10,200\n90,250\n",
+            "sky.csv:2: zenith_deg = 10: must be 0 in one row, and 90 in another"},
+           {"zenith_deg,temperature_K\n0,200\n80,250\n", "sky.csv:3: zenith_deg = 80: must be 90 in one row"},
+           {"zenith_deg,temperature_K\n0,200\n50,250\n90,270\n50,260\n",
+            "sky.csv:5: zenith_deg = 50: is in line 3 too"},
+           {"zenith_deg,temperature_K\n0,200\n95,250\n",
+            "sky.csv:3: zenith_deg = 95: out of range; must be a number in [0, 90]"},
+           {"zenith_deg,radiance\n0,-1\n90,1\n",
+            "sky.csv:2: radiance = -1: out of range; must be a number in [0, inf)"},
+           {"wavelength_um,zenith_deg,radiance\n8,0,1\n8,90,1\n9,0,1\n",
+            "sky.csv:4: zenith_deg = 0: must be 90 in one row"},
+           {"wavelength_um,zenith_deg,radiance\n8,0,1\n8,90,1\n9,0,1\n9,30,1\n9,90,1\n",
+            "sky.csv:5: zenith_deg = 30: each wavelength must have the same angles, and the first has 90"},
        }) {
     EXPECT_EQ(refusal_of(text), message);
   }
@@ -62,10 +59,8 @@ TEST(SkyProfile, BadFile_IsOneLineThatNamesFileLineAndWhatIsAllowed) {
 
 TEST(SkyProfile, Text_ReadsBackAsTheSameProfile) {
   for (const char* text : {"zenith_deg,temperature_K\n0,220.5\n33.3,240\n90,288\n",
-                           "wavelength_um,zenith_deg,radiance\n8,0,3.25\n8,90,9\n14,0,2\n14,90,7\n"}) {
-    const SkyProfile profile = parse_sky_profile(text, "sky.csv");
-    EXPECT_EQ(profile.text(), text);
-  }
+                           "wavelength_um,zenith_deg,radiance\n8,0,3.25\n8,90,9\n14,0,2\n14,90,7\n"})
+    EXPECT_EQ(parse_sky_profile(text, "sky.csv").text(), text);
 }
 
 TEST(SkyProfile, RowsInAnyOrder_AreTheSameProfile) {

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Prints radiometry_values.hpp: Planck radiances and smooth-surface absorptances in 50 digits, rounded to double.
+"""Writes planck.csv and smooth_absorptance.csv beside itself, computed with 50 digits. Needs python3-mpmath.
 
-Usage: make_radiometry_values.py > radiometry_values.hpp. Needs python3-mpmath. The formulas are in textbook
-form. 1 - |r|^2 cancels for small absorptances, but enough of the 50 digits remain.
+The formulas are in textbook form. 1 - |r|^2 cancels for small absorptances, but enough of the 50 digits remain.
 """
+import pathlib
+
 import mpmath as mp
 
 mp.mp.dps = 50
@@ -38,17 +39,12 @@ def number(value):
     return "0.0" if abs(value) < mp.mpf("1e-300") else mp.nstr(value, 20, min_fixed=1, max_fixed=0)
 
 
-print("// Written by make_radiometry_values.py; do not edit.")
-print("#pragma once\n\n#include <array>\n")
-print("struct PlanckValue {\n  double wavelength_um, temperature_K, radiance;\n};")
-rows = [(w, t, planck(w, t)) for w in WAVELENGTHS_UM for t in TEMPERATURES_K]
-print(f"inline constexpr std::array<PlanckValue, {len(rows)}> kPlanckValues = {{{{")
-for w, t, value in rows:
-    print(f"    {{{w}, {t}, {number(value)}}},")
-print("}};\n")
-print("struct AbsorptanceValue {\n  double n, k, cosine, s, p;\n};")
-rows = [(n, k, c, *absorptance(n, k, c)) for n, k in INDICES for c in COSINES]
-print(f"inline constexpr std::array<AbsorptanceValue, {len(rows)}> kAbsorptanceValues = {{{{")
-for n, k, c, s, p in rows:
-    print(f"    {{{n}, {k}, {c}, {number(s)}, {number(p)}}},")
-print("}};")
+def write(name, columns, rows):
+    lines = ["# Written by make_radiometry_values.py", columns, *(",".join(row) for row in rows)]
+    pathlib.Path(__file__).with_name(name).write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+write("planck.csv", "wavelength_um,temperature_K,radiance",
+      [(w, t, number(planck(w, t))) for w in WAVELENGTHS_UM for t in TEMPERATURES_K])
+write("smooth_absorptance.csv", "n,k,cosine,s,p",
+      [(n, k, c, *map(number, absorptance(n, k, c))) for n, k in INDICES for c in COSINES])

@@ -8,9 +8,10 @@
 
 #include "model/smooth_surface.hpp"
 #include "radiometry_support.hpp"
-#include "radiometry_values.hpp"
+#include "scene/csv.hpp"
 #include "spectrum/planck.hpp"
 #include "spectrum/spectral_rule.hpp"
+#include "temporary_file.hpp"
 
 namespace {
 
@@ -18,25 +19,40 @@ using namespace radiometry_support;
 
 // ---- Planck's function and the smooth surface -----------------------------------------------------------------------
 
+/// The rows of a file that data/make_radiometry_values.py has written.
+std::vector<std::vector<double>> stored_rows(const std::string& name) {
+  const std::string text = read_file(DOLP_TEST_DATA_DIR "/" + name);
+  std::vector<std::vector<double>> rows;
+  CsvReader row(text, name);
+  row.next();  // the names of the columns
+  while (row.next()) {
+    rows.emplace_back();
+    for (std::size_t i = 0; i < row.cells().size(); ++i) rows.back().push_back(row.number(i, name));
+  }
+  return rows;
+}
+
 TEST(Planck, FiftyDigitValues_Agree) {
-  for (const PlanckValue& expected : kPlanckValues) {
-    const double actual = planck_radiance(expected.wavelength_um, expected.temperature_K);
+  const std::vector<std::vector<double>> rows = stored_rows("planck.csv");
+  ASSERT_EQ(rows.size(), 49U);
+  for (const std::vector<double>& row : rows) {
+    const double um = row.at(0), kelvin = row.at(1), radiance = row.at(2);
     // The exponential amplifies the rounding error of its exponent hc/(lambda k T).
-    const double tolerance = (6.0 + 2.0 * 14388.0 / (expected.wavelength_um * expected.temperature_K)) * kEpsilon;
-    EXPECT_NEAR(actual, expected.radiance, tolerance * expected.radiance)
-        << expected.wavelength_um << " um, " << expected.temperature_K << " K";
+    const double tolerance = (6.0 + 2.0 * 14388.0 / (um * kelvin)) * kEpsilon;
+    EXPECT_NEAR(planck_radiance(um, kelvin), radiance, tolerance * radiance) << um << " um, " << kelvin << " K";
   }
 }
 
 TEST(SmoothAbsorptance, FiftyDigitValues_Agree) {
   // About ten roundings without cancellation: a complex product, square root and quotient.
   constexpr double kTolerance = 20.0 * kEpsilon;
-  for (const AbsorptanceValue& expected : kAbsorptanceValues) {
-    const SmoothAbsorptance actual = smooth_absorptance({expected.n, expected.k}, expected.cosine);
-    EXPECT_NEAR(actual.s, expected.s, kTolerance * expected.s)
-        << expected.n << " " << expected.k << " " << expected.cosine;
-    EXPECT_NEAR(actual.p, expected.p, kTolerance * expected.p)
-        << expected.n << " " << expected.k << " " << expected.cosine;
+  const std::vector<std::vector<double>> rows = stored_rows("smooth_absorptance.csv");
+  ASSERT_EQ(rows.size(), 60U);
+  for (const std::vector<double>& row : rows) {
+    const double n = row.at(0), k = row.at(1), cosine = row.at(2), s = row.at(3), p = row.at(4);
+    const SmoothAbsorptance actual = smooth_absorptance({n, k}, cosine);
+    EXPECT_NEAR(actual.s, s, kTolerance * s) << n << " " << k << " " << cosine;
+    EXPECT_NEAR(actual.p, p, kTolerance * p) << n << " " << k << " " << cosine;
   }
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "contains.hpp"
 #include "explore/session.hpp"
 
 namespace dolp::explore {
@@ -98,9 +99,8 @@ inline void expect_same(const std::vector<Point>& a, const std::vector<Point>& b
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (std::isnan(a[i][Quantity::kDolp]) && std::isnan(b[i][Quantity::kDolp])) continue;
-    for (const Quantity quantity : {Quantity::kDolp, Quantity::kErrorEstimate}) {
+    for (const Quantity quantity : {Quantity::kDolp, Quantity::kErrorEstimate})
       EXPECT_EQ(a[i][quantity], b[i][quantity]) << i;
-    }
   }
 }
 

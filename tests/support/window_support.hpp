@@ -59,9 +59,8 @@ class Window : public CommandLine {
   /// Opens the window on scene.toml. `settings` replace values of the scene, as `--set` does.
   void open(const std::vector<Setting>& settings) {
     app_.reset();
-    explore::AppOptions options;
-    options.command_line = "dolp explore";
-    options.preferences = at("config/dolp/window.toml");
+    const explore::AppOptions options = {
+        .device = "", .command_line = "dolp explore", .preferences = at("config/dolp/window.toml")};
     const auto scene = Scene::from_file(at("scene.toml"), settings);
     app_ = std::make_unique<App>(explore::SceneEdits(scene), options);
     // Without a map, frames are faster. Tests that need the map call show_map().
@@ -132,9 +131,10 @@ class Window : public CommandLine {
     type(text);
     keys("Return");
   }
-  /// Presses a shortcut that opens a file dialog, and accepts the path that the dialog suggests.
-  void accept(const std::string& shortcut) {
+  /// Opens a dialog by its shortcut. Types a path, or accepts the path that the dialog suggests.
+  void answer(const std::string& shortcut, const std::string& path = "") {
     keys(shortcut);
+    if (!path.empty()) type(path);
     keys("Return");
     settle();
   }
@@ -165,14 +165,10 @@ class Window : public CommandLine {
   /// Results of `dolp eval` for the scene as changed in the window, at the zeniths of the curve in the window.
   Columns evaluated() const {
     std::string points = "theta_deg\n";
-    for (const explore::Point& point : session().curve().points()) {
-      points += std::to_string(point.theta_deg) + '\n';
-    }
+    for (const explore::Point& point : session().curve().points()) points += std::to_string(point.theta_deg) + '\n';
     put("points.csv", points);
     std::vector<std::string> options;
-    for (const Setting& change : session().edits().changes()) {
-      options.insert(options.end(), {"--set", change.text()});
-    }
+    for (const Setting& change : session().edits().changes()) options.insert(options.end(), {"--set", change.text()});
     return eval(options);
   }
 

@@ -34,7 +34,7 @@ TEST(Scale, RangesThatCannotBeDrawn_AreRefused_AndHaveFewTicks) {
                                     {Scale{1e15, 1.00001e15}, ""}}) {
     const std::string refusal = range.refusal();
     EXPECT_EQ(refusal.empty(), *part == '\0') << refusal;
-    EXPECT_NE(refusal.find(part), std::string::npos) << refusal;
+    EXPECT_TRUE(contains(refusal, part));
     if (range.from > 0.0) {
       EXPECT_LE(range.ticks(8).size(), 8U) << range.from;
     }
@@ -69,11 +69,7 @@ TEST(HeatMap, EachPairOfAxes_HasTheValuesOfTheScene) {
       paint({"geometry.mode=bistatic", "source.irradiance=20", "grid.view_zenith_deg=[20, 70]", "grid.theta_deg=40"});
   const SceneEdits brushed = paint({"surface.sigma_cross=0.3", "grid.surface_azimuth_deg=[0, 90]"});
   Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
-  struct Case {
-    const char *x, *y;
-    const SceneEdits& scene;
-  };
-  for (const auto& [x, y, edits] : {Case{"theta", "sigma", oxide},
+  for (const auto& [x, y, edits] : {std::tuple("theta", "sigma", oxide),
                                     {"sigma", "theta", oxide},
                                     {"theta", "temperature", oxide},
                                     {"temperature", "film 1", oxide},
@@ -89,11 +85,8 @@ TEST(HeatMap, EachPairOfAxes_HasTheValuesOfTheScene) {
                                     {"theta", "sigma", many},
                                     {"temperature", "theta", many}}) {
     SCOPED_TRACE(std::string(x) + ' ' + y);
-    View view;
-    view.map_x = x;
-    view.map_y = y;
     Session session(edits);
-    session.set_view(view);
+    session.set_view({.map_x = x, .map_y = y});
     const std::vector<Job> jobs = session.wanted();
     const Job& job = *std::ranges::find_if(jobs, [](const Job& wanted) { return wanted.key.starts_with("map 16 "); });
     for (std::size_t i = 0; i < job.parts.size(); ++i) {

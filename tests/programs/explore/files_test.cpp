@@ -3,21 +3,19 @@
 #include <sys/stat.h>
 
 #include <cstdlib>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "explore/files.hpp"
 #include "explore/readout.hpp"
 #include "explore_support.hpp"
-#include "program.hpp"
+#include "in_folder.hpp"
 
 namespace dolp::explore {
 namespace {
 
-class ExploreFiles : public testing::Test {
+class ExploreFiles : public InFolder {
  protected:
-  std::string at(const std::string& name) const { return (folder_.path() / name).string(); }
-  void put(const std::string& name, const std::string& text) const { std::ofstream(at(name)) << text; }
+  std::string at(const std::string& name) const { return InFolder::at(name).string(); }
   /// The message with which a file is refused, or nothing if it can be opened.
   std::string refusal(const std::string& name) const {
     Session session(paint());
@@ -30,9 +28,6 @@ class ExploreFiles : public testing::Test {
     }
     return "";
   }
-
- private:
-  TemporaryFolder folder_;
 };
 
 /// Gives a session measured data, a fit range, pins, a snapshot and a view: all that a session file stores.
@@ -102,10 +97,10 @@ TEST_F(ExploreFiles, Session_SavedAndOpened_IsTheSame) {
   EXPECT_EQ(b.view(), a.view());
   EXPECT_EQ(b.theta_deg(), 42.5);
   // The file must not contain a path of this machine. A session that is opened and saved again gives the same text.
-  const std::string text = read_file(at("all.toml"));
-  EXPECT_EQ(text.find(at("")), std::string::npos) << text;
+  const std::string text = content("all.toml");
+  EXPECT_FALSE(contains(text, at("")));
   save_session(opened.session, at("again.toml"));
-  EXPECT_EQ(read_file(at("again.toml")), text);
+  EXPECT_EQ(content("again.toml"), text);
 }
 
 TEST_F(ExploreFiles, Session_WithSkiesOfTheWindow_ReadsBackWhenTheWindowIsGone) {
@@ -126,8 +121,8 @@ TEST_F(ExploreFiles, Session_WithSkiesOfTheWindow_ReadsBackWhenTheWindowIsGone) 
   EXPECT_EQ(read_sky_pair(sky_file(opened.scene())), kNoon);
   EXPECT_EQ(read_sky_pair(sky_file(opened.pins().at(0).curve.scene())), kDusk);
   EXPECT_EQ(read_sky_pair(sky_file(opened.snapshots().at(0).edits.scene())), kDusk);
-  EXPECT_EQ(read_file(at("all_sky_231.5_279.csv")), kDusk.csv());
-  EXPECT_EQ(read_file(at("all.toml")).find(at("")), std::string::npos);
+  EXPECT_EQ(content("all_sky_231.5_279.csv"), kDusk.csv());
+  EXPECT_FALSE(contains(content("all.toml"), at("")));
 }
 
 TEST_F(ExploreFiles, BadFile_IsRefusedInOneLine_AndChangesNothing) {
@@ -140,7 +135,7 @@ TEST_F(ExploreFiles, BadFile_IsRefusedInOneLine_AndChangesNothing) {
         {"title = 3\n", "a.toml"},
         {"", "a.toml"}}) {
     put("a.toml", text);
-    EXPECT_NE(refusal("a.toml").find(part), std::string::npos) << refusal("a.toml");
+    EXPECT_TRUE(contains(refusal("a.toml"), part));
   }
   EXPECT_NE(refusal("missing.toml"), "");
 }
@@ -151,7 +146,7 @@ TEST_F(ExploreFiles, BadValueInASession_IsNamed) {
   Session session(paint());
   fill(session, at("points.csv"));
   save_session(session, at("all.toml"));
-  const std::string text = read_file(at("all.toml"));
+  const std::string text = content("all.toml");
   for (const auto& [from, to, part] :
        {std::tuple{"panel = 'slopes'", "panel = 'slope'", "all.toml: view.panel \"slope\" is unknown"},
         {"log = true", "log = 'yes'", "all.toml: view.log is of another kind"},
@@ -171,7 +166,7 @@ TEST_F(ExploreFiles, BadValueInASession_IsNamed) {
     put("all.toml", changed.replace(position, std::string_view(from).size(), to));
     const std::string line = refusal("all.toml");
     EXPECT_EQ(line.empty(), *part == '\0') << line;
-    EXPECT_NE(line.find(part), std::string::npos) << line;
+    EXPECT_TRUE(contains(line, part));
   }
 }
 

@@ -223,7 +223,7 @@ TEST(Edits, EachKind_GivesTheValuesAndTheMessage) {
       const std::string key = setting.substr(0, setting.find('='));
       EXPECT_EQ(key + '=' + value_of(session.scene(), key), setting);
     }
-    EXPECT_NE(session.message().text.find(edit.message), std::string::npos) << session.message().text;
+    EXPECT_TRUE(contains(session.message().text, edit.message));
     EXPECT_EQ(session.message().text.empty(), edit.message.empty()) << session.message().text;
     EXPECT_EQ(session.message().is_error, edit.is_error);
     session.reset_all();
@@ -380,7 +380,7 @@ TEST(ExploreWorker, RefusedJob_HasPointsWithoutValues_AndTheReasonIsTold) {
   for (const Point& point : news[0].points) EXPECT_EQ(point.status, kOutsideModelDomain);
   Session session(paint());
   session.take(news);
-  EXPECT_NE(session.message().text.find("quotient of the widths"), std::string::npos) << session.message().text;
+  EXPECT_TRUE(contains(session.message().text, "quotient of the widths"));
   EXPECT_TRUE(session.message().is_error);
 }
 
@@ -397,7 +397,7 @@ TEST(Measured, DataAndScenesWithDoubtfulUnits_AreRemarkedOnOnce_AndDataWithSetti
   const auto says = [&](const char* end) {
     return session.message().text.ends_with(end) && !session.message().is_error;
   };
-  EXPECT_NE(session.message().text.find("25 K is cold"), std::string::npos) << session.message().text;
+  EXPECT_TRUE(contains(session.message().text, "25 K is cold"));
   session.load_measured(TemporaryFile("r.csv", "theta_deg,dolp\n0.5,0.01\n1.2,0.1\n").path());
   EXPECT_TRUE(says("is it in radians?")) << session.message().text;
   session.set("surface.sigma", 0.2);
@@ -465,7 +465,7 @@ TEST(Exports, TrueError_IsBelowItsBound) {
   curve.take(done(curve.wanted(Curve::Stage::kFine).value()));
   const std::string text = true_error(curve, {});
   constexpr std::string_view kBound = "bound ";
-  ASSERT_NE(text.find(kBound), std::string::npos) << text;
+  ASSERT_TRUE(contains(text, kBound));
   const double error = std::stod(text);
   const double bound = std::stod(text.substr(text.find(kBound) + kBound.size()));
   EXPECT_LE(error, bound) << text;

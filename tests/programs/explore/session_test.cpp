@@ -38,7 +38,7 @@ TEST(ExploreSession, Results_AreStaleUntilTheSceneIsComputed_AndKeepTheirParamet
   driver.settle();
   EXPECT_FALSE(session.curve().is_stale() || session.overlay()->is_stale() || session.map().is_stale());
   EXPECT_FALSE(says_stale(curve_name(session) + overlay_name(session) + cursor_text(session)));
-  EXPECT_NE(cursor_text(session).find("σ = 0.4, q = 3:"), std::string::npos) << cursor_text(session);
+  EXPECT_TRUE(contains(cursor_text(session), "σ = 0.4, q = 3:"));
   EXPECT_EQ(session.curve().points().size(), Curve::kFineCount);
   expect_same(session.curve().points(), truth(session.scene(), session.curve().points()));
   EXPECT_LE(session.curve().worst_error(), 1e-3);
@@ -50,7 +50,7 @@ TEST(ExploreSession, Results_AreStaleUntilTheSceneIsComputed_AndKeepTheirParamet
   driver.session.set("surface.distribution", "gaussian");
   driver.settle();
   EXPECT_EQ(session.overlay()->scene().word("surface.distribution"), "cauchy");
-  EXPECT_NE(cursor_text(session).find("σ = 0.4:"), std::string::npos) << cursor_text(session);
+  EXPECT_TRUE(contains(cursor_text(session), "σ = 0.4:"));
 }
 
 /// Compares one point of a curve with an accurate result for the scene that the curve shows.
@@ -223,7 +223,7 @@ TEST(ExploreSession, PinsAndPointsOfAnotherScene_AreKnown_AndMissingResidualsHav
   EXPECT_FALSE(session.is_foreign(session.residuals().loaded_for()));
   session.go_to(SceneEdits(Scene::from_text(kPaint, {}, "other.toml")));
   EXPECT_TRUE(session.is_foreign(session.residuals().loaded_for()));
-  EXPECT_NE(pin_name(session, session.pins()[0]).find(", another scene"), std::string::npos);
+  EXPECT_TRUE(contains(pin_name(session, session.pins()[0]), ", another scene"));
   session.undo();
   EXPECT_FALSE(session.is_foreign(session.pins()[0].curve.scene()));
 }
@@ -263,14 +263,14 @@ TEST(ExploreSession, TableCommand_IsQuotedForAShell) {
 TEST(ExploreSession, Bracket_IsReadAtTheCursor) {
   Driver driver(paint({"surface.sigma=0.4"}));
   for (const Point& r : driver.session.curve().points()) EXPECT_FALSE(r.has_bracket());
-  EXPECT_EQ(cursor_text(driver.session).find("all bounces"), std::string::npos);
+  EXPECT_FALSE(contains(cursor_text(driver.session), "all bounces"));
   driver.session.set({{"emission.bracket", true}});
   driver.settle();
   const Point& at = *driver.session.at_cursor();
   EXPECT_GT(at[Quantity::kDolpHigh], 1.1 * at[Quantity::kDolpLow]);
   const std::string text =
       fmt::format("all bounces {:.3f} to {:.3f} %", 100.0 * at[Quantity::kDolpLow], 100.0 * at[Quantity::kDolpHigh]);
-  EXPECT_NE(cursor_text(driver.session).find(text), std::string::npos) << cursor_text(driver.session);
+  EXPECT_TRUE(contains(cursor_text(driver.session), text));
 }
 
 TEST(ExploreSession, AllBounces_PeakIsComparedWithSingleScattering) {
@@ -294,9 +294,9 @@ TEST(ExploreSession, AllBounces_PeakIsComparedWithSingleScattering) {
     return fmt::format("scattering it is {:+.2f} %, a change of {:+.2f} points", left, change);
   };
   const std::string words = without_words(driver.session, "scattering");
-  EXPECT_NE(words.find(sentence(peak.answer()->at, result)), std::string::npos) << words;
+  EXPECT_TRUE(contains(words, sentence(peak.answer()->at, result)));
   const Point& at_60 = *driver.session.at_cursor();
-  EXPECT_NE(words.find(sentence(at_60, truth(single, list)[1])), std::string::npos) << words;
+  EXPECT_TRUE(contains(words, sentence(at_60, truth(single, list)[1])));
   EXPECT_EQ(without_text(driver.session, "scattering"),
             fmt::format("{:+.2f} → {:+.2f} %", 100.0 * at_60[Quantity::kQOverI],
                         100.0 * truth(single, list)[1][Quantity::kQOverI]));
@@ -353,7 +353,7 @@ TEST(ExploreSession, Headline_HasTheCursorFirst_ThenTheMaximum) {
   const std::string text = headline(session);
   EXPECT_TRUE(text.starts_with(fmt::format("At the cursor, θ = 60.0°: DOLP {:.3f} % ± ", 100.0 * at[Quantity::kDolp])))
       << text;
-  EXPECT_NE(text.find(". " + peak_text(session)), std::string::npos);
+  EXPECT_TRUE(contains(text, ". " + peak_text(session)));
   const std::string cause = cause_text(session);
   EXPECT_TRUE(cause.ends_with(fmt::format("sum {:+.2f}.", 100.0 * at[Quantity::kQOverI]))) << cause;
   driver.session.set_theta(20.0);
@@ -381,8 +381,8 @@ TEST(ExploreSession, Peak_IsTheLargestOfTheCurve_IsDrawn_AndItsCausesAddUp) {
   }
   EXPECT_LE(peak.answer()->theta_low_deg, at.theta_deg);
   EXPECT_GE(peak.answer()->theta_high_deg, at.theta_deg);
-  EXPECT_NE(cause_text(session).find("emission -"), std::string::npos) << cause_text(session);
-  EXPECT_NE(cause_text(session).find("against it: surroundings +"), std::string::npos);
+  EXPECT_TRUE(contains(cause_text(session), "emission -"));
+  EXPECT_TRUE(contains(cause_text(session), "against it: surroundings +"));
   for (const std::vector<Point>& drawn : {session.curve().drawn(), session.pins()[0].curve.drawn()}) {
     EXPECT_TRUE(std::ranges::is_sorted(drawn, {}, &Point::theta_deg));
     const auto top = std::ranges::find(drawn, at.theta_deg, &Point::theta_deg);
@@ -408,7 +408,7 @@ TEST(ExploreSession, FlatCurve_HasARival) {
   Driver driver(paint({"surroundings=none", "source.irradiance=1e-9", "geometry.mode=bistatic"}));
   ASSERT_TRUE(driver.session.peak().answer());
   EXPECT_TRUE(driver.session.peak().answer()->rival_deg);
-  EXPECT_NE(peak_text(driver.session).find("also elsewhere"), std::string::npos) << peak_text(driver.session);
+  EXPECT_TRUE(contains(peak_text(driver.session), "also elsewhere"));
 }
 
 TEST(ExploreSession, Effects_HaveTheirInfluenceAtTheCursor) {

@@ -22,13 +22,6 @@ class WindowFiles : public Window {
     put("folder/other.toml", other);
     put("folder/notes.txt", "");
   }
-  /// Opens a dialog by its shortcut. Types a path, or accepts the suggested one.
-  void answer(const std::string& shortcut, const std::string& path = "") {
-    keys(shortcut);
-    if (!path.empty()) type(path);
-    keys("Return");
-    settle();
-  }
   /// Opens a file from the list of the dialog: the first click selects the file, the second click opens it.
   void open_listed(const std::string& folder, const std::string& file) {
     keys("ctrl+o");
@@ -58,7 +51,7 @@ TEST_F(WindowFiles, SceneOfTheList_IsOpened_IsUndone_AndIsAmongTheRecentOnes) {
   EXPECT_FALSE(session().edits().is_changed());
   EXPECT_EQ(session().pins()[0].curve.scene().title(), "Painted");
   EXPECT_EQ(session().curve().shown_scene().title(), "Other");
-  EXPECT_NE(content("config/dolp/window.toml").find("folder/other.toml"), std::string::npos);
+  EXPECT_TRUE(contains(content("config/dolp/window.toml"), "folder/other.toml"));
   keys("ctrl+z");
   EXPECT_EQ(title(), "Painted");
   EXPECT_NE(number("surface.sigma"), 0.15);
@@ -92,7 +85,7 @@ TEST_F(WindowFiles, OpenDialog_TakesAPathByKeyboard_AndRefusesAMissingOne) {
   answer("ctrl+o", at("bad.toml").string());
   EXPECT_EQ(title(), "Painted");
   EXPECT_TRUE(session().message().is_error);
-  EXPECT_NE(session().message().text.find("bad.toml"), std::string::npos);
+  EXPECT_TRUE(contains(session().message().text, "bad.toml"));
 }
 
 TEST_F(WindowFiles, SaveDialogs_BeginBesideTheScene_ThenInTheLastFolder) {
@@ -121,15 +114,14 @@ TEST_F(WindowFiles, Plots_SavedByShortcut_AreLinesAndTextOfWhatIsShown) {
   };
   EXPECT_EQ(save("plot.svg").text, "saved " + at("plot.svg").string());
   const std::string svg = content("plot.svg");
-  for (const std::string& text : {std::string("Painted"), curve_name(session()), overlay_name(session()),
-                                  surface_name(session().pins()[0].curve.shown_scene()), std::string("measured"),
-                                  std::string("DOLP [%]"), std::string("zenith θ [°]")}) {
-    EXPECT_NE(svg.find(text), std::string::npos) << text;
-  }
+  const std::string pinned = surface_name(session().pins()[0].curve.shown_scene());
+  for (const std::string& text : std::vector<std::string>{"Painted", curve_name(session()), overlay_name(session()),
+                                                          pinned, "measured", "DOLP [%]", "zenith θ [°]"})
+    EXPECT_TRUE(contains(svg, text));
   session().set_view(&View::panel, Panel::kSpectrum);
   settle();
   EXPECT_EQ(save("spectrum.svg").text, "saved " + at("spectrum.svg").string());
-  EXPECT_NE(content("spectrum.svg").find("λ [µm]"), std::string::npos);
+  EXPECT_TRUE(contains(content("spectrum.svg"), "λ [µm]"));
   EXPECT_EQ(save("plot.pdf").text, "saved " + at("plot.pdf").string());
   EXPECT_TRUE(content("plot.pdf").starts_with("%PDF"));
   EXPECT_TRUE(save("plot.docx").is_error);
@@ -148,10 +140,7 @@ TEST_F(WindowFiles, ExportMenu_HasTwoEntries_WhoseFormatGivesTheName) {
 }
 
 TEST_F(WindowFiles, TitleClicked_TakesATypedOne_WhichUndoTakesBack) {
-  click_control("title");
-  keys("ctrl+a");
-  type("Mine");
-  keys("Return");
+  enter("title", "Mine");
   frames();
   EXPECT_EQ(title(), "Mine");
   keys("ctrl+z");

@@ -34,7 +34,7 @@ TEST_F(WindowLook, LightTheme_ChosenInTheMenu_IsKept) {
   click_control("Light theme");
   frames();
   EXPECT_GT(brightness(), 200.0);
-  EXPECT_NE(content("config/dolp/window.toml").find("light = true"), std::string::npos);
+  EXPECT_TRUE(contains(content("config/dolp/window.toml"), "light = true"));
   open({});
   frames();
   EXPECT_GT(brightness(), 200.0);

@@ -142,20 +142,20 @@ TEST_F(Window, CurveAndMapClicked_MoveTheCursor_AndTheCurveFollowsTheMap) {
 }
 
 TEST_F(Window, CurveAndTable_ByShortcut_EqualThoseOfTheCommands) {
-  accept("ctrl+e");
+  answer("ctrl+e");
   EXPECT_EQ(content("scene_curve.csv"), session().curve().finished().csv);
   put("points.csv", "theta_deg\n45\n");
-  const std::string command = dolp({"eval", "scene.toml", "--points", "points.csv", "-o", "-"}).out;
+  const std::string command = dolp("eval scene.toml --points points.csv -o -").out;
   const std::string header = command.substr(command.find(','), command.find('\n') - command.find(','));
   EXPECT_TRUE(content("scene_curve.csv").starts_with("theta_deg,sigma,q" + header + '\n'));
-  ASSERT_EQ(dolp({"table", "scene.toml", "-o", "t.nc", "--quiet"}).status, 0);
+  succeeded(dolp("table scene.toml -o t.nc --quiet"));
   const TableValues wanted = read_table(at("t.nc"));
-  accept("ctrl+t");
+  answer("ctrl+t");
   for (int i = 0; i < 2000 && !std::filesystem::exists(at("scene_table.nc")); ++i) app_->frame();
   const TableValues made = read_table(at("scene_table.nc"));
   EXPECT_EQ(made[Quantity::kDolp], wanted[Quantity::kDolp]);
   EXPECT_EQ(made.axes[Axis::kTheta], wanted.axes[Axis::kTheta]);
-  EXPECT_EQ(dolp({"verify", "scene_table.nc"}).status, 0);
+  succeeded(dolp("verify scene_table.nc"));
 }
 
 TEST_F(Window, List_OpensAndClosesOnTheScreenWithoutTheMouseMoving) {
@@ -246,11 +246,9 @@ TEST_F(Window, EndsOfABand_OfWhichOneWasRefused_AreTakenTogether) {
 /// The plot area of the curve, in a window on a display with the given size and resolution.
 Area plot_on(const std::string& size, const std::string& dots_per_inch) {
   const VirtualDisplay display(size);
-  EXPECT_EQ(run({.arguments = {"xprop", "-root", "-f", "RESOURCE_MANAGER", "8s", "-set", "RESOURCE_MANAGER",
+  succeeded(run({.arguments = {"xprop", "-root", "-f", "RESOURCE_MANAGER", "8s", "-set", "RESOURCE_MANAGER",
                                "Xft.dpi: " + dots_per_inch},
-                 .folder = "/"})
-                .status,
-            0);
+                 .folder = "/"}));
   App app(SceneEdits(Scene::from_text(kEdited)), {});
   for (int i = 0; i < kFrames; ++i) app.frame();
   return app.curve_view().area();
@@ -285,37 +283,32 @@ TEST_F(ExploreCommand, FramesAndScreenshot_WriteAPictureAndTheTimes_AlsoOfASessi
   session.pin();
   save_session(session, at("session.toml").string());
   const Outcome outcome =
-      dolp({"explore", "session.toml", "--set", "surface.sigma=0.2", "--frames", "5", "--screenshot", "shot.png"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("frames     5 frames"), std::string::npos) << outcome.out;
+      succeeded(dolp("explore session.toml --set surface.sigma=0.2 --frames 5 --screenshot shot.png"));
+  EXPECT_TRUE(contains(outcome.out, "frames     5 frames"));
   EXPECT_TRUE(content("shot.png").starts_with("\x89PNG"));
   EXPECT_GT(content("shot.png").size(), 50'000U);
-  EXPECT_EQ(dolp({"explore", "--frames", "1"}).status, 0);
+  succeeded(dolp("explore --frames 1"));
   EXPECT_EQ(Scene::from_text(std::string(embedded_night_paint_toml())).title(),
             "Night: paint under a uniform cold sky, 8-14 um");
-  expect_refused(dolp({"explore", "session.toml", "--frames", "1", "--set", "surface.sigma=-1"}), "surface.sigma");
+  expect_refused(dolp("explore session.toml --frames 1 --set surface.sigma=-1"), "surface.sigma");
   put("session.toml", "dolp_session = 1\n");
-  expect_refused(dolp({"explore", "session.toml", "--frames", "1"}), "session.toml: scene.file is missing");
+  expect_refused(dolp("explore session.toml --frames 1"), "session.toml: scene.file is missing");
 }
 
 TEST_F(ExploreCommand, WrongArguments_AreInputErrors_AndAnUnknownDeviceIsADeviceError) {
-  EXPECT_EQ(dolp({"explore", "scene.toml", "--screenshot", "shot.png"}).status, 2);
-  EXPECT_EQ(dolp({"explore", "missing.toml", "--frames", "1"}).status, 2);
-  EXPECT_EQ(dolp({"explore", "scene.toml", "--frames", "1", "--set", "surface.sigma=-1"}).status, 2);
+  EXPECT_EQ(dolp("explore scene.toml --screenshot shot.png").status, 2);
+  EXPECT_EQ(dolp("explore missing.toml --frames 1").status, 2);
+  EXPECT_EQ(dolp("explore scene.toml --frames 1 --set surface.sigma=-1").status, 2);
   EXPECT_EQ(dolp({"explore", "--frames", "1", "--device", "no such device"}).status, 3);
   put("measured.csv", "theta_deg,dolp\n60,two\n");
-  const Outcome outcome = dolp({"explore", "scene.toml", "--frames", "1", "--measured", "measured.csv"});
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_EQ(outcome.err, "dolp: measured.csv:2: dolp = two: not a number; must be a number in [-1, 1]\n");
+  expect_refused(dolp("explore scene.toml --frames 1 --measured measured.csv"),
+                 "dolp: measured.csv:2: dolp = two: not a number; must be a number in [-1, 1]\n");
 }
 
 TEST_F(CommandLine, Explore_WithoutDisplay_SaysSoInOneLine) {
-  Command wanted = command({"explore", "--frames", "1"});
+  Command wanted = command("explore --frames 1");
   wanted.environment = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}};
-  const Outcome outcome = run(wanted);
-  EXPECT_EQ(outcome.status, 3);
-  EXPECT_TRUE(outcome.err.starts_with("dolp: no display")) << outcome.err;
-  EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1);
+  expect_refused(run(wanted), "dolp: no display", 3);
 }
 
 }  // namespace

@@ -50,9 +50,8 @@ TEST(ExplorePanels, MaterialCurve_HasTheScenesIndex_FromEndToEnd) {
   const Scene water = paint().scene().with({{"surface.material", "water 25C"}});
   const MaterialCurve curve = material_curve(water, 50);
   ASSERT_EQ(curve.n.size(), 50U);
-  for (std::size_t i = 0; i < curve.n.size(); i += 7) {
+  for (std::size_t i = 0; i < curve.n.size(); i += 7)
     EXPECT_EQ((std::pair{curve.n[i], curve.k[i]}), water.refractive_index(curve.wavelength_um[i]));
-  }
   const auto known = materials();
   const auto water_25 = std::ranges::find(known, "water 25C", &BuiltInMaterial::name);
   EXPECT_EQ(curve.wavelength_um.front(), water_25->from_um);
@@ -205,7 +204,7 @@ TEST(ExplorePanels, Azimuth_IsTheCurveOverTheSurfacesAzimuth_WithUAndTheRowsOfEv
   EXPECT_EQ(sweep.csv(), to_csv(list.columns(), evaluator.evaluate(session.scene(), list.columns())));
   const Point& shown = *session.at_cursor();
   EXPECT_EQ(shown[Quantity::kStokesU], sweep.points()[30][Quantity::kStokesU]);
-  EXPECT_NE(headline(session).find(fmt::format("AOLP {:.2f}°", shown[Quantity::kAolp])), std::string::npos);
+  EXPECT_TRUE(contains(headline(session), fmt::format("AOLP {:.2f}°", shown[Quantity::kAolp])));
   // The results over all azimuths do not depend on the azimuth of the scene.
   session.set(kSurfaceAzimuth, 50.0);
   EXPECT_TRUE(session.sweep().is_finished());
@@ -311,7 +310,7 @@ TEST_F(Window, Films_AreAddedOutside_ChangedAndRemoved) {
   click_control("remove surface.coating.2");
   EXPECT_EQ(films().size(), 1U);
   EXPECT_EQ(number("surface.coating.1.thickness_um"), before.number("surface.coating.1.thickness_um"));
-  EXPECT_NE(surface_name(before).find("film PMMA acrylic 2 µm"), std::string::npos);
+  EXPECT_TRUE(contains(surface_name(before), "film PMMA acrylic 2 µm"));
 }
 
 TEST_F(Window, SceneWithAWind_HasItsSliderInsteadOfSigma_AndADirectionalOneAnAzimuth) {
@@ -320,7 +319,7 @@ TEST_F(Window, SceneWithAWind_HasItsSliderInsteadOfSigma_AndADirectionalOneAnAzi
   EXPECT_THROW(app_->control_area("surface.sigma"), std::out_of_range);
   drag_slider("surface.wind_m_s", kPartOfSlider);
   EXPECT_NEAR(*number("surface.wind_m_s"), 30.0 * static_cast<double>(kPartOfSlider), 30.0 * kGrab);
-  EXPECT_NE(cursor_text(session()).find("U = "), std::string::npos);
+  EXPECT_TRUE(contains(cursor_text(session()), "U = "));
   EXPECT_THROW(app_->control_area(kSurfaceAzimuth), std::out_of_range);
   click_control("surface.wind_model");
   click_control("surface.wind_model directional");

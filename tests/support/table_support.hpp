@@ -49,9 +49,8 @@ inline void expect_same(const std::vector<double>& actual, const std::vector<dou
 inline void expect_same(const TableValues& actual, const TableValues& expected) {
   EXPECT_EQ(actual.axes, expected.axes);
   EXPECT_EQ(actual.wind_m_s, expected.wind_m_s);
-  for (const Quantity quantity : kAllQuantities) {
+  for (const Quantity quantity : kAllQuantities)
     expect_same(actual[quantity], expected[quantity], describe(quantity).name);
-  }
   EXPECT_EQ(actual.status, expected.status);
   for (const TableCurve& described : kTableCurves) EXPECT_EQ(actual.*described.curve, expected.*described.curve);
   EXPECT_EQ(actual.stokes_units, expected.stokes_units);

@@ -172,14 +172,7 @@ TEST(Radiometry, UnboundedReflectanceError_IsInfiniteNotNanInBothEstimates) {
 
 constexpr std::uint32_t kDivergent = kReflectanceOutsideZeroToOne | kOutsideModelDomain;
 
-Moments grazing_moments() {
-  Moments moments;
-  moments.r_i = 0.08;
-  moments.r_q = -0.02;
-  moments.albedo = 0.1;
-  moments.deficit = -0.08;
-  return moments;
-}
+Moments grazing_moments() { return {.r_i = 0.08, .r_q = -0.02, .albedo = 0.1, .deficit = -0.08}; }
 
 TEST(Radiometry, GrazingWithDivergingReflectance_GivesTheLimitOfDolp) {
   SceneValues scene = night_scene();
@@ -196,58 +189,45 @@ TEST(Radiometry, GrazingWithDivergingReflectance_GivesTheLimitOfDolp) {
 }
 
 TEST(Radiometry, GrazingWithSourceOnly_HasAFiniteLimitOfTheFluxes) {
-  SceneValues scene = night_scene();
-  scene.surface.masking = Masking::kNone;
-  scene.surroundings->temperature_K = scene.emission->temperature_K;
-  EXPECT_EQ(evaluate(scene, {90.0, 0.0}, grazing_moments())[Quantity::kDolp], 0.0);
-  scene.source = Source{};
-  scene.source->irradiance = 100.0;
-  scene.path = Path{0.5, std::nullopt, 1.0};
-  const PointResult limit = evaluate(scene, {90.0, 0.0}, grazing_moments());
-  const PointResult near_limit = evaluate(scene, {89.9999, 1e-30}, grazing_moments());
-  EXPECT_GT(limit[Quantity::kDolp], 0.0);
-  EXPECT_NEAR(near_limit[Quantity::kDolp], limit[Quantity::kDolp], kAgreement);
-}
-
-TEST(Radiometry, GrazingFresnelEmission_LeavesTheSourceAlone) {
-  SceneValues scene = night_scene();
-  scene.surface.masking = Masking::kNone;
-  scene.surface.diffuse = 0.0;
-  scene.surroundings.reset();
-  scene.emission->model = EmissionModel::kFresnel;
-  scene.source = Source{};
-  scene.source->irradiance = 100.0;
-  const PointResult limit = evaluate(scene, {90.0, 0.0}, grazing_moments());
-  const PointResult near_limit = evaluate(scene, {89.9999, 1e-14}, grazing_moments());
-  EXPECT_GT(limit[Quantity::kDolp], 0.0);
-  EXPECT_NEAR(near_limit[Quantity::kDolp], limit[Quantity::kDolp], kAgreement);
+  SceneValues isothermal = night_scene();
+  isothermal.surface.masking = Masking::kNone;
+  isothermal.surroundings->temperature_K = isothermal.emission->temperature_K;
+  EXPECT_EQ(evaluate(isothermal, {90.0, 0.0}, grazing_moments())[Quantity::kDolp], 0.0);
+  isothermal.path = Path{0.5, std::nullopt, 1.0};
+  SceneValues fresnel = night_scene();
+  fresnel.surface.masking = Masking::kNone;
+  fresnel.surface.diffuse = 0.0;
+  fresnel.surroundings.reset();
+  fresnel.emission->model = EmissionModel::kFresnel;
+  for (auto& [scene, cos_theta] : {std::pair(&isothermal, 1e-30), {&fresnel, 1e-14}}) {
+    scene->source = Source{};
+    scene->source->irradiance = 100.0;
+    const PointResult limit = evaluate(*scene, {90.0, 0.0}, grazing_moments());
+    const PointResult near_limit = evaluate(*scene, {89.9999, cos_theta}, grazing_moments());
+    EXPECT_GT(limit[Quantity::kDolp], 0.0);
+    EXPECT_NEAR(near_limit[Quantity::kDolp], limit[Quantity::kDolp], kAgreement);
+  }
 }
 
 TEST(Radiometry, GrazingSmithWithDiffusePart_IsUnpolarisedInTheLimit) {
-  const SceneValues scene = night_scene();
   const double cos_theta = 1e-18;
-  const PointResult limit = evaluate(scene, {90.0, cos_theta}, moments_of({0.5, 0.2}, cos_theta));
+  const PointResult limit = evaluate(night_scene(), {90.0, cos_theta}, moments_of({0.5, 0.2}, cos_theta));
   EXPECT_EQ(limit.status, kDivergent);
   EXPECT_EQ(limit[Quantity::kDolp], 0.0);
   EXPECT_DOUBLE_EQ(limit[Quantity::kAlbedo], 1.0);
 }
 
-TEST(Radiometry, GrazingSmithWithIsothermalFresnelEmission_ClaimsNoLimit) {
-  SceneValues scene = night_scene();
-  scene.emission->model = EmissionModel::kFresnel;
-  scene.surroundings->temperature_K = scene.emission->temperature_K;
-  const double cos_theta = 1e-18;
-  const PointResult limit = evaluate(scene, {90.0, cos_theta}, moments_of({0.5, 0.2}, cos_theta));
-  EXPECT_EQ(limit.status, kDivergent);
-  EXPECT_TRUE(std::isnan(limit[Quantity::kDolp]));
-}
-
-TEST(Radiometry, GrazingSmithAtACosineOfZero_ClaimsNoLimit) {
-  SceneValues scene = night_scene();
-  scene.surface.diffuse = 0.0;
-  const PointResult limit = evaluate(scene, {90.0, 0.0}, moments_of({0.5, 0.2}, 0.0));
-  EXPECT_EQ(limit.status, kDivergent);
-  EXPECT_TRUE(std::isnan(limit[Quantity::kDolp]));
+TEST(Radiometry, GrazingSmithWithIsothermalFresnelEmissionOrACosineOfZero_ClaimsNoLimit) {
+  SceneValues isothermal = night_scene();
+  isothermal.emission->model = EmissionModel::kFresnel;
+  isothermal.surroundings->temperature_K = isothermal.emission->temperature_K;
+  SceneValues specular = night_scene();
+  specular.surface.diffuse = 0.0;
+  for (const auto& [scene, cos_theta] : {std::pair(isothermal, 1e-18), {specular, 0.0}}) {
+    const PointResult limit = evaluate(scene, {90.0, cos_theta}, moments_of({0.5, 0.2}, cos_theta));
+    EXPECT_EQ(limit.status, kDivergent);
+    EXPECT_TRUE(std::isnan(limit[Quantity::kDolp]));
+  }
 }
 
 TEST(Radiometry, GrazingWithFiniteReflectance_UsesTheFormulasAtATinyCosine) {

@@ -69,9 +69,8 @@ TEST(Radiometry, TabulatedMaterialBand_AgreesWithPrintedFormulas) {
       const Direction direction = direction_of(theta_deg);
       const auto specular = [&](const OpticalConstants& index) { return printed_fresnel(index, direction.cos_theta); };
       std::vector<Moments> moments;
-      for (const FacetOptics& optics : radiometry.rule().indices()) {
+      for (const FacetOptics& optics : radiometry.rule().indices())
         moments.push_back(moments_of(specular(optics.index), direction.cos_theta));
-      }
       const PointResult actual = radiometry.point(direction, moments);
       const auto at = [&](Real um) {
         const OpticalConstants index = scene.surface.material.at(static_cast<double>(um));

@@ -11,7 +11,6 @@
 #include <dolp/errors.hpp>
 #include <filesystem>
 #include <iostream>
-#include <iterator>
 #include <limits>
 #include <random>
 #include <sstream>
@@ -254,9 +253,8 @@ TEST_F(TableFiles, Csv_Rows_ReadBackAsTheSameDoubles) {
     EXPECT_EQ(number(), table.axes[Axis::kTheta][i / 4]);
     EXPECT_EQ(number(), table.axes[Axis::kSigma][i / 2 % 2]);
     EXPECT_EQ(number(), table.axes[Axis::kQ][i % 2]);
-    for (const Quantity quantity : kAllQuantities) {
+    for (const Quantity quantity : kAllQuantities)
       expect_same({number()}, {table[quantity][i]}, describe(quantity).name);
-    }
     EXPECT_EQ(number(), table.status[i]);
   }
   EXPECT_FALSE(std::getline(lines, line));
@@ -289,9 +287,8 @@ TEST_F(TableFiles, Npy_Bytes_AreAStructuredArray) {
 }
 
 TEST(NumberText, Doubles_ReadBack) {
-  for (const double value : {0.1, 1.0 / 3.0, -2.5e-308, 5e-324, 1.7976931348623157e308, 90.0, 1e-4}) {
+  for (const double value : {0.1, 1.0 / 3.0, -2.5e-308, 5e-324, 1.7976931348623157e308, 90.0, 1e-4})
     EXPECT_EQ(std::strtod(number_text(value).c_str(), nullptr), value) << number_text(value);
-  }
   EXPECT_EQ(number_text(90.0), "90");
   EXPECT_EQ(number_text(-kNan), "nan");
   EXPECT_EQ(number_text(-std::numeric_limits<double>::infinity()), "-inf");

@@ -1,5 +1,4 @@
 // A file is complete or absent, whatever stops its writing.
-#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>

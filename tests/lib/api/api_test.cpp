@@ -39,6 +39,14 @@ class Library : public dolp::InFolder {
  protected:
   dolp::Scene scene_ = dolp::Scene::from_text(kScene);
   dolp::Evaluator evaluator_{{.evaluator = "cpu"}};
+
+  /// A scene with a table of many entries that are cheap to compute.
+  dolp::Scene large_scene(std::size_t thetas, std::size_t sigmas) const {
+    return scene_
+        .with({{"surface.masking", "none"}, {"surface.distribution", "gaussian"}, {"accuracy.tolerance", 1e-2}})
+        .with_grid(
+            {{"q", {2.0}}, {"theta_deg", dolp::AxisRange{0, 80, thetas}}, {"sigma", dolp::AxisRange{0.1, 1, sigmas}}});
+  }
 };
 
 TEST_F(Library, ResponseTables_InMemoryAndInAFile_AreTheSameBits) {
@@ -57,10 +65,7 @@ TEST_F(Library, ResponseTables_InMemoryAndInAFile_AreTheSameBits) {
 }
 
 TEST_F(Library, PartsOfATable_AreTheTable) {
-  const dolp::Scene scene =
-      scene_.with({{"surface.masking", "none"}, {"surface.distribution", "gaussian"}, {"accuracy.tolerance", 1e-2}})
-          .with_grid(
-              {{"q", {2.0}}, {"theta_deg", dolp::AxisRange{0, 80, 1200}}, {"sigma", dolp::AxisRange{0.1, 1, 1000}}});
+  const dolp::Scene scene = large_scene(1200, 1000);
   const dolp::Table whole = evaluator_.table(scene);
   const std::vector<double>& expected = whole.values()[Quantity::kDolp];
   std::size_t entries = 0, parts = 0;
@@ -152,9 +157,8 @@ TEST_F(Library, Fit_GivesValuesWithIntervals) {
   const std::vector<double> theta = {20, 40, 50, 60, 70, 80};
   const dolp::Results truth = evaluator_.evaluate(scene_.with("surface.sigma", 0.3), {{"theta_deg", theta}});
   std::string csv = "theta_deg,dolp,uncertainty\n";
-  for (std::size_t i = 0; i < theta.size(); ++i) {
+  for (std::size_t i = 0; i < theta.size(); ++i)
     csv += std::to_string(theta[i]) + ',' + std::to_string(truth[Quantity::kDolp][i]) + ",0.002\n";
-  }
   const dolp::MeasuredData data = dolp::MeasuredData::from_csv(csv);
   const dolp::Fit fit = evaluator_.fit(scene_, {data}, {.vary = {{"surface.sigma", 0.05, 1.0}}});
   ASSERT_EQ(fit.parameters.size(), 1U);
@@ -178,20 +182,16 @@ TEST_F(Library, Fit_GivesValuesWithIntervals) {
 
 TEST_F(Library, WrongInput_IsAnInputError_OfOneLine) {
   const std::vector<double> theta = {95};
-  const std::vector<std::function<void()>> calls = {[&] { dolp::Scene::from_file(at("none.toml")); },
-                                                    [&] { scene_.with("surface.n", 0); },
-                                                    [&] {
-                                                      evaluator_.evaluate(scene_, {{"theta_deg", theta}});
-                                                    },
-                                                    [&] {
-                                                      evaluator_.evaluate(scene_, {{"zenith", theta}});
-                                                    },
-                                                    [&] { dolp::Evaluator({.evaluator = "abacus"}).table(scene_); }};
-  for (const auto& call : calls) {
+  const auto expect_one_line = [](const auto& call) {
     const std::string line = dolp::error_text(call);
     EXPECT_NE(line, "no error");
     EXPECT_EQ(line.find('\n'), std::string::npos) << line;
-  }
+  };
+  expect_one_line([&] { dolp::Scene::from_file(at("none.toml")); });
+  expect_one_line([&] { scene_.with("surface.n", 0); });
+  expect_one_line([&] { evaluator_.evaluate(scene_, {{"theta_deg", theta}}); });
+  expect_one_line([&] { evaluator_.evaluate(scene_, {{"zenith", theta}}); });
+  expect_one_line([&] { dolp::Evaluator({.evaluator = "abacus"}).table(scene_); });
   EXPECT_THROW(evaluator_.write_table(scene_, at("none") / "t.nc"), dolp::IoError);
 }
 
@@ -204,10 +204,7 @@ TEST_F(Library, AProgressThatReturnsFalse_Cancels_AndLeavesNoFile) {
 // The shard exists already, so the second run only reads it, part by part. The test cancels this run before the first
 // part, and then another such run before the second part.
 TEST_F(Library, Cancelled_WhileAKeptShardIsRead_IsHonoured) {
-  const dolp::Scene scene =
-      scene_.with({{"surface.masking", "none"}, {"surface.distribution", "gaussian"}, {"accuracy.tolerance", 1e-2}})
-          .with_grid(
-              {{"q", {2.0}}, {"theta_deg", dolp::AxisRange{0, 80, 600}}, {"sigma", dolp::AxisRange{0.1, 1, 800}}});
+  const dolp::Scene scene = large_scene(600, 800);
   const std::filesystem::path shard = evaluator_.write_table(scene, at("t.nc"), {}, {1, 1}).output;
   const auto written = std::filesystem::last_write_time(shard);
   for (const int most : {0, 1}) {
@@ -355,9 +352,8 @@ TEST_F(Library, AnEvaluator_ServesSeveralThreads) {
   const dolp::Results expected = evaluator_.evaluate(scene_, {{"theta_deg", theta}});
   std::vector<dolp::Results> found(4);
   std::vector<std::thread> threads;
-  for (dolp::Results& results : found) {
+  for (dolp::Results& results : found)
     threads.emplace_back([&] { results = evaluator_.evaluate(scene_, {{"theta_deg", theta}}); });
-  }
   for (std::thread& thread : threads) thread.join();
   for (const dolp::Results& results : found) {
     for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(results[Quantity::kDolp][i], expected[Quantity::kDolp][i]);

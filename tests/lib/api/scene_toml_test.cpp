@@ -23,9 +23,8 @@ TEST(SceneToml, ShippedScenesWithChanges_ReadBackAsTheSameScene) {
         Scene::from_file(file.path(), {{"title", "a \"quoted\" title"}, {"surface.sigma", 0.1234567890123}});
     const Scene again = Scene::from_text(scene.toml(kHostDir), {}, kHostDir + "/again.toml");
     EXPECT_EQ(again.title(), "a \"quoted\" title");
-    for (const char* axis : {"grid.theta_deg", "grid.sigma", "grid.q"}) {
+    for (const char* axis : {"grid.theta_deg", "grid.sigma", "grid.q"})
       EXPECT_EQ(again.numbers(axis), scene.numbers(axis));
-    }
     EXPECT_EQ(again.number("surface.sigma"), 0.1234567890123);
     const std::array theta_deg = {0.0, 35.0, 70.0};
     EXPECT_EQ(to_csv({}, evaluator.evaluate(scene, {{"theta_deg", theta_deg}})),

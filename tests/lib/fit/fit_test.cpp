@@ -41,6 +41,25 @@ TEST_F(FitTest, Jacobian_HasTheDerivativesOfTheModelByTheParameters) {
   }
 }
 
+TEST_F(FitTest, JacobianOfTheResiduals_IsThatOfFinerDifferences) {
+  const Model model(parse_scene(kScene, "scene"), {measured(kNoise)},
+                    {number("surface.n", 1.1, 4.0), number("surface.sigma", 0.02, 1.0)});
+  Residuals residuals(model, 2e-5, Differences::kCentral, evaluator_, {});
+  Residuals exact(model, 1e-10, Differences::kCentral, evaluator_, {});
+  const Eigen::VectorXd point = Eigen::Vector2d(0.3, 0.6);
+  Linearisation found = residuals.at({point}).front();
+  for (int i = 0; i < 2; ++i) residuals.linearise({&found});  // the first call chooses the steps of finite differences
+  constexpr double kStep = 1e-4;
+  for (Eigen::Index j = 0; j < 2; ++j) {
+    Eigen::VectorXd below = point, above = point;
+    below[j] -= kStep;
+    above[j] += kStep;
+    const std::vector<Linearisation> beside = exact.at({below, above});
+    const Eigen::VectorXd slope = (beside[1].residuals - beside[0].residuals) / (2.0 * kStep);
+    EXPECT_LT((found.jacobian.col(j) - slope).norm(), 2e-3 * slope.norm());
+  }
+}
+
 TEST_F(FitTest, ExactData_GiveTheTruth) {
   const FitResult result = fitted(measured(0.0), {number("surface.n", 1.1, 4.0), number("surface.k", 0.0, 5.0),
                                                   number("surface.sigma", 0.02, 1.0)});
@@ -169,9 +188,7 @@ TEST_F(FitTest, Outlier_MovesSquaresMoreThanARobustLoss) {
   const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0)};
   const double squares = std::abs(fitted(data, parameters).parameters.front().value - 1.6);
   for (const Loss loss : {Loss::kHuber, Loss::kSoftL1, Loss::kCauchy, Loss::kTukey}) {
-    FitOptions options;
-    options.loss = loss;
-    const FitResult result = fitted(data, parameters, options);
+    const FitResult result = fitted(data, parameters, {.vary = {}, .loss = loss});
     EXPECT_LT(std::abs(result.parameters.front().value - 1.6), 0.3 * squares);
     EXPECT_FALSE(result.p_value.has_value());
   }
@@ -184,9 +201,7 @@ TEST_F(FitTest, SameSeed_GivesTheSameDigits) {
   const FitResult two = fitted(data, parameters);
   EXPECT_EQ(one.parameters[0].value, two.parameters[0].value);
   EXPECT_EQ(one.parameters[1].interval_95.high, two.parameters[1].interval_95.high);
-  FitOptions other;
-  other.seed = 2;
-  EXPECT_NEAR(fitted(data, parameters, other).parameters[0].value, one.parameters[0].value,
+  EXPECT_NEAR(fitted(data, parameters, {.vary = {}, .seed = 2}).parameters[0].value, one.parameters[0].value,
               0.01 * *one.parameters[0].standard_error);
 }
 

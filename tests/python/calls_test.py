@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Tests scenes as values, wrong calls, threads and processes."""
 import copy
 import multiprocessing
@@ -268,7 +267,3 @@ class Calls(PackageCase):
             finally:
                 os._exit(status)
         self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

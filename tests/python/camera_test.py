@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Tests Stokes parameters in the axes of a camera."""
 import unittest
 
@@ -99,7 +98,3 @@ class Camera(PackageCase):
                 (self.curve[["dolp"]], [Z], Z, [0, 1, 0], "has no stokes_i")):
             with self.assertRaisesRegex(dolp.InputError, message):
                 dolp.camera_stokes(result, normals, view, up)
-
-
-if __name__ == "__main__":
-    unittest.main()

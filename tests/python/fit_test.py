@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Tests fits."""
 import unittest
 import warnings
@@ -100,7 +99,3 @@ class Fit(PackageCase):
         found = dolp.fit(self.scene, data, vary, starts=4, evaluator="cpu")
         self.assertEqual(list(found.params), list(vary))
         self.assertAlmostEqual(found.params["surface.n"], 1.5, delta=1e-3)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Tests scenes, points, tables and materials of the package."""
 import doctest
 import importlib
@@ -163,6 +162,3 @@ class Package(PackageCase):
         matrices = dolp.mueller(self.scene, theta_i_deg=[[10], [40]], theta_r_deg=[20, 30, 50], delta_phi_deg=180)
         self.assertEqual(matrices.shape, (2, 3, 4, 4))
         self.assertTrue((matrices[..., 0, 0] > 0).all())
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Tests the pictures of tables and fits."""
 import io
 import os
@@ -140,7 +139,3 @@ class Pictures(PackageCase):
         """With a diffuse part, I has no value at 90 degrees. The pictures of skies do not show Q/I there."""
         table = plot_skies.results(os.environ["DOLP_PROGRAM"], ["grid.theta_deg=[60, 89, 90]"], 0.15)
         self.assertEqual([*np.isnan(table["q_over_i"])], [False, False, True])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Tests `pip install ./host/python`, without a network, in a folder of its own."""
 import os
 import pathlib
@@ -31,7 +30,3 @@ class PipInstall(unittest.TestCase):
             libraries = subprocess.run(["ldd", *pathlib.Path(folder, "dolp").glob("_native*.so")], check=True,
                                        capture_output=True, text=True).stdout
             self.assertIn(f"libdolp.so.0 => {folder}/dolp/libdolp.so.0", libraries)
-
-
-if __name__ == "__main__":
-    unittest.main()

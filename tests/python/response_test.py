@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Tests responses and the moments that follow from them."""
 import pickle
 import unittest
@@ -138,7 +137,3 @@ class Response(PackageCase):
             np.testing.assert_array_equal(found.response_i.values, expected.response_i.values)
             with self.assertRaisesRegex(dolp.InputError, "comes from Scene.for_response, so only dolp.response takes it"):
                 dolp.table(bare, evaluator="cpu")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,9 +1,7 @@
-#!/usr/bin/env python3
 """Compares results of dolp with values of others and with closed forms. tests/VALIDATION.md describes the references.
 
-Usage: validation_test.py                    compares the results of a Vulkan device
-       validation_test.py --table PACKAGES   prints the table of tests/VALIDATION.md, computed with the evaluator cpu;
-                                             PACKAGES is the folder of the package dolp
+The test compares the results of a Vulkan device. `validation_test.py --table PACKAGES` prints the table of
+tests/VALIDATION.md, computed with the evaluator cpu. PACKAGES is the folder of the package dolp.
 """
 import csv
 import functools
@@ -264,10 +262,7 @@ class Validation(unittest.TestCase):
                     self.assertGreater(row.count, 0)
 
 
-if __name__ == "__main__":
-    if sys.argv[1:2] == ["--table"]:
-        sys.path.insert(0, sys.argv[2])
-        print("| reference | quantity | values | largest difference | tolerance |\n|---|---|---|---|---|")
-        print("\n".join(str(row) for reference in REFERENCES for row in reference(Model("cpu"))))
-    else:
-        unittest.main()
+if __name__ == "__main__" and sys.argv[1:2] == ["--table"]:
+    sys.path.insert(0, sys.argv[2])
+    print("| reference | quantity | values | largest difference | tolerance |\n|---|---|---|---|---|")
+    print("\n".join(str(row) for reference in REFERENCES for row in reference(Model("cpu"))))

@@ -35,10 +35,19 @@ std::vector<char> wanted_mask(const MomentsRequest& request, const std::vector<s
   return wanted;
 }
 
+/// Which pairs of an index and known responses are added up: all of them, or index i with the responses number i.
+enum class Pairs : std::uint8_t { kAll, kEqual };
+
+RowMajor products(Pairs pairs, const RowMajor& weights, const RowMajor& rows) {
+  if (pairs == Pairs::kAll) return weighted_sums(weights, rows);
+  return weights.cwiseProduct(rows.transpose()).rowwise().sum();
+}
+
 struct Responses {
-  Responses(std::span<const Moments> moments, std::size_t responses) : all(kParts) {
+  Responses(std::span<const Moments> moments, std::size_t responses, Pairs which) : all(kParts), pairs(which) {
     const auto shapes = static_cast<Eigen::Index>(moments.size());
     for (RowMajor& part : all) part = RowMajor::Zero(static_cast<Eigen::Index>(responses), shapes);
+    relative_error = RowMajor::Zero(1, shapes);
     for (Eigen::Index shape = 0; shape < shapes; ++shape) {
       const std::vector<ColumnMoments>& columns = moments[static_cast<std::size_t>(shape)].columns;
       for (Eigen::Index j = 0; j < static_cast<Eigen::Index>(columns.size()); ++j) {
@@ -49,45 +58,53 @@ struct Responses {
         all[kQApart](j, shape) = column.q_apart;
         all[kError](j, shape) = column.error;
       }
-      relative_error.push_back(columns.empty() ? 0.0 : columns.front().relative_error);
+      if (!columns.empty()) relative_error(shape) = columns.front().relative_error;
     }
   }
   enum Part : std::uint8_t { kI, kQ, kIApart, kQApart, kError, kParts };
-  std::vector<RowMajor> all;           // one matrix (responses x shapes) per Part, for one direction
-  std::vector<double> relative_error;  ///< ColumnMoments::relative_error of each shape
+  std::vector<RowMajor> all;  // one matrix (responses x shapes) per Part, for one direction
+  RowMajor relative_error;    ///< ColumnMoments::relative_error of each shape
+  Pairs pairs;
 };
 
-/// Weighted sums of responses, with a row for each index that has weights and a column for each shape. The error bounds
-/// cover the errors of the responses, but not the difference between a reflectance curve and its sum of polynomials.
+/// Weighted sums of responses, with a row for each index and, if all pairs are added up, a column for each shape. The
+/// error bounds cover the errors of the responses, but not the difference between a reflectance curve and its sum of
+/// polynomials.
 struct Sums {
   Sums(const Responses& responses, Responses::Part of, Responses::Part apart, const RowMajor& weights)
-      : value(weighted_sums(weights, responses.all[of])),
-        error(weighted_sums(weights, responses.all[apart]).cwiseAbs() +
-              weighted_sums(weights.cwiseAbs(), responses.all[Responses::kError])) {
-    for (Eigen::Index shape = 0; shape < error.cols(); ++shape)
-      error.col(shape) += responses.relative_error[static_cast<std::size_t>(shape)] * value.col(shape).cwiseAbs();
+      : value(products(responses.pairs, weights, responses.all[of])),
+        error(products(responses.pairs, weights, responses.all[apart]).cwiseAbs() +
+              products(responses.pairs, weights.cwiseAbs(), responses.all[Responses::kError])) {
+    const auto relative = responses.relative_error.row(0);
+    if (responses.pairs == Pairs::kAll) error += value.cwiseAbs() * relative.asDiagonal();
+    if (responses.pairs == Pairs::kEqual) error += relative.asDiagonal() * value.cwiseAbs();
   }
   /// Sums for the difference of two reflectance curves. If its sign changes, terms of a sum cancel. So relative errors
   /// refer to an upper bound of the sum: response 0, whose polynomial is 1, times the sum of all |weights|.
   static Sums difference(const Responses& responses, Responses::Part of, Responses::Part apart,
                          const RowMajor& weights) {
     Sums sums(responses, of, apart, weights);
-    const Eigen::VectorXd largest = weights.cwiseAbs().rowwise().sum();
-    for (Eigen::Index shape = 0; shape < sums.error.cols(); ++shape) {
-      sums.error.col(shape) +=
-          responses.relative_error[static_cast<std::size_t>(shape)] * responses.all[Responses::kI](0, shape) * largest;
-    }
+    const RowMajor largest = weights.cwiseAbs().rowwise().sum();
+    sums.error +=
+        products(responses.pairs, largest, responses.relative_error.cwiseProduct(responses.all[Responses::kI].row(0)));
     return sums;
   }
   RowMajor value;
   RowMajor error;
 };
 
+/// Places of a pair of an index and responses: its row and column in Sums, and the position of the responses.
+struct Pair {
+  Eigen::Index row = 0;
+  Eigen::Index column = 0;
+  std::size_t shape = 0;
+};
+
 class Combination {
  public:
   /// `weights`: for each index, its weights.
-  Combination(const MomentsRequest& request, std::size_t passes, std::vector<const ResponseWeights*> weights)
-      : request_(request), passes_(passes), weights_(std::move(weights)) {
+  Combination(const MomentsRequest& request, Pairs pairs, std::vector<const ResponseWeights*> weights)
+      : request_(request), pairs_(pairs), weights_(std::move(weights)) {
     const ResponseWeights& reference = request.basis->reference_weights();
     const auto rows = static_cast<Eigen::Index>(weights_.size());
     absorbed_ = split_ = RowMajor(rows, static_cast<Eigen::Index>(request.basis->count()));
@@ -102,11 +119,13 @@ class Combination {
     if (rows > 0) reflected_.col(0).array() += 1.0;
   }
 
-  const std::vector<const ResponseWeights*>& weights() const { return weights_; }
+  std::size_t indices() const { return weights_.size(); }
 
-  /// Computes `moments` (indices x shapes) at one direction from the moments of all shapes in `passes`.
-  void operator()(double cosine, std::span<const std::span<const Moments>> passes, std::span<Moments> moments) const {
-    add_reflected(cosine, passes.front(), moments);
+  /// Computes `moments` (indices x shapes, or indices) from the moments in `passes`. `cosine`: of the directions of the
+  /// shapes; only one if all pairs are added up.
+  void operator()(std::span<const double> cosine, std::span<const std::span<const Moments>> passes,
+                  std::span<Moments> moments) const {
+    add_reflected(cosine, passes, moments);
     std::size_t pass = 1;
     if (request_.wants_direct) add_direct(passes[pass++], moments);
     for (std::size_t k = 0; pass < passes.size(); ++pass, ++k) add_sky(passes[pass], k, moments);
@@ -116,14 +135,17 @@ class Combination {
   template <class Function>
   void for_all(std::size_t shapes, std::span<Moments> moments, const Function& set) const {
     for (std::size_t i = 0; i < weights_.size(); ++i) {
-      for (std::size_t shape = 0; shape < shapes; ++shape) {
-        set(moments[i * shapes + shape], *weights_[i], static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(shape));
-      }
+      const auto row = static_cast<Eigen::Index>(i);
+      if (pairs_ == Pairs::kEqual) set(moments[i], *weights_[i], Pair{row, 0, i});
+      for (std::size_t shape = 0; pairs_ == Pairs::kAll && shape < shapes; ++shape)
+        set(moments[i * shapes + shape], *weights_[i], Pair{row, static_cast<Eigen::Index>(shape), shape});
     }
   }
 
-  void add_reflected(double cosine, std::span<const Moments> reference, std::span<Moments> moments) const {
-    const Responses all(reference, request_.basis->count());
+  void add_reflected(std::span<const double> cosine, std::span<const std::span<const Moments>> passes,
+                     std::span<Moments> moments) const {
+    const std::span<const Moments> reference = passes.front();
+    const Responses all(reference, request_.basis->count(), pairs_);
     const Sums i(all, Responses::kI, Responses::kIApart, reflected_);
     const Sums q(all, Responses::kQ, Responses::kQApart, split_);
     // There are two ways to the moments of an index: a sum for its whole reflectance curve, or the moments of the
@@ -132,23 +154,24 @@ class Combination {
     const Sums more_absorbed = Sums::difference(all, Responses::kI, Responses::kIApart, absorbed_apart_);
     const Sums more_split = Sums::difference(all, Responses::kQ, Responses::kQApart, split_apart_);
     const ResponseWeights& reference_weights = request_.basis->reference_weights();
-    const double evaluations_share = static_cast<double>(passes_) / static_cast<double>(weights_.size());
-    for_all(reference.size(), moments, [&](Moments& sum, const ResponseWeights& own, auto index, auto shape) {
-      const Moments& from = reference[static_cast<std::size_t>(shape)];
+    const std::size_t sharing = pairs_ == Pairs::kAll ? weights_.size() : 1;
+    const double evaluations_share = static_cast<double>(passes.size()) / static_cast<double>(sharing);
+    for_all(reference.size(), moments, [&](Moments& sum, const ResponseWeights& own, const Pair& at) {
+      const Moments& from = reference[at.shape];
       sum.albedo = from.albedo;
       sum.albedo_error = from.albedo_error;
       const double albedo = from.albedo + from.albedo_error;
-      sum.r_i = i.value(index, shape);
-      sum.r_q = q.value(index, shape);
-      sum.r_i_error = i.error(index, shape) + own.absorbed_error * albedo;
-      sum.r_q_error = q.error(index, shape) + i.error(index, shape) + own.split_error * albedo;
+      sum.r_i = i.value(at.row, at.column);
+      sum.r_q = q.value(at.row, at.column);
+      sum.r_i_error = i.error(at.row, at.column) + own.absorbed_error * albedo;
+      sum.r_q_error = q.error(at.row, at.column) + i.error(at.row, at.column) + own.split_error * albedo;
       const double apart_error =
-          more_absorbed.error(index, shape) + (own.absorbed_error + reference_weights.absorbed_error) * albedo;
+          more_absorbed.error(at.row, at.column) + (own.absorbed_error + reference_weights.absorbed_error) * albedo;
       if (from.r_i_error + apart_error < sum.r_i_error) {
-        sum.r_i = from.r_i - more_absorbed.value(index, shape);
-        sum.r_q = from.r_q + more_split.value(index, shape);
+        sum.r_i = from.r_i - more_absorbed.value(at.row, at.column);
+        sum.r_q = from.r_q + more_split.value(at.row, at.column);
         sum.r_i_error = from.r_i_error + apart_error;
-        sum.r_q_error = from.r_q_error + more_split.error(index, shape) + more_absorbed.error(index, shape) +
+        sum.r_q_error = from.r_q_error + more_split.error(at.row, at.column) + more_absorbed.error(at.row, at.column) +
                         (own.split_error + reference_weights.split_error) * albedo;
       }
       // The error estimate of a sum may be too small, because differences between rules cancel by chance. So the
@@ -156,46 +179,47 @@ class Combination {
       const double whole_error = from.r_i_error * std::max(sum.r_i / from.r_i, 0.0);
       sum.r_i_error = std::max(sum.r_i_error, whole_error);
       sum.r_q_error = std::max(sum.r_q_error, whole_error);
-      sum.deficit = from.deficit + more_absorbed.value(index, shape);
+      sum.deficit = from.deficit + more_absorbed.value(at.row, at.column);
       sum.deficit_error = from.deficit_error + apart_error;
       sum.evaluations = evaluations_share * from.evaluations;
-      take_complement(sum, cosine);
+      take_complement(sum, cosine[pairs_ == Pairs::kAll ? 0 : at.shape]);
     });
   }
 
   void add_direct(std::span<const Moments> pass, std::span<Moments> moments) const {
-    const Responses all(pass, request_.basis->count());
+    const Responses all(pass, request_.basis->count(), pairs_);
     const Sums i(all, Responses::kI, Responses::kIApart, absorbed_);
     const Sums q(all, Responses::kQ, Responses::kQApart, split_);
-    for_all(pass.size(), moments, [&](Moments& sum, const ResponseWeights& own, auto index, auto shape) {
-      const double projection = all.all[Responses::kI](0, shape) + all.all[Responses::kError](0, shape);
-      sum.direct_i = i.value(index, shape);
-      sum.direct_q = -q.value(index, shape);
-      const Moments& from = pass[static_cast<std::size_t>(shape)];
+    for_all(pass.size(), moments, [&](Moments& sum, const ResponseWeights& own, const Pair& at) {
+      const auto column = static_cast<Eigen::Index>(at.shape);
+      const double projection = all.all[Responses::kI](0, column) + all.all[Responses::kError](0, column);
+      sum.direct_i = i.value(at.row, at.column);
+      sum.direct_q = -q.value(at.row, at.column);
+      const Moments& from = pass[at.shape];
       const double whole_error = from.direct_i_error * std::max(sum.direct_i / from.direct_i, 0.0);
-      sum.direct_i_error = std::max(i.error(index, shape) + own.absorbed_error * projection, whole_error);
+      sum.direct_i_error = std::max(i.error(at.row, at.column) + own.absorbed_error * projection, whole_error);
       sum.direct_q_error =
-          std::max(q.error(index, shape) + i.error(index, shape) + own.split_error * projection, whole_error);
+          std::max(q.error(at.row, at.column) + i.error(at.row, at.column) + own.split_error * projection, whole_error);
     });
   }
 
   void add_sky(std::span<const Moments> pass, std::size_t function, std::span<Moments> moments) const {
-    const Responses all(pass, request_.basis->count());
+    const Responses all(pass, request_.basis->count(), pairs_);
     const Sums i(all, Responses::kI, Responses::kIApart, reflected_);
     const Sums q(all, Responses::kQ, Responses::kQApart, split_);
-    for_all(pass.size(), moments, [&](Moments& sum, const ResponseWeights& own, auto index, auto shape) {
-      const Moments& from = pass[static_cast<std::size_t>(shape)];
+    for_all(pass.size(), moments, [&](Moments& sum, const ResponseWeights& own, const Pair& at) {
+      const Moments& from = pass[at.shape];
       // Light cancels, because the sky's function changes its sign. So relative errors refer to r_i, not to the sum.
-      const double relative = all.relative_error[static_cast<std::size_t>(shape)] * std::abs(sum.r_i);
+      const double relative = all.relative_error(static_cast<Eigen::Index>(at.shape)) * std::abs(sum.r_i);
       sum.columns.resize(function + 1);
-      sum.columns[function] = {i.value(index, shape), q.value(index, shape),
-                               std::max(i.error(index, shape), q.error(index, shape)) + relative +
+      sum.columns[function] = {i.value(at.row, at.column), q.value(at.row, at.column),
+                               std::max(i.error(at.row, at.column), q.error(at.row, at.column)) + relative +
                                    std::max(own.absorbed_error, own.split_error) * (from.albedo + from.albedo_error)};
     });
   }
 
   const MomentsRequest& request_;
-  std::size_t passes_;
+  Pairs pairs_;
   std::vector<const ResponseWeights*> weights_;
   RowMajor absorbed_, split_, absorbed_apart_, split_apart_, reflected_;
 };
@@ -335,54 +359,58 @@ ResponsePlan plan_of_grid(const MomentsRequest& request) {
 /// Reads the moments of a point from the passes, or interpolates them.
 class PointReader {
  public:
-  PointReader(const ResponsePlan& plan, std::span<const std::vector<Moments>> passes)
-      : plan_(plan.interpolation), passes_(passes) {
+  PointReader(const MomentsRequest& request, const ResponsePlan& plan, std::span<const std::vector<Moments>> passes)
+      : request_(request), plan_(plan), passes_(passes), sharing_(request.size(), 0.0) {
+    for (const ResponsePlan::PointSource& point : plan.points) sharing_[point.pass] += 1.0;
     for (const std::vector<Moments>& pass : passes) {
-      if (plan_) panels_.push_back(panel_blocks(*plan_, pass));
+      if (plan.interpolation) panels_.push_back(panel_blocks(*plan.interpolation, pass));
     }
   }
 
-  /// For each pass the moments of one of its points. `buffer` keeps interpolated moments.
-  std::vector<std::span<const Moments>> read(std::size_t point, double theta_deg, std::vector<Moments>& buffer) const {
-    buffer.resize(passes_.size());
-    std::vector<std::span<const Moments>> moments;
-    for (std::size_t i = 0; i < passes_.size(); ++i) {
-      if (plan_) buffer[i] = interpolate(*plan_, panels_[i], theta_deg, point);
-      moments.push_back(plan_ ? std::span<const Moments>(&buffer[i], 1) : std::span(passes_[i]).subspan(point, 1));
-    }
+  Moments read(std::size_t pass, std::size_t point) const {
+    const std::size_t position = plan_.points[point].pass;
+    if (plan_.interpolation)
+      return interpolate(*plan_.interpolation, panels_[pass], request_.theta_deg[point], position);
+    Moments moments = passes_[pass][position];
+    moments.evaluations /= sharing_[position];
     return moments;
   }
 
  private:
-  const std::optional<PointPlan>& plan_;
+  const MomentsRequest& request_;
+  const ResponsePlan& plan_;
   std::span<const std::vector<Moments>> passes_;
+  std::vector<double> sharing_;                  ///< for each position in a pass, how many points share it
   std::vector<std::vector<ShapeBlock>> panels_;  ///< for each pass
 };
 
 std::vector<Moments> combined_points(const MomentsRequest& request, const ResponsePlan& plan,
                                      std::span<const std::vector<Moments>> passes, std::span<const Moments> others) {
   std::vector<Moments> moments(request.size());
-  std::vector<std::vector<std::uint32_t>> sharing;  // for each position in a pass, the points that use it
-  for (std::uint32_t i = 0; i < plan.points.size(); ++i) {
-    const ResponsePlan::PointSource& point = plan.points[i];
-    if (point.other) moments[i] = others[*point.other];
-    sharing.resize(std::max<std::size_t>(sharing.size(), point.pass + 1));
-    if (!point.other) sharing[point.pass].push_back(i);
+  std::vector<std::size_t> reached;  // points that are sums of responses
+  for (std::size_t i = 0; i < plan.points.size(); ++i) {
+    const std::optional<std::uint32_t>& other = plan.points[i].other;
+    if (other) moments[i] = others[*other];
+    if (!other) reached.push_back(i);
   }
-  const PointReader reader(plan, passes);
-  parallel_ranges(sharing.size(), kPointsAtOnce, [&](std::size_t first, std::size_t last) {
-    std::vector<Moments> own, buffer;
-    std::optional<Combination> combine;
-    for (std::size_t pass = first; pass < last; ++pass) {
-      std::vector<const ResponseWeights*> weights;
-      for (const std::uint32_t i : sharing[pass]) weights.push_back(&*(*plan.sources)[plan.points[i].source].weights);
-      if (weights.empty()) continue;
-      if (!combine || combine->weights() != weights) combine.emplace(request, passes.size(), std::move(weights));
-      const double theta_deg = request.theta_deg[sharing[pass].front()];
-      own.assign(sharing[pass].size(), {});
-      (*combine)(cos_sin_deg(theta_deg).cos, reader.read(pass, theta_deg, buffer), own);
-      for (std::size_t j = 0; j < own.size(); ++j) moments[sharing[pass][j]] = std::move(own[j]);
+  const PointReader reader(request, plan, passes);
+  parallel_ranges(reached.size(), kPointsAtOnce, [&](std::size_t first, std::size_t last) {
+    const std::span<const std::size_t> points = std::span(reached).subspan(first, last - first);
+    std::vector<const ResponseWeights*> weights;
+    std::vector<double> cosine;
+    std::vector<std::vector<Moments>> read(passes.size());
+    for (std::size_t j = 0; j < points.size(); ++j) {
+      const ResponsePlan::PointSource& point = plan.points[points[j]];
+      weights.push_back(&*(*plan.sources)[point.source].weights);
+      cosine.push_back(cos_sin_deg(request.theta_deg[points[j]]).cos);
+      const bool is_known = j > 0 && point.pass == plan.points[points[j - 1]].pass;
+      for (std::size_t pass = 0; pass < passes.size(); ++pass)
+        read[pass].push_back(is_known ? read[pass].back() : reader.read(pass, points[j]));
     }
+    std::vector<Moments> own(points.size());
+    const std::vector<std::span<const Moments>> known(read.begin(), read.end());
+    Combination(request, Pairs::kEqual, std::move(weights))(cosine, known, own);
+    for (std::size_t j = 0; j < own.size(); ++j) moments[points[j]] = std::move(own[j]);
   });
   return moments;
 }
@@ -400,17 +428,18 @@ std::vector<Moments> combined(const MomentsRequest& request, const ResponsePlan&
   for (const ResponsePlan::Source& source : *plan.sources) {
     if (source.weights) weights.push_back(&*source.weights);
   }
-  const Combination combine(request, passes.size(), std::move(weights));
+  const Combination combine(request, Pairs::kAll, std::move(weights));
   const std::size_t shapes = request.shapes();
   const std::size_t directions = request.theta_deg.size();
   std::vector<Moments> moments(request.size());
   parallel_ranges(directions, 1, [&](std::size_t first, std::size_t last) {
-    std::vector<Moments> own(combine.weights().size() * shapes);
+    std::vector<Moments> own(combine.indices() * shapes);
     for (std::size_t theta = first; theta < last; ++theta) {
       std::vector<std::span<const Moments>> pass_moments;
       for (const std::vector<Moments>& pass : passes)
         pass_moments.push_back(std::span(pass).subspan(theta * shapes, shapes));
-      if (!pass_moments.empty()) combine(cos_sin_deg(request.theta_deg[theta]).cos, pass_moments, own);
+      const double cosine = cos_sin_deg(request.theta_deg[theta]).cos;
+      if (!pass_moments.empty()) combine({&cosine, 1}, pass_moments, own);
       std::size_t position = 0;
       for (std::size_t i = 0; i < plan.sources->size(); ++i) {
         const ResponsePlan::Source& source = (*plan.sources)[i];

@@ -105,7 +105,8 @@ std::optional<ResponseWeights> ResponseBasis::find_weights(const FacetOptics& in
     const SmoothAbsorptance curve = smooth_absorptance(index, cosines_[static_cast<std::size_t>(i)]);
     values.row(i) << 0.5 * (curve.s + curve.p), 0.5 * curve.split;
   }
-  const Eigen::MatrixX2d all = coefficients_ * values;
+  Eigen::MatrixX2d all(nodes, 2);
+  for (Eigen::Index curve = 0; curve < 2; ++curve) all.col(curve).noalias() = coefficients_ * values.col(curve);
   const Eigen::RowVector2d errors =
       all.bottomRows(nodes - count).cwiseAbs().colwise().sum() +
       static_cast<double>(nodes) * all.bottomRows<kLastOfCurve>().cwiseAbs().colwise().maxCoeff();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,7 @@ class RememberingEvaluator final : public ModelEvaluator {
     if (!is_repeated_(request)) return evaluator_.evaluate(request, progress);
     const auto known = std::ranges::find(known_, request, &std::pair<MomentsRequest, std::vector<Moments>>::first);
     if (known != known_.end()) return known->second;
+    if (known_.size() == kMostKnown) known_.erase(known_.begin());
     return known_.emplace_back(request, evaluator_.evaluate(request, progress)).second;
   }
   std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override {
@@ -32,6 +34,8 @@ class RememberingEvaluator final : public ModelEvaluator {
   EvaluationReport report() const override { return evaluator_.report(); }
 
  private:
+  static constexpr std::size_t kMostKnown = 64;
+
   ModelEvaluator& evaluator_;
   IsRepeated is_repeated_;
   std::vector<std::pair<MomentsRequest, std::vector<Moments>>> known_;

@@ -497,8 +497,10 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
     if (evaluator) all.work += evaluator->report();
     return all;
   };
-  std::optional<RememberingEvaluator> remembering;  // parts of a list have the same responses
-  const auto is_repeated = [](const MomentsRequest& request) { return request.response.has_value(); };
+  std::optional<RememberingEvaluator> remembering;
+  const auto is_repeated = [](const MomentsRequest& request) {  // parts of a list have the same nodes
+    return request.response && request.layout == MomentsRequest::Layout::kGrid && !request.sky;
+  };
   if (basis && !entries.is_grid()) evaluator = &remembering.emplace(*evaluator, is_repeated);
   std::size_t left = output.finished.parts, before = 0;
   for (const SceneEntries& part : run_parts(entries, samples)) {

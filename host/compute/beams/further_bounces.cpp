@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "beams/beam_geometry.hpp"
 #include "model/angles.hpp"
 #include "model/slopes.hpp"
 

@@ -141,8 +141,9 @@ inline constexpr double kExtraShapeDigits = 1.0;      // 1.84, 1.87, 2.33; 1.75,
 inline constexpr double kShapeTail = 3.0;  // 1.87, 1.87, 1.89; 1.80, 1.81, 2.00
 inline constexpr int kLastShapeCoefficients = 3;
 inline constexpr double kSlowestShapeFall = 0.9;
-/// A list is interpolated only if it has at least kLeastPoints points, and kLeastPointGain points per node.
-inline constexpr std::size_t kLeastPoints = 1024;
+/// A list is interpolated only if it has at least kLeastPoints points, and kLeastPointGain points per node. With fewer
+/// points the time that a driver needs for the kernels of the responses does not pay.
+inline constexpr std::size_t kLeastPoints = 8192;
 inline constexpr std::size_t kLeastPointGain = 4;
 /// Responses at the nodes of points get this share of the tolerance, because the errors of high polynomials add up.
 inline constexpr double kPointNodeTolerance = 0.0025;

@@ -42,6 +42,8 @@ constexpr std::array<RuleModel, 5> kModels = {{
 }};
 
 constexpr double kNone = -1000.0;
+constexpr double kLeastCusp = 1e-3;  // of a smaller share of the cusp no rule takes notice
+constexpr double kMostCuspPower = 10.0;
 
 // log10 of the number of nodes on a piece with a kink of the masking. A slope width above 1 divides this number.
 double decades_per_node(const SlopeShape& shape, double digits) {
@@ -50,19 +52,22 @@ double decades_per_node(const SlopeShape& shape, double digits) {
 }
 
 // log10 of the error of a rule on a piece that contains the cusp of smith masking, at theta_r = 0. For Cauchy slopes,
-// Smith's Lambda is proportional to tan(theta_r)^(2q-2) at the cusp. So n nodes give an error proportional to n^(-2q).
+// Smith's Lambda is proportional to tan(theta_r)^(2q-2) at the cusp. So n nodes give an error proportional to n^(-2q),
+// if q is not large. For an integer q, Lambda has no cusp but branch points at tan(theta_r) = +-i / m. If m is large, n
+// nodes cannot tell them from a cusp; if not, they reduce the error by exp(-2 n / m).
 double unsplit_cusp(Distribution distribution, const SlopeShape& shape, double digits) {
   const double per_node = decades_per_node(shape, digits);
   if (distribution == Distribution::kGaussian) {
     // Gaussian slopes: all derivatives of Lambda are 0 at the cusp. At 45 degrees, Lambda is about exp(-1/(2 sigma^2)).
     return -0.5 / (shape.sigma * shape.sigma * std::numbers::ln10) - kGaussianCuspPower * per_node;
   }
-  const double from_integer = std::abs(shape.q - std::round(shape.q));
-  if (from_integer == 0.0) return kNone;
   const double coefficient = gamma_ratio(shape.q - 1.0) / (kRootPi * (2.0 * shape.q - 3.0) * (2.0 * shape.q - 2.0));
-  const double size = (2.0 * shape.q - 2.0) * std::log10(std::min(1.0, std::numbers::sqrt2 * shape.sigma)) +
-                      std::log10(std::min(coefficient, 1.0) * std::min(1.0, 4.0 * from_integer));
-  return size - 2.0 * shape.q * per_node;
+  const double size =
+      (2.0 * shape.q - 2.0) * std::log10(std::min(1.0, slope_width(shape))) + std::log10(std::min(coefficient, 1.0));
+  const double from_integer = std::abs(shape.q - std::round(shape.q));
+  const double seen = std::exp(-2.0 * std::pow(10.0, per_node) / slope_width(shape));
+  const double share = std::max(std::min(1.0, 4.0 * from_integer), seen);
+  return share < kLeastCusp ? kNone : size + std::log10(share) - std::min(2.0 * shape.q, kMostCuspPower) * per_node;
 }
 
 // log10 of the error of a rule across the kink of `integral` masking. G has a term |distance from the kink|^(2q-1).

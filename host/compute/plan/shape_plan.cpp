@@ -6,6 +6,7 @@
 
 #include "model/chebyshev.hpp"
 #include "model/choices.hpp"
+#include "model/response_basis.hpp"
 #include "plan/constants.hpp"
 
 namespace dolp {

@@ -160,6 +160,23 @@ TEST(HardEntries, Moments_AreWithinTheirBoundsOfFinerRulesAndOfTheReference) {
   }
 }
 
+// For an integer q, Smith's Lambda is analytic at theta_r = 0. But it has branch points beside it if the slopes are
+// wide.
+TEST(HardEntries, WideSlopesOfAnIntegerQ_AreWithinTheirBoundsOfTheReference) {
+  std::vector<Point> points;
+  for (const double theta_deg : {12.5, 24.5, 32.4, 61.6}) {
+    for (const double sigma : {4.0, 7.0, 10.0}) {
+      for (const double q : {2.0, 3.0, 4.0, 6.0, 8.0}) points.push_back({theta_deg, {sigma, q}, {2.5, 0.03}});
+    }
+  }
+  const std::vector<Moments> reference = ReferenceEvaluator().evaluate(request_of(kCauchySmith, points, 1e-8), {});
+  for (const Kernel kernel : kKernels) {
+    const std::vector<Moments> stated = make_evaluator(kernel)->evaluate(request_of(kCauchySmith, points, 1e-5), {});
+    for (std::size_t i = 0; i < points.size(); ++i)
+      expect_within_bounds(stated[i], reference[i], to_name(kernel) + " at " + text_of(points[i]));
+  }
+}
+
 // Near the horizon the emission is weak, so DOLP needs a more accurate rho than in other directions.
 class NextToTheHorizon : public testing::TestWithParam<Masking> {
  protected:

@@ -79,7 +79,7 @@ MomentsRequest random_grid(Random& random, const Model& model, Scattering scatte
 
 /// Many random points. Their largest sigma is up to 6 times their smallest, and q - 1 varies by a factor of up to 1.5.
 MomentsRequest random_points(Random& random, const Model& model) {
-  constexpr std::size_t kPoints = 6'000;
+  constexpr std::size_t kPoints = 9'000;
   MomentsRequest request = request_of(model, {}, random.log_uniform(3e-4, 1e-2));
   const bool has_direct = model.masking == Masking::kVCavity || model.masking == Masking::kSmith;
   request.wants_direct = has_direct && random.chance(0.5);

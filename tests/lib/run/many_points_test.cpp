@@ -18,7 +18,7 @@
 namespace dolp {
 namespace {
 
-constexpr std::size_t kPoints = 6000;
+constexpr std::size_t kPoints = 9000;
 
 SceneValues scene(const std::string& masking, const std::string& more = "") {
   return parse_scene("[surface]\nn = 1.5\nsigma = 0.2\nq = 3\nmasking = \"" + masking +
@@ -70,10 +70,10 @@ TEST(ManyPoints, Interpolated_AgreeWithPointsByThemselves) {
       own.accuracy.tolerance = 1e-5;
       own.accuracy.may_interpolate = false;
       std::vector<SceneEntry> some;
-      for (std::size_t i = 0; i < kPoints; i += 60) some.push_back(points[i]);
+      for (std::size_t i = 0; i < kPoints; i += 90) some.push_back(points[i]);
       const std::vector<PointResult> exact = evaluate_scene(own, some, evaluator, {});
       for (std::size_t i = 0; i < exact.size(); ++i) {
-        const PointResult& result = results[60 * i];
+        const PointResult& result = results[90 * i];
         EXPECT_EQ(result.status & kAnyToleranceNotMet, 0U);
         EXPECT_NEAR(result[Quantity::kDolp], exact[i][Quantity::kDolp],
                     result[Quantity::kErrorEstimate] + exact[i][Quantity::kErrorEstimate])
@@ -94,7 +94,7 @@ TEST(ManyPoints, CheckFindsWrongBounds_NoPointMeetsTheTolerance) {
 }
 
 TEST(ManyPoints, FewPoints_AreIntegrated) {
-  const SceneEntries points = random_points(500);
+  const SceneEntries points = random_points(8000);
   const SceneValues own = scene("v-cavity");
   CpuEvaluator evaluator;
   EXPECT_EQ(

@@ -11,6 +11,7 @@
 #include "base/numbers.hpp"
 #include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "model/choices.hpp"
+#include "report/run_report.hpp"
 
 namespace dolp {
 namespace {

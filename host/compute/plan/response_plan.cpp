@@ -19,7 +19,7 @@
 namespace dolp {
 namespace {
 
-constexpr std::size_t kPointsAtOnce = 64;  // points that a thread combines in one step
+constexpr std::size_t kCombinedAtOnce = 64;  // points that a thread combines in one step
 
 /// The mask `wanted` of a second request, with other indices. Its index j must have each entry (direction and shape)
 /// that `request` wants at any of its own indices in needed_by[j].
@@ -394,7 +394,7 @@ std::vector<Moments> combined_points(const MomentsRequest& request, const Respon
     if (!other) reached.push_back(i);
   }
   const PointReader reader(request, plan, passes);
-  parallel_ranges(reached.size(), kPointsAtOnce, [&](std::size_t first, std::size_t last) {
+  parallel_ranges(reached.size(), kCombinedAtOnce, [&](std::size_t first, std::size_t last) {
     const std::span<const std::size_t> points = std::span(reached).subspan(first, last - first);
     std::vector<const ResponseWeights*> weights;
     std::vector<double> cosine;

@@ -69,7 +69,7 @@ void check(const MomentsRequest& request) {
     throw InputError("reference: smith masking with a sigma_cross other than sigma has direct emission only");
   }
   for (const double theta_deg : request.theta_deg) check_zenith(theta_deg);
-  for (std::size_t i = 0; i < request.size(); ++i) check_shape(request.distribution, request.masking, request[i].shape);
+  for (const SlopeShape& shape : request.shapes) check_shape(request.distribution, request.masking, shape);
   for (const FacetOptics& index : request.optics) check_index(index);
 }
 
@@ -192,9 +192,7 @@ std::vector<Moments> ReferenceEvaluator::evaluate(const MomentsRequest& request,
   const auto start = std::chrono::steady_clock::now();
   const reference::Refinement refinement{relative_tolerance(options_, request.tolerance), options_.subdivisions};
   std::vector<Moments> results(request.size());
-  const auto compute = [&](std::size_t i) {
-    if (request.is_wanted(i)) results[i] = point_moments(request, request[i], refinement);
-  };
+  const auto compute = [&](std::size_t i) { results[i] = point_moments(request, request[i], refinement); };
   parallel_for(results.size(), kEntriesAtOnce, compute, progress);
   for (const Moments& moments : results) report_.evaluations += moments.evaluations;
   note(seconds_since(start));

@@ -20,14 +20,13 @@ bool is_finite(const Moments& m) {
          std::isfinite(m.r_i_error + m.r_q_error + m.albedo_error + m.deficit_error);
 }
 
-/// The blocks of the wanted pairs of an index and a direction. Pairs with infinite or NaN moments have an empty block.
+/// The blocks of the step's bundles. Bundles with infinite or NaN moments have an empty block.
 std::vector<ShapeBlock> shape_blocks(const MomentsStep& step, std::span<const Moments> nodes) {
-  const std::size_t nodes_per_pair = step.shapes->nodes_of_a_direction();
-  std::vector<ShapeBlock> blocks(nodes.size() / nodes_per_pair);
+  std::vector<ShapeBlock> blocks(step.bundles.size());
   parallel_for(blocks.size(), 16, [&](std::size_t i) {
-    const std::span<const Moments> pair_nodes = nodes.subspan(i * nodes_per_pair, nodes_per_pair);
-    const bool is_wanted = step.request.is_wanted(i * step.request.shapes());
-    if (is_wanted && std::ranges::all_of(pair_nodes, is_finite)) blocks[i] = shape_block(*step.shapes, pair_nodes);
+    const Bundle& bundle = step.nodes().bundles[i];
+    const std::span<const Moments> bundle_nodes = nodes.subspan(bundle.first_entry, bundle.count);
+    if (std::ranges::all_of(bundle_nodes, is_finite)) blocks[i] = shape_block(*step.shapes, bundle_nodes);
   });
   return blocks;
 }
@@ -40,17 +39,20 @@ class Calls {
 
   PlannedMoments::Step step(const MomentsStep& step) {
     std::vector<Moments> nodes = step.responses ? combined_nodes(step) : planned(step.nodes());
-    if (!step.shapes) return {std::move(nodes), {}};
+    if (!step.shapes) {
+      std::vector<std::size_t> first;
+      for (const Bundle& bundle : step.request.bundles) first.push_back(bundle.first_entry);
+      return {std::move(nodes), {}, std::move(first)};
+    }
     const Clock::time_point start = Clock::now();
     std::vector<ShapeBlock> blocks = shape_blocks(step, nodes);
     work_.sums_s += seconds_since(start);
-    std::vector<Moments> left = left_moments(step.request, blocks);
-    return {std::move(left), std::move(blocks)};
+    return left_moments(step.request, std::move(blocks));
   }
 
  private:
   std::vector<Moments> planned(const MomentsRequest& request) {
-    const std::size_t count = request.wanted_count();
+    const std::size_t count = request.size();
     const Progress plan_progress = [&](std::size_t done, std::size_t all) {
       const std::size_t so_far = done_ + count * done / std::max<std::size_t>(all, 1);
       return !progress_ || progress_(plan_.size() * so_far / std::max<std::size_t>(kernel_moments_, 1), plan_.size());
@@ -79,18 +81,23 @@ class Calls {
     return moments;
   }
 
-  /// The moments of wanted pairs that have no block; nothing if all have one.
-  std::vector<Moments> left_moments(const MomentsRequest& request, std::span<const ShapeBlock> blocks) {
-    std::vector<char> is_left(blocks.size());
-    for (std::size_t i = 0; i < blocks.size(); ++i)
-      is_left[i] = blocks[i].is_empty() && request.is_wanted(i * request.shapes()) ? 1 : 0;
-    if (std::ranges::find(is_left, 1) == is_left.end()) return {};
-    MomentsRequest left = request;
-    left.basis = nullptr;
-    left.wanted.clear();
-    for (const char flag : is_left) left.wanted.insert(left.wanted.end(), request.shapes(), flag);
-    work_.interpolated -= left.wanted_count();
-    return evaluated(left, [&](std::size_t, std::size_t) { return !progress_ || progress_(1, 1); });
+  /// Computes the moments of the bundles that have no block.
+  PlannedMoments::Step left_moments(const MomentsRequest& request, std::vector<ShapeBlock> blocks) {
+    PlannedMoments::Step step{{}, std::move(blocks), std::vector<std::size_t>(request.bundles.size())};
+    std::vector<std::size_t> left;
+    std::size_t entries = 0;
+    for (std::size_t i = 0; i < step.blocks.size(); ++i) {
+      if (!step.blocks[i].is_empty()) continue;
+      left.push_back(i);
+      step.first[i] = entries;
+      entries += request.bundles[i].count;
+    }
+    if (left.empty()) return step;
+    MomentsRequest selected = request.select_bundles(left);
+    selected.basis = nullptr;
+    work_.interpolated -= entries;
+    step.moments = evaluated(selected, [&](std::size_t, std::size_t) { return !progress_ || progress_(1, 1); });
+    return step;
   }
 
   const MomentsPlan& plan_;
@@ -104,32 +111,33 @@ class Calls {
 }  // namespace
 
 PlannedMoments::PlannedMoments(MomentsPlan plan, std::vector<Step> steps)
-    : plan_(std::move(plan)), steps_(std::move(steps)), places_(plan_.directions()) {
+    : plan_(std::move(plan)), steps_(std::move(steps)), places_(plan_.bundles()) {
   for (std::size_t i = 0; i < steps_.size(); ++i) {
-    const std::vector<std::size_t>& directions = plan_.steps()[i].directions;
-    for (std::size_t j = 0; j < directions.size(); ++j) places_[directions[j]] = {i, j};
+    const MomentsStep& step = plan_.steps()[i];
+    for (std::size_t j = 0; j < step.bundles.size(); ++j) places_[step.bundles[j]] = {step.request.bundles[j].count, i, j};
   }
+  std::size_t first = 0;
+  for (Place& place : places_) first += std::exchange(place.first_entry, first);
 }
 
 PlannedMoments::Range PlannedMoments::read(std::size_t entry, std::vector<Moments>& buffer) const {
   if (steps_.size() == 1 && steps_.front().blocks.empty()) return {0, steps_.front().moments};
-  const std::size_t shapes = plan_.steps().front().request.shapes();
-  const std::size_t pair = entry / shapes;
-  const Place& place = places_[pair % places_.size()];
+  const Place& place = *(std::ranges::upper_bound(places_, entry, {}, &Place::first_entry) - 1);
   const Step& step = steps_[place.step];
   const MomentsStep& planned = plan_.steps()[place.step];
-  const std::size_t own_pair = pair / places_.size() * planned.directions.size() + place.position;
-  if (step.blocks.empty() || step.blocks[own_pair].is_empty())
-    return {pair * shapes, std::span(step.moments).subspan(own_pair * shapes, shapes)};
-  const std::size_t qs = planned.request.q.size(), sigma = entry % shapes / qs, q = entry % qs;
+  const std::size_t count = planned.request.bundles[place.position].count;
+  if (step.blocks.empty() || step.blocks[place.position].is_empty())
+    return {place.first_entry, std::span(step.moments).subspan(step.first[place.position], count)};
+  const auto qs = static_cast<std::size_t>(planned.shapes->q.weights.cols());
+  const std::size_t sigma = (entry - place.first_entry) / qs, q = (entry - place.first_entry) % qs;
   ShapeRange range{.first_q = q - q % kInterpolatedAtOnce};
   range.qs = std::min(kInterpolatedAtOnce, qs - range.first_q);
   const std::size_t sigmas_at_once = std::max<std::size_t>(kInterpolatedAtOnce / qs, 1);
   range.first_sigma = sigma - sigma % sigmas_at_once;
-  range.sigmas = std::min(sigmas_at_once, planned.request.sigma.size() - range.first_sigma);
+  range.sigmas = std::min(sigmas_at_once, count / qs - range.first_sigma);
   buffer.resize(range.sigmas * range.qs);
-  interpolate(*planned.shapes, step.blocks[own_pair], range, buffer);
-  return {pair * shapes + range.first_sigma * qs + range.first_q, buffer};
+  interpolate(*planned.shapes, step.blocks[place.position], range, buffer);
+  return {place.first_entry + range.first_sigma * qs + range.first_q, buffer};
 }
 
 std::vector<Moments> PlannedMoments::all() const {

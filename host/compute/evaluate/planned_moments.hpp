@@ -16,13 +16,14 @@ class PlannedMoments {
   /// The computed moments of a step of the plan.
   struct Step {
     std::vector<Moments> moments;    ///< one for each entry of the step; empty if all are interpolated
-    std::vector<ShapeBlock> blocks;  ///< for each pair of an index and a direction; empty if `moments` has the pair
+    std::vector<ShapeBlock> blocks;  ///< for each bundle of the step; empty if `moments` has its entries
+    std::vector<std::size_t> first;  ///< for each bundle, the position of its first entry in `moments`
   };
 
   PlannedMoments() = default;
   PlannedMoments(MomentsPlan plan, std::vector<Step> steps);
 
-  /// Neighbouring entries. They have one direction and index, unless all entries are stored.
+  /// Neighbouring entries. They are of one bundle, unless all entries are stored.
   struct Range {
     std::size_t first = 0;
     std::span<const Moments> moments;  ///< valid while the buffer that read() got is unchanged
@@ -33,13 +34,14 @@ class PlannedMoments {
 
  private:
   struct Place {
+    std::size_t first_entry = 0;  ///< of the bundle, in the request
     std::size_t step = 0;
     std::size_t position = 0;  ///< in the step
   };
 
   MomentsPlan plan_;
   std::vector<Step> steps_;
-  std::vector<Place> places_;  ///< for each direction of a grid
+  std::vector<Place> places_;  ///< for each bundle
 };
 
 /// Reads moments in any order. It keeps the last range, because neighbouring entries mostly share one.
@@ -59,8 +61,8 @@ class MomentsReader {
   std::vector<Moments> buffer_;
 };
 
-/// Computes the moments of the plan's request. If a known moment of a direction and index is infinite or NaN, the
-/// evaluator computes all moments of this pair instead of interpolating them. `work` gets counts and times. `progress`
+/// Computes the moments of the plan's request. If a known moment of a bundle is infinite or NaN, the evaluator computes
+/// all moments of the bundle instead of interpolating them. `work` gets counts and times. `progress`
 /// counts entries. Errors: the evaluator's, and Cancelled if `progress` returns false.
 PlannedMoments planned_moments(MomentsPlan plan, ModelEvaluator& evaluator, const Progress& progress, Work& work);
 

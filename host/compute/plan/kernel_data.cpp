@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <boost/functional/hash.hpp>
 #include <chrono>
 #include <cmath>
 #include <complex>
 #include <map>
 #include <numbers>
 #include <stdexcept>
+#include <unordered_map>
 
 #include "base/numbers.hpp"
 #include "base/parallel_ranges.hpp"
@@ -220,26 +222,40 @@ void add_curves(KernelData& data, const MomentsRequest& request, Tables tables) 
   data.curves_s = seconds_since(start);
 }
 
-// Adds all directions of the grid several times: without total reflection, and for each cosine at which it begins. If
-// a shape needs a split at the kink of its masking, each of these sets is added twice: without and with this split.
-void add_grid_directions(KernelData& data, const MomentsRequest& request) {
-  const bool any_line = std::ranges::find(data.needs_line, 1) != data.needs_line.end();
-  const std::uint32_t lines = any_line ? 2 : 1;
-  std::vector<double> critical = {0.0};
-  for (const kernel::IndexNode& index : data.indices) {
-    const auto known = std::ranges::find(critical, index.critical_cos);
-    data.index_variant.push_back(lines * static_cast<std::uint32_t>(known - critical.begin()));
-    if (known == critical.end()) critical.push_back(index.critical_cos);
-  }
-  for (const double critical_cos : critical) {
-    for (std::uint32_t line = 0; line < lines; ++line) {
-      for (const double theta_deg : request.theta_deg) {
-        const auto [theta, pieces] = direction_node(data, request, theta_deg, {critical_cos, line == 1});
-        data.thetas.push_back(theta);
-        data.pieces.push_back(pieces);
-      }
+// Adds the directions of all bundles. Bundles share a direction if total reflection begins at the same cosine for their
+// indices. If some shapes need a split at the kink of their masking, they have a direction of their own.
+void add_directions(KernelData& data, const MomentsRequest& request) {
+  constexpr std::size_t kDirectionsAtOnce = 512;
+  using Key = std::array<double, 3>;  // position in theta_deg, DirectionVariant
+  std::unordered_map<Key, std::uint32_t, boost::hash<Key>> known;
+  std::vector<Key> keys;
+  std::array<bool, 2> needs{};  // a shape of the bundle needs a direction without, with the split
+  const Bundle* before = nullptr;
+  for (const Bundle& bundle : data.bundles) {
+    if (before == nullptr || bundle.first != before->first || bundle.count != before->count) {
+      needs = {};
+      for (const std::uint32_t shape : request.bundle_shapes(bundle)) needs[data.needs_line[shape] != 0 ? 1 : 0] = true;
+    }
+    before = &bundle;
+    std::array<std::uint32_t, 2>& thetas = data.bundle_thetas.emplace_back();
+    for (std::size_t line = 0; line < needs.size(); ++line) {
+      if (!needs[line]) continue;
+      const Key key{static_cast<double>(bundle.direction), data.indices[bundle.index].critical_cos,
+                    static_cast<double>(line)};
+      const auto [found, is_new] = known.try_emplace(key, static_cast<std::uint32_t>(keys.size()));
+      if (is_new) keys.push_back(key);
+      thetas[line] = found->second;
     }
   }
+  data.thetas.resize(keys.size());
+  data.pieces.resize(keys.size());
+  parallel_for(keys.size(), kDirectionsAtOnce, [&](std::size_t i) {
+    const auto& [direction, critical_cos, line] = keys[i];
+    const auto [theta, pieces] = direction_node(data, request, request.theta_deg[static_cast<std::size_t>(direction)],
+                                                {critical_cos, line != 0.0});
+    data.thetas[i] = theta;
+    data.pieces[i] = pieces;
+  });
 }
 
 void add_shape(KernelData& data, const MomentsRequest& request, const SlopeShape& shape) {
@@ -267,30 +283,6 @@ void take_responses(KernelData& data, const Response& response) {
     index.pole_re = 0.0;
     index.pole_im = response.bend;
   }
-}
-
-void add_grid(KernelData& data, const MomentsRequest& request) {
-  for (std::size_t i = 0; i < request.shapes(); ++i) add_shape(data, request, request.shape(i));
-  add_grid_directions(data, request);
-}
-
-void add_points(KernelData& data, const MomentsRequest& request) {
-  constexpr std::size_t kPointsAtOnce = 512;
-  const std::size_t count = request.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const SlopeShape shape = request[i].shape;
-    if (i == 0 || !(shape == data.slopes.back())) add_shape(data, request, shape);
-    data.shape_positions.push_back(static_cast<std::uint32_t>(data.shapes.size() - 1));
-  }
-  data.thetas.resize(count);
-  data.pieces.resize(count);
-  parallel_for(count, kPointsAtOnce, [&](std::size_t i) {
-    const bool has_line = data.needs_line[data.shape_positions[i]] != 0;
-    const auto [theta, pieces] =
-        direction_node(data, request, request.theta_deg[i], {data.indices[i].critical_cos, has_line});
-    data.thetas[i] = theta;
-    data.pieces[i] = pieces;
-  });
 }
 
 }  // namespace
@@ -344,8 +336,8 @@ KernelData kernel_data(const MomentsRequest& request, const RuleModel& model, Ta
   data.rule = rule_node(model, request.tolerance);
   data.orders = slope_orders(request);
   data.rule_order = std::min(largest_order(digits) + nodes_of_orders(data.orders), DOLP_MAX_ORDER);
-  data.is_grid = request.layout == MomentsRequest::Layout::kGrid;
-  data.directions = request.theta_deg.size();
+  data.bundles = request.bundles;
+  data.members = request.members;
   data.rule_nodes = rule_nodes(data.rule_order);
   const bool is_single = request.scattering == Scattering::kSingle;
   const SkyTolerances for_sky{request.tolerance, tables_tolerance(request)};
@@ -353,11 +345,8 @@ KernelData kernel_data(const MomentsRequest& request, const RuleModel& model, Ta
   for (const FacetOptics& index : request.optics) data.indices.push_back(index_node(index));
   add_curves(data, request, tables);
   if (request.response) take_responses(data, *request.response);
-  if (data.is_grid) {
-    add_grid(data, request);
-  } else {
-    add_points(data, request);
-  }
+  for (const SlopeShape& shape : request.shapes) add_shape(data, request, shape);
+  add_directions(data, request);
   data.has_total_reflection =
       std::ranges::any_of(data.indices, [](const kernel::IndexNode& index) { return index.critical_cos > 0.0; });
   return data;
@@ -365,28 +354,18 @@ KernelData kernel_data(const MomentsRequest& request, const RuleModel& model, Ta
 
 double worst_iterations(const KernelData& data) {
   double worst = 0.0;
-  for (std::size_t i = 0; i < data.size(); ++i) {
-    const MomentsEntry entry = data[i];
-    const double critical = data.indices[entry.index].critical_cos;
-    const Pieces& pieces = data.pieces[entry.theta];
-    const kernel::ThetaNode& theta = data.thetas[entry.theta];
-    for (std::uint32_t piece = 0; piece < pieces.count; ++piece) {
-      const Loops loops = slope_loops(data, critical, theta.end[piece], theta.end[piece + 1]);
-      worst = std::max(worst, iterations(data, loops, pieces.most_nodes[piece]));
+  for (std::size_t i = 0; i < data.bundles.size(); ++i) {
+    const double critical = data.indices[data.bundles[i].index].critical_cos;
+    for (const std::uint32_t direction : data.bundle_thetas[i]) {
+      const Pieces& pieces = data.pieces[direction];
+      const kernel::ThetaNode& theta = data.thetas[direction];
+      for (std::uint32_t piece = 0; piece < pieces.count; ++piece) {
+        const Loops loops = slope_loops(data, critical, theta.end[piece], theta.end[piece + 1]);
+        worst = std::max(worst, iterations(data, loops, pieces.most_nodes[piece]));
+      }
     }
   }
   return worst;
-}
-
-MomentsEntry KernelData::operator[](std::size_t entry) const {
-  if (!is_grid) {
-    const auto point = static_cast<std::uint32_t>(entry);
-    return {point, shape_positions[entry], point};
-  }
-  const auto shape = static_cast<std::uint32_t>(entry % shapes.size());
-  const std::size_t pair = entry / shapes.size();
-  const auto index = static_cast<std::uint32_t>(pair / directions);
-  return {theta_position(static_cast<std::uint32_t>(pair % directions), index, shape), shape, index};
 }
 
 }  // namespace dolp

@@ -61,9 +61,8 @@ struct CurveError {
   double per_roundoff = 0.0;  ///< error divided by the unit roundoff of the kernel's precision
 };
 
-/// Inputs of one run of the kernel. For a grid, `indices` and `shapes` (sigma x q, q fastest) follow the axes of the
-/// grid, and `thetas` has all directions once per DirectionVariant (plan/breakpoints.hpp). For points, each point has a
-/// direction and an index; neighbouring points with equal sigma and q share a shape.
+/// Inputs of one run of the kernel. `shapes`, `indices`, `members` and `bundles` follow the lists of the request.
+/// `thetas` has the directions of the bundles, each once per DirectionVariant (plan/breakpoints.hpp) that it needs.
 struct KernelData {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
@@ -77,8 +76,8 @@ struct KernelData {
   bool has_curves = false;               ///< the kernel reads reflectances from tables
   std::vector<CurveError> curve_errors;  ///< per index; empty without reflectance tables
   double curves_s = 0.0;                 ///< time that the reflectance tables took
-  bool is_grid = false;
-  std::size_t directions = 0;  ///< directions of the request
+  std::vector<Bundle> bundles;
+  std::vector<std::uint32_t> members;
   std::vector<kernel::ThetaNode> thetas;
   std::vector<Pieces> pieces;  ///< one for each of `thetas`
   std::vector<kernel::ShapeNode> shapes;
@@ -86,9 +85,8 @@ struct KernelData {
   std::vector<SlopeShape> slopes;  ///< for each of `shapes`, whose m and scale are the widest and the narrowest
   std::vector<char> needs_line;    ///< for each shape: 1 if pieces must be split at the kink of its masking
   std::vector<kernel::IndexNode> indices;
-  /// For each index of a grid, the position of its DirectionVariant. Shapes with needs_line have the next position.
-  std::vector<std::uint32_t> index_variant;
-  std::vector<std::uint32_t> shape_positions;
+  /// For each bundle, positions in `thetas`: for shapes without and with needs_line.
+  std::vector<std::array<std::uint32_t, 2>> bundle_thetas;
   /// Nodes and weights of the rules. The list continues with the tables of the sky (SkyTable) and of the reflectances.
   std::vector<std::array<double, 2>> rule_nodes;
   std::size_t left_out_nodes = 0;  ///< nodes of reflectance tables that Tables::kCounted leaves out
@@ -97,16 +95,12 @@ struct KernelData {
 
   std::size_t column_count() const { return response ? response->count : sky.count; }
   bool needs_masking_table() const { return masking == Masking::kIntegral || masking == Masking::kSmith; }
-  std::size_t size() const { return is_grid ? directions * indices.size() * shapes.size() : directions; }
-  std::uint32_t theta_position(std::uint32_t direction, std::uint32_t index, std::uint32_t shape) const {
-    if (!is_grid) return direction;
-    const std::uint32_t variant = index_variant[index] + (needs_line[shape] != 0 ? 1U : 0U);
-    return variant * static_cast<std::uint32_t>(directions) + direction;
+  std::span<const std::uint32_t> bundle_shapes(std::size_t bundle) const {
+    return std::span(members).subspan(bundles[bundle].first, bundles[bundle].count);
   }
-  std::size_t entry_position(std::uint32_t direction, std::uint32_t index, std::uint32_t shape) const {
-    return is_grid ? (index * directions + direction) * shapes.size() + shape : direction;
+  MomentsEntry entry(std::size_t bundle, std::uint32_t shape) const {
+    return {bundle_thetas[bundle][needs_line[shape] != 0 ? 1 : 0], shape, bundles[bundle].index};
   }
-  MomentsEntry operator[](std::size_t entry) const;
 };
 
 struct RuleModel;

@@ -1,7 +1,6 @@
 #include "plan/moments_plan.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace dolp {
@@ -17,7 +16,16 @@ std::size_t sum_over(const List& list, const CountOf& item_count) {
 }
 
 std::size_t kernel_moment_count(const MomentsStep& step) {
-  return sum_over(step.kernel_requests(), [](const MomentsRequest* request) { return request->wanted_count(); });
+  return sum_over(step.kernel_requests(), [](const MomentsRequest* request) { return request->size(); });
+}
+
+/// Divides bundles into `parts`, so that bundles of one direction are in one part.
+std::vector<std::vector<std::size_t>> split_directions(const MomentsRequest& request, std::size_t parts) {
+  std::vector<std::vector<std::size_t>> split(parts);
+  for (std::size_t i = 0; i < request.bundles.size(); ++i)
+    split[request.bundles[i].direction * parts / request.theta_deg.size()].push_back(i);
+  std::erase_if(split, [](const std::vector<std::size_t>& part) { return part.empty(); });
+  return split;
 }
 
 }  // namespace
@@ -30,18 +38,10 @@ std::vector<const MomentsRequest*> MomentsStep::kernel_requests() const {
   return requests;
 }
 
-MomentsPlan::MomentsPlan(const MomentsRequest& request) : size_(request.size()) {
-  if (size_ == 0) return;
-  if (request.layout == MomentsRequest::Layout::kList) {
-    MomentsStep& step = steps_.emplace_back();
-    step.request = request;
-    if (request.basis) step.responses = response_plan(request);
-    return;
-  }
-  directions_ = request.theta_deg.size();
-  for (std::vector<std::size_t>& directions : split_grazing_directions(request)) {
-    MomentsStep step{.directions = std::move(directions)};
-    step.request = request.select_directions(step.directions);
+MomentsPlan::MomentsPlan(const MomentsRequest& request) : size_(request.size()), bundles_(request.bundles.size()) {
+  for (std::vector<std::size_t>& bundles : split_grazing_bundles(request)) {
+    MomentsStep step{.bundles = std::move(bundles)};
+    step.request = request.select_bundles(step.bundles);
     step.shapes = shape_plan(step.request);
     add(std::move(step));
   }
@@ -49,27 +49,25 @@ MomentsPlan::MomentsPlan(const MomentsRequest& request) : size_(request.size()) 
 
 void MomentsPlan::add(MomentsStep step) {
   const MomentsRequest& nodes = step.nodes();
-  if (!nodes.basis) {
+  if (nodes.basis) step.responses = response_plan(nodes);
+  const bool has_passes = step.responses && !step.responses->passes.empty();
+  const std::size_t columns = has_passes ? step.responses->passes.front().size() * nodes.basis->count() : 0;
+  if (columns <= kColumnsAtOnce) {
     steps_.push_back(std::move(step));
     return;
   }
-  const ResponsePlan responses = *response_plan(nodes);
-  const std::size_t columns = nodes.basis->count() * nodes.sigma.size() * nodes.q.size();
-  const std::size_t at_once = std::max<std::size_t>(1, kColumnsAtOnce / columns);
-  for (std::size_t first = 0; first < step.directions.size(); first += at_once) {
-    std::vector<std::size_t> positions(std::min(at_once, step.directions.size() - first));
-    std::iota(positions.begin(), positions.end(), first);
+  for (const std::vector<std::size_t>& positions : split_directions(nodes, columns / kColumnsAtOnce + 1)) {
     MomentsStep& part = steps_.emplace_back();
-    for (const std::size_t i : positions) part.directions.push_back(step.directions[i]);
-    part.request = step.request.select_directions(positions);
+    for (const std::size_t i : positions) part.bundles.push_back(step.bundles[i]);
+    part.request = step.request.select_bundles(positions);
     part.shapes = step.shapes;
-    if (part.shapes) part.shapes->nodes = step.shapes->nodes.select_directions(positions);
-    part.responses = responses.select_directions(positions);
+    if (part.shapes) part.shapes->nodes = step.shapes->nodes.select_bundles(positions);
+    part.responses = response_plan(part.nodes(), step.responses->sources);
   }
 }
 
 std::size_t MomentsPlan::saved_entries() const {
-  return sum_over(steps_, [](const MomentsStep& step) { return step.saves_work() ? step.request.wanted_count() : 0; });
+  return sum_over(steps_, [](const MomentsStep& step) { return step.saves_work() ? step.request.size() : 0; });
 }
 
 std::size_t MomentsPlan::nodes_of_saved() const {
@@ -78,10 +76,10 @@ std::size_t MomentsPlan::nodes_of_saved() const {
 
 std::size_t MomentsPlan::kernel_moments() const { return sum_over(steps_, kernel_moment_count); }
 
-std::vector<char> MomentsPlan::saving_directions() const {
-  std::vector<char> saves(directions_, 0);
+std::vector<char> MomentsPlan::saving_bundles() const {
+  std::vector<char> saves(bundles_, 0);
   for (const MomentsStep& step : steps_) {
-    for (const std::size_t direction : step.directions) saves[direction] = step.saves_work() ? 1 : 0;
+    for (const std::size_t bundle : step.bundles) saves[bundle] = step.saves_work() ? 1 : 0;
   }
   return saves;
 }

@@ -2,8 +2,12 @@
 #include "plan/constants.hpp"
 
 #include <algorithm>
+#include <boost/functional/hash.hpp>
 #include <numeric>
 #include <span>
+#include <tuple>
+#include <unordered_map>
+#include <utility>
 
 namespace dolp {
 namespace {
@@ -34,109 +38,112 @@ void unite(std::span<kernel::ShapeNode> chunk) {
   }
 }
 
-void add_chunk(Rows& rows, const KernelData& data, std::span<const std::uint32_t> shapes) {
-  const auto first = static_cast<std::uint32_t>(rows.shapes.size());
-  rows.chunks.push_back({first, static_cast<std::uint32_t>(shapes.size())});
-  for (const std::uint32_t shape : shapes) {
-    rows.shape_positions.push_back(shape);
-    rows.shapes.push_back(data.shapes[shape]);
-  }
-  unite(std::span(rows.shapes).subspan(first));
-}
+/// The chunks of the shapes of a bundle, as positions in `shapes`. Bundles that have the same shapes share them.
+using BundleChunks = std::vector<std::vector<std::uint32_t>>;
 
-void add_grid_chunks(Rows& rows, const MomentsRequest& request, const KernelData& data) {
-  std::vector<std::uint32_t> ascending(request.q.size());
-  std::iota(ascending.begin(), ascending.end(), 0U);
-  std::ranges::stable_sort(ascending, {}, [&](std::uint32_t i) { return request.q[i]; });
-  const auto q_count = static_cast<std::uint32_t>(request.q.size());
-  std::vector<std::uint32_t> chunk;
-  for (std::uint32_t sigma = 0; sigma < request.sigma.size(); ++sigma) {
-    const auto close = [&] {
-      if (!chunk.empty()) add_chunk(rows, data, chunk);
-      chunk.clear();
-    };
-    for (const std::uint32_t q : ascending) {
-      const std::uint32_t shape = sigma * q_count + q;
-      if (!chunk.empty() && (chunk.size() == rows.width || !belongs(data, chunk.front(), shape))) close();
-      chunk.push_back(shape);
-    }
-    close();
-  }
-}
-
-std::uint32_t used_members(const Rows& rows, const MomentsRequest& request, const KernelData& data, const Row& row) {
-  const Chunk& chunk = rows.chunks[row.chunk];
-  if (request.wanted.empty()) return chunk.count;
-  std::uint32_t used = 0;
-  for (std::uint32_t member = chunk.first; member < chunk.first + chunk.count; ++member) {
-    used += request.is_wanted(data.entry_position(row.direction, row.index, rows.shape_positions[member])) ? 1 : 0;
-  }
-  return used;
-}
-
-Rows grid_chunks(const MomentsRequest& request, const KernelData& data, std::uint32_t widest) {
-  Rows rows;
-  rows.width = widest;
-  add_grid_chunks(rows, request, data);
-  if (static_cast<double>(data.shapes.size()) > kLeastRowUse * static_cast<double>(widest * rows.chunks.size()))
-    return rows;
-  rows = {};
-  add_grid_chunks(rows, request, data);
-  return rows;
-}
-
-void add_grid_rows(Rows& rows, const MomentsRequest& request, const KernelData& data) {
-  if (request.wanted.empty()) rows.rows.reserve(rows.chunks.size() * data.indices.size() * data.directions);
-  for (std::uint32_t chunk = 0; chunk < rows.chunks.size(); ++chunk) {
-    for (std::uint32_t index = 0; index < data.indices.size(); ++index) {
-      for (std::uint32_t direction = 0; direction < data.directions; ++direction) {
-        Row row{direction, index, chunk};
-        row.used = used_members(rows, request, data, row);
-        if (row.used > 0) rows.rows.push_back(row);
-      }
+BundleChunks bundle_chunks(const KernelData& data, std::span<const std::uint32_t> shapes, std::uint32_t width) {
+  BundleChunks chunks;
+  for (std::size_t first = 0, end = 0; first < shapes.size(); first = end) {
+    while (end < shapes.size() && data.slopes[shapes[end]].sigma == data.slopes[shapes[first]].sigma) ++end;
+    std::vector<std::uint32_t> ascending(end - first);
+    std::iota(ascending.begin(), ascending.end(), static_cast<std::uint32_t>(first));
+    std::ranges::stable_sort(ascending, {}, [&](std::uint32_t i) { return data.slopes[shapes[i]].q; });
+    for (const std::uint32_t i : ascending) {
+      const bool is_first = i == ascending.front();
+      if (is_first || chunks.back().size() == width || !belongs(data, shapes[chunks.back().front()], shapes[i]))
+        chunks.emplace_back();
+      chunks.back().push_back(i);
     }
   }
+  return chunks;
 }
 
-Rows point_rows(const KernelData& data) {
-  Rows rows;
-  for (std::uint32_t shape = 0; shape < data.shapes.size(); ++shape) add_chunk(rows, data, {&shape, 1});
-  for (std::uint32_t point = 0; point < data.directions; ++point) {
-    rows.rows.push_back({point, point, data.shape_positions[point]});
+class RowMaker {
+ public:
+  RowMaker(const KernelData& data, std::uint32_t width) : data_(data) {
+    rows_.width = width;
+    for (std::uint32_t bundle = 0; bundle < data.bundles.size(); ++bundle) add_bundle(bundle);
+    order_rows();
   }
-  return rows;
-}
+  Rows take() { return std::move(rows_); }
+
+ private:
+  void add_bundle(std::uint32_t number) {
+    const Bundle& bundle = data_.bundles[number];
+    const std::span<const std::uint32_t> shapes = data_.bundle_shapes(number);
+    if (number == 0 || bundle.first != data_.bundles[number - 1].first ||
+        bundle.count != data_.bundles[number - 1].count) {
+      chunks_ = bundle_chunks(data_, shapes, rows_.width);
+      numbers_.clear();
+      for (const std::vector<std::uint32_t>& chunk : chunks_) numbers_.push_back(chunk_number(chunk, shapes));
+    }
+    rows_.entries.resize(bundle.first_entry + bundle.count);
+    for (std::size_t i = 0; i < chunks_.size(); ++i) {
+      const auto row = static_cast<std::uint32_t>(rows_.rows.size());
+      rows_.rows.push_back({number, numbers_[i]});
+      for (std::uint32_t place = 0; place < chunks_[i].size(); ++place)
+        rows_.entries[bundle.first_entry + chunks_[i][place]] = {row, place};
+    }
+  }
+
+  std::uint32_t chunk_number(const std::vector<std::uint32_t>& chunk, std::span<const std::uint32_t> shapes) {
+    std::vector<std::uint32_t> positions;
+    for (const std::uint32_t i : chunk) positions.push_back(shapes[i]);
+    const auto [known, is_new] = known_.try_emplace(positions, static_cast<std::uint32_t>(rows_.chunks.size()));
+    if (!is_new) return known->second;
+    const std::size_t first = rows_.shapes.size();
+    rows_.chunks.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(positions.size())});
+    for (const std::uint32_t shape : positions) {
+      rows_.shape_positions.push_back(shape);
+      rows_.shapes.push_back(data_.shapes[shape]);
+    }
+    unite(std::span(rows_.shapes).subspan(first));
+    return known->second;
+  }
+
+  void order_rows() {
+    std::vector<std::uint32_t> order(rows_.rows.size()), new_number(order.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::ranges::sort(order, {}, [&](std::uint32_t i) {
+      const Bundle& bundle = data_.bundles[rows_.rows[i].bundle];
+      return std::tuple(rows_.rows[i].chunk, bundle.index, bundle.direction, i);
+    });
+    std::vector<Row> ordered;
+    for (const std::uint32_t i : order) {
+      new_number[i] = static_cast<std::uint32_t>(ordered.size());
+      ordered.push_back(rows_.rows[i]);
+    }
+    rows_.rows = std::move(ordered);
+    for (RowEntry& entry : rows_.entries) entry.row = new_number[entry.row];
+  }
+
+  const KernelData& data_;
+  Rows rows_;
+  BundleChunks chunks_;                 // of the last bundle
+  std::vector<std::uint32_t> numbers_;  // of these chunks
+  std::unordered_map<std::vector<std::uint32_t>, std::uint32_t, boost::hash<std::vector<std::uint32_t>>> known_;
+};
 
 }  // namespace
 
-Rows make_rows(const MomentsRequest& request, const KernelData& data, std::uint32_t widest) {
-  if (!data.is_grid) return point_rows(data);
-  Rows rows = grid_chunks(request, data, widest);
-  add_grid_rows(rows, request, data);
-  return rows;
+Rows make_rows(const KernelData& data, std::uint32_t widest) {
+  Rows rows = RowMaker(data, widest).take();
+  const auto places = static_cast<double>(widest) * static_cast<double>(rows.rows.size());
+  return static_cast<double>(rows.entries.size()) > kLeastRowUse * places ? rows : RowMaker(data, 1).take();
 }
 
 std::vector<RowPiece> row_pieces(const Rows& rows, const KernelData& data, std::uint32_t first, std::uint32_t count) {
-  const auto same_work = [&](const Row& a, const Row& b) {
-    return !data.is_grid || (a.chunk == b.chunk && a.index == b.index);
-  };
-  std::vector<RowPiece> pieces;
   std::vector<std::uint32_t> counts;
-  const std::uint32_t end = first + count;
-  for (std::uint32_t begin = first; begin < end;) {
-    std::uint32_t next = begin + 1;
-    while (next < end && same_work(rows.rows[begin], rows.rows[next])) ++next;
-    counts.clear();
-    for (std::uint32_t i = begin; i < next; ++i) {
-      const Row& row = rows.rows[i];
-      counts.push_back(piece_count(data, rows.theta_position(data, row), rows.shapes[rows.chunks[row.chunk].first]));
+  for (std::uint32_t i = first; i < first + count; ++i) {
+    const Row& row = rows.rows[i];
+    counts.push_back(piece_count(data, rows.entry(data, row).theta, rows.shapes[rows.chunks[row.chunk].first]));
+  }
+  std::vector<RowPiece> pieces;
+  const std::uint32_t most = counts.empty() ? 0 : std::ranges::max(counts);
+  for (std::uint32_t piece = 0; piece < most; ++piece) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (piece < counts[i]) pieces.push_back({first + i, piece});
     }
-    for (std::uint32_t piece = 0; piece < std::ranges::max(counts); ++piece) {
-      for (std::uint32_t i = begin; i < next; ++i) {
-        if (piece < counts[i - begin]) pieces.push_back({i, piece});
-      }
-    }
-    begin = next;
   }
   return pieces;
 }

@@ -1,11 +1,10 @@
-// Entries of a grid that differ only in the exponent q share nodes, facets and reflection, so one invocation of the
+// Entries of a bundle that differ only in the exponent q share nodes, facets and reflection, so one invocation of the
 // kernel computes them together (Row of shaders/physics/row.glsl).
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "model/moments.hpp"
 #include "plan/kernel_data.hpp"
 
 namespace dolp {
@@ -13,17 +12,21 @@ namespace dolp {
 /// Largest number of entries in a kernel row. Kernels exist for rows of one entry and for rows of this many entries.
 inline constexpr std::uint32_t kRowWidth = DOLP_ROW_WIDTH;
 
-/// Shapes that share the Gauss nodes of a kernel row: equal sigma, ascending q. For points, a chunk is one shape.
+/// Shapes that share the Gauss nodes of a kernel row: equal sigma, ascending q.
 struct Chunk {
   std::uint32_t first = 0;  ///< position in Rows::shapes
   std::uint32_t count = 1;  ///< at most the width of a row
 };
 
 struct Row {
-  std::uint32_t direction = 0;
-  std::uint32_t index = 0;
+  std::uint32_t bundle = 0;
   std::uint32_t chunk = 0;
-  std::uint32_t used = 1;  ///< number of wanted entries
+};
+
+/// Where the results of an entry are: in one of Rows::rows, at one of its places.
+struct RowEntry {
+  std::uint32_t row = 0;
+  std::uint32_t place = 0;
 };
 
 struct RowPiece {
@@ -36,17 +39,18 @@ struct Rows {
   std::vector<kernel::ShapeNode> shapes;  ///< chunk by chunk; a chunk has one scale, cut, table_scale and cusp_digits
   std::vector<std::uint32_t> shape_positions;  ///< position of each of `shapes` in KernelData::shapes
   std::vector<Chunk> chunks;
-  std::vector<Row> rows;  ///< ordered by chunk, index and direction
+  std::vector<Row> rows;          ///< ordered by chunk, index and direction
+  std::vector<RowEntry> entries;  ///< one for each entry of the kernel data
 
-  std::uint32_t theta_position(const KernelData& data, const Row& row) const {
-    return data.theta_position(row.direction, row.index, shape_positions[chunks[row.chunk].first]);
+  /// The member `place` of a row.
+  MomentsEntry entry(const KernelData& data, const Row& row, std::uint32_t place = 0) const {
+    return data.entry(row.bundle, shape_positions[chunks[row.chunk].first + place]);
   }
 };
 
 /// Kernel rows with `widest` places for entries, kRowWidth or 1. If at least half of all places would be empty, the
-/// rows have one place. Which entries share a row depends only on the shapes, not on directions, indices and wanted
-/// entries.
-Rows make_rows(const MomentsRequest& request, const KernelData& data, std::uint32_t widest);
+/// rows have one place. Which entries of a bundle share a row does not depend on other bundles.
+Rows make_rows(const KernelData& data, std::uint32_t widest);
 
 /// The pieces of `count` rows from row `first`. Each invocation of the kernel computes one piece. Pieces with about
 /// equal work are neighbours, because neighbouring invocations wait for each other.

@@ -39,14 +39,21 @@ std::span<const MomentMember> interpolated_members(const ShapePlan& plan) {
   return std::span(kMomentMembers).first(kMomentMembers.size() - (plan.nodes.wants_direct ? 0 : kDirectMembers));
 }
 
-/// True if the request wants, for each pair of direction and index, either all entries or no entry.
-bool wants_whole_directions(const MomentsRequest& request) {
-  if (request.layout != MomentsRequest::Layout::kGrid) return false;
-  const std::size_t shapes = request.shapes();
-  for (std::size_t i = 0; i < request.wanted.size(); ++i) {
-    if (request.wanted[i] != request.wanted[i - i % shapes]) return false;
+struct SlopeAxes {
+  std::vector<double> sigma, q;
+};
+
+/// The values of sigma and q if each bundle has all pairs of them; otherwise nullopt.
+std::optional<SlopeAxes> product_axes(const MomentsRequest& request) {
+  const std::vector<SlopeShape>& shapes = request.shapes;
+  const auto lacks_shapes = [&](const Bundle& bundle) { return bundle.count != shapes.size(); };
+  if (std::ranges::any_of(request.bundles, lacks_shapes)) return std::nullopt;
+  SlopeAxes axes;
+  for (const SlopeShape& shape : shapes) {
+    if (axes.sigma.empty() || axes.sigma.back() != shape.sigma) axes.sigma.push_back(shape.sigma);
+    if (axes.sigma.size() == 1) axes.q.push_back(shape.q);
   }
-  return true;
+  return shape_product(axes.sigma, axes.q) == shapes ? std::optional(std::move(axes)) : std::nullopt;
 }
 
 /// How to interpolate over x, which is sigma or q. The moments are analytic functions of ln(x - origin), up to the
@@ -79,8 +86,9 @@ ShapeParameter sigma_parameter(Distribution distribution) {
 ShapeParameter q_parameter(const MomentsRequest& request) {
   const bool needs_mean_slope =
       request.masking == Masking::kSmith ||
-      (!keeps_projected_area(request.masking) && std::ranges::all_of(request.theta_deg, is_grazing));
-  const bool has_mean_slope = request.distribution == Distribution::kCauchy && std::ranges::min(request.q) > 1.5;
+      (!keeps_projected_area(request.masking) && is_grazing(request.theta_deg[request.bundles.front().direction]));
+  const bool has_mean_slope = request.distribution == Distribution::kCauchy &&
+                              std::ranges::all_of(request.shapes, [](const SlopeShape& shape) { return shape.q > 1.5; });
   return {needs_mean_slope && has_mean_slope ? 1.5 : 1.0, 1.45};
 }
 
@@ -104,16 +112,16 @@ Range rounded_range(const ShapeParameter& parameter, const std::vector<double>& 
   return {rounded(range.least, std::floor), rounded(range.largest, std::ceil)};
 }
 
-/// Nodes in `range` from which `values` are interpolated with `digits` correct digits. No interpolation if it would
-/// save little.
+/// Nodes in `range` from which `values` are interpolated with `digits` correct digits. No interpolation if there are
+/// fewer than `least_gain` values per node.
 ShapeAxis shape_axis(const ShapeParameter& parameter, const Range& range, const std::vector<double>& values,
-                     double digits) {
+                     double digits, double least_gain) {
   const double start = std::log(range.least - parameter.origin);
   const double end = std::log(range.largest - parameter.origin);
   const double half_length = 0.5 * (end - start);
   if (half_length <= 0.0) return {{range.least}, RowMajor::Ones(1, static_cast<Eigen::Index>(values.size())), {}};
   const double count = nodes_needed(parameter, half_length, digits);
-  if (!(count * kLeastAxisGain <= static_cast<double>(values.size()))) return without_interpolation(values);
+  if (!(count * least_gain <= static_cast<double>(values.size()))) return without_interpolation(values);
 
   ShapeAxis axis;
   const auto nodes = static_cast<Eigen::Index>(count);
@@ -149,34 +157,33 @@ double half_length_deg(std::size_t panel) { return 0.5 * (kPanelEnds_deg[panel +
 
 }  // namespace
 
-std::vector<std::vector<std::size_t>> split_grazing_directions(const MomentsRequest& request) {
+std::vector<std::vector<std::size_t>> split_grazing_bundles(const MomentsRequest& request) {
   std::vector<std::vector<std::size_t>> groups(2);
-  for (std::size_t i = 0; i < request.theta_deg.size(); ++i) {
-    const bool is_apart = !keeps_projected_area(request.masking) && is_grazing(request.theta_deg[i]);
-    groups[is_apart ? 1 : 0].push_back(i);
+  for (std::size_t i = 0; i < request.bundles.size(); ++i) {
+    const double theta_deg = request.theta_deg[request.bundles[i].direction];
+    groups[!keeps_projected_area(request.masking) && is_grazing(theta_deg) ? 1 : 0].push_back(i);
   }
   std::erase_if(groups, [](const std::vector<std::size_t>& group) { return group.empty(); });
   return groups;
 }
 
 std::optional<ShapePlan> shape_plan(const MomentsRequest& request) {
-  if (!request.may_interpolate || request.size() == 0 || !wants_whole_directions(request)) return std::nullopt;
-  if (request.has_elliptic_shapes()) return std::nullopt;  // slope samples serve all shapes
+  // Elliptic shapes share their slope samples.
+  if (!request.may_interpolate || request.size() == 0 || request.has_elliptic_shapes()) return std::nullopt;
+  const std::optional<SlopeAxes> axes = product_axes(request);
+  if (!axes) return std::nullopt;
   const double digits = kExtraShapeDigits - std::log10(request.tolerance);
   ShapePlan plan;
-  plan.sigma = shape_axis(sigma_parameter(request.distribution), range_of_values(request.sigma), request.sigma, digits);
-  plan.q = shape_axis(q_parameter(request), range_of_values(request.q), request.q, digits);
-  if (request.shapes() < kLeastShapeGain * plan.nodes_of_a_direction()) return std::nullopt;
+  const auto axis = [&](const ShapeParameter& parameter, const std::vector<double>& values) {
+    return shape_axis(parameter, range_of_values(values), values, digits, kLeastAxisGain);
+  };
+  plan.sigma = axis(sigma_parameter(request.distribution), axes->sigma);
+  plan.q = axis(q_parameter(request), axes->q);
+  std::vector<SlopeShape> nodes = shape_product(plan.sigma.nodes, plan.q.nodes);
+  if (request.shapes.size() < kLeastShapeGain * nodes.size()) return std::nullopt;
   plan.nodes = request;
   plan.nodes.tolerance = request.finer_tolerance(kShapeNodeTolerance);
-  plan.nodes.sigma = plan.sigma.nodes;
-  plan.nodes.q = plan.q.nodes;
-  const std::size_t shapes = request.shapes();
-  if (!request.wanted.empty()) {
-    plan.nodes.wanted.clear();
-    for (std::size_t first = 0; first < request.size(); first += shapes)
-      plan.nodes.wanted.insert(plan.nodes.wanted.end(), plan.nodes_of_a_direction(), request.wanted[first]);
-  }
+  plan.nodes.set_shapes(std::move(nodes));
   return plan;
 }
 
@@ -244,29 +251,34 @@ void interpolate(const ShapePlan& plan, const ShapeBlock& block, const ShapeRang
 bool PointPlan::reaches(double theta_deg) { return theta_deg <= kPanelEnds_deg.back(); }
 
 std::optional<PointPlan> point_plan(const MomentsRequest& points) {
-  if (!points.may_interpolate || points.size() < kLeastPoints || points.has_elliptic_shapes()) return std::nullopt;
+  const std::vector<Bundle>& bundles = points.bundles;
+  if (!points.is_scattered || !points.may_interpolate || bundles.size() < kLeastPoints ||
+      points.has_elliptic_shapes())
+    return std::nullopt;
   const double digits = kExtraShapeDigits - std::log10(kResponseTolerance * points.tolerance);
   PointPlan plan;
-  const auto axis = [&](const ShapeParameter& parameter, const std::vector<double>& values) {
-    return shape_axis(parameter, rounded_range(parameter, values), values, digits);
+  const auto axis = [&](const ShapeParameter& parameter, double SlopeShape::*member) {
+    std::vector<double> values;
+    for (const SlopeShape& shape : points.shapes) values.push_back(shape.*member);
+    return shape_axis(parameter, rounded_range(parameter, values), values, digits, 0.0);
   };
-  plan.shapes.sigma = axis(sigma_parameter(points.distribution), points.sigma);
-  plan.shapes.q = axis(q_parameter(points), points.q);
+  plan.shapes.sigma = axis(sigma_parameter(points.distribution), &SlopeShape::sigma);
+  plan.shapes.q = axis(q_parameter(points), &SlopeShape::q);
   plan.in_panel = lobatto_points(static_cast<Eigen::Index>(nodes_needed(kInPanel, 1.0, digits)));
   plan.coefficients = chebyshev_coefficients(static_cast<Eigen::Index>(plan.in_panel.size()));
-  MomentsRequest& nodes = plan.shapes.nodes = points;
-  nodes.layout = MomentsRequest::Layout::kGrid;
+  MomentsRequest& nodes = plan.shapes.nodes = points.without_entries();
+  nodes.is_scattered = false;
   nodes.optics = {points.basis->reference()};
-  nodes.sigma = plan.shapes.sigma.nodes;
-  nodes.q = plan.shapes.q.nodes;
-  nodes.sigma_cross = nodes.azimuth_deg = {0.0};
-  nodes.theta_deg.clear();
+  nodes.shapes = shape_product(plan.shapes.sigma.nodes, plan.shapes.q.nodes);
   for (std::size_t panel = 0; panel + 1 < kPanelEnds_deg.size(); ++panel) {
     for (const double x : plan.in_panel) nodes.theta_deg.push_back(middle_deg(panel) + half_length_deg(panel) * x);
   }
+  nodes.set_grid();
   std::size_t different = 0;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    different += PointPlan::reaches(points.theta_deg[i]) && !points.continues(i) ? 1 : 0;
+  for (std::size_t i = 0; i < bundles.size(); ++i) {
+    const bool is_new = i == 0 || !bundles[i].has_geometry(bundles[i - 1]);
+    if (is_new && PointPlan::reaches(points.theta_deg[bundles[i].direction])) different += bundles[i].count;
+  }
   if (different < kLeastPointGain * nodes.size()) return std::nullopt;
   return plan;
 }
@@ -309,12 +321,12 @@ std::vector<ShapeBlock> panel_blocks(const PointPlan& plan, std::span<const Mome
   return panels;
 }
 
-Moments interpolate(const PointPlan& plan, std::span<const ShapeBlock> panels, double theta_deg, std::size_t point) {
+Moments interpolate(const PointPlan& plan, std::span<const ShapeBlock> panels, double theta_deg, std::size_t shape) {
   const std::size_t number = panel_at(theta_deg);
   const ShapeBlock& panel = panels[number];
   const Eigen::RowVectorXd of_zeniths =
       cardinal_values(plan.in_panel, (theta_deg - middle_deg(number)) / half_length_deg(number));
-  const auto own = static_cast<Eigen::Index>(point);
+  const auto own = static_cast<Eigen::Index>(shape);
   const RowMajor of_shapes = plan.shapes.sigma.weights.col(own) * plan.shapes.q.weights.col(own).transpose();
   const auto shape_row = of_shapes.reshaped<Eigen::RowMajor>().transpose();
   const RowMajor of_nodes = of_zeniths.transpose() * shape_row;

@@ -14,9 +14,10 @@
 
 namespace dolp {
 
-/// Groups of directions that can share one interpolation over slope distributions. If the masking is none or integral,
-/// grazing directions are a group of their own, because their moments depend on the mean slope.
-std::vector<std::vector<std::size_t>> split_grazing_directions(const MomentsRequest& request);
+/// Groups of bundles that can share one interpolation over slope distributions, as positions in the request. If the
+/// masking is none or integral, grazing directions are a group of their own, because their moments depend on the mean
+/// slope.
+std::vector<std::vector<std::size_t>> split_grazing_bundles(const MomentsRequest& request);
 
 struct ShapeAxis {
   std::vector<double> nodes;     ///< values at which moments are computed; without interpolation all values
@@ -28,16 +29,15 @@ struct ShapeAxis {
 struct ShapePlan {
   ShapeAxis sigma;
   ShapeAxis q;
-  MomentsRequest nodes;  ///< the request with sigma.nodes and q.nodes as axes, and with a smaller tolerance
-
-  std::size_t nodes_of_a_direction() const { return sigma.nodes.size() * q.nodes.size(); }
+  /// The request with a smaller tolerance, and with all pairs of sigma.nodes and q.nodes in each bundle.
+  MomentsRequest nodes;
 };
 
-/// Plans the interpolation for the directions of one group of split_grazing_directions(). Returns nullopt if it would
-/// save little or is impossible, for example if the request wants only some pairs of sigma and q of a direction.
+/// Plans the interpolation for the bundles of one group of split_grazing_bundles(). Returns nullopt if it would save
+/// little or is impossible, for example if a bundle lacks some pairs of sigma and q.
 std::optional<ShapePlan> shape_plan(const MomentsRequest& request);
 
-/// The known moments of one direction and index. `bounds` has their error bounds and the estimated errors of
+/// The known moments of a bundle. `bounds` has their error bounds and the estimated errors of
 /// interpolation. Shape: nodes of sigma x (moments x nodes of q). The moments are those of kMomentMembers, without the
 /// direct emission if the request does not want it, then i and q of each column.
 struct ShapeBlock {
@@ -45,7 +45,7 @@ struct ShapeBlock {
   bool is_empty() const { return values.size() == 0; }
 };
 
-/// `nodes`: moments at all nodes of the plan for one direction and index.
+/// `nodes`: moments at all nodes of the plan for one bundle.
 ShapeBlock shape_block(const ShapePlan& plan, std::span<const Moments> nodes);
 
 /// Some neighbouring values of sigma and q: `sigmas` values from number `first_sigma`, and so on.
@@ -60,17 +60,17 @@ struct ShapeRange {
 /// the nodes. Shape: `moments` has range.sigmas x range.qs elements.
 void interpolate(const ShapePlan& plan, const ShapeBlock& block, const ShapeRange& range, std::span<Moments> moments);
 
-/// Interpolation of responses over zenith, sigma and q for a list of many points. The zeniths up to a limit are divided
-/// into panels.
+/// Interpolation of responses over zenith, sigma and q for many bundles of one entry. The zeniths up to a limit are
+/// divided into panels.
 struct PointPlan {
   std::vector<double> in_panel;  ///< nodes of a panel, on [-1, 1]
   Eigen::MatrixXd coefficients;  ///< converts moments at the nodes of a panel to Chebyshev coefficients
-  ShapePlan shapes;              ///< has a column of weights for each point, and the nodes of all panels as directions
+  ShapePlan shapes;  ///< has a column of weights for each of the request's shapes; its directions are all panels' nodes
 
   static bool reaches(double theta_deg);  ///< true if points at this zenith can be interpolated
 };
 
-/// Returns nullopt if interpolation would save little or is impossible. `points`: a list with a basis.
+/// Returns nullopt if interpolation would save little or is impossible. `points`: a request with a basis.
 std::optional<PointPlan> point_plan(const MomentsRequest& points);
 
 /// The known moments of each panel. `nodes`: moments at all nodes of the plan. Shape: `values` has a row for each node
@@ -78,7 +78,7 @@ std::optional<PointPlan> point_plan(const MomentsRequest& points);
 /// zeniths. The columns are the moments, ordered as in ShapeBlock.
 std::vector<ShapeBlock> panel_blocks(const PointPlan& plan, std::span<const Moments> nodes);
 
-/// The moments of a point of the plan's list. `point`: its number; theta_deg: its zenith.
-Moments interpolate(const PointPlan& plan, std::span<const ShapeBlock> panels, double theta_deg, std::size_t point);
+/// The moments of an entry. `shape`: position of its slope distribution in MomentsRequest::shapes.
+Moments interpolate(const PointPlan& plan, std::span<const ShapeBlock> panels, double theta_deg, std::size_t shape);
 
 }  // namespace dolp

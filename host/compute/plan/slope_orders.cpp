@@ -28,12 +28,8 @@ double wanted_order(double eccentricity, double tolerance) {
 }
 
 double largest_eccentricity(const MomentsRequest& request) {
-  if (!request.has_elliptic_shapes()) return 0.0;
   double largest = 0.0;
-  const bool is_grid = request.layout == MomentsRequest::Layout::kGrid;
-  for (std::size_t i = 0; i < (is_grid ? request.shapes() : request.size()); ++i) {
-    largest = std::max(largest, eccentricity(is_grid ? request.shape(i) : request[i].shape));
-  }
+  for (const SlopeShape& shape : request.shapes) largest = std::max(largest, eccentricity(shape));
   return largest;
 }
 

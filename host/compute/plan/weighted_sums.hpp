@@ -1,3 +1,5 @@
+// Sums of known results with known weights: of the moments at nodes, and of responses. The order of the terms is fixed.
+// With Eigen's order, results would depend on how a grid is divided.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,8 +8,7 @@ namespace dolp {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Sums of the rows of known results, with one row of weights for each sum. This is a matrix product with a fixed order
-/// of terms. With Eigen's order, results would depend on how a grid is divided.
+/// Sums of the rows of known results, with one row of weights for each sum: a matrix product.
 template <class Weights, class Rows>
 RowMajor weighted_sums(const Weights& weights, const Rows& rows) {
   RowMajor sums = RowMajor::Zero(weights.rows(), rows.cols());
@@ -16,6 +17,15 @@ RowMajor weighted_sums(const Weights& weights, const Rows& rows) {
       if (weights(i, j) != 0.0) sums.row(i) += weights(i, j) * rows.row(j);
     }
   }
+  return sums;
+}
+
+/// The sum of each row of `values`, with its own row of `weights`.
+template <class Weights, class Values>
+Eigen::ArrayXd weighted_row_sums(const Weights& weights, const Values& values) {
+  Eigen::ArrayXd sums = Eigen::ArrayXd::Zero(weights.rows());
+  for (Eigen::Index j = 0; j < weights.cols(); ++j)
+    sums += (weights.col(j) == 0.0).select(0.0, weights.col(j) * values.col(j));
   return sums;
 }
 

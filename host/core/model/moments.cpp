@@ -1,17 +1,29 @@
 #include "model/moments.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace dolp {
+namespace {
 
-std::size_t MomentsRequest::size() const {
-  if (layout == Layout::kList) return theta_deg.size();
-  return theta_deg.size() * optics.size() * shapes();
+/// The position of `value` in `list`. Appends the value unless it is the last one.
+template <class Value>
+std::uint32_t last_position(std::vector<Value>& list, const Value& value) {
+  if (list.empty() || !(list.back() == value)) list.push_back(value);
+  return static_cast<std::uint32_t>(list.size() - 1);
 }
 
-std::size_t MomentsRequest::wanted_count() const {
-  if (wanted.empty()) return size();
-  return wanted.size() - static_cast<std::size_t>(std::ranges::count(wanted, 0));
+}  // namespace
+
+std::size_t MomentsRequest::find_bundle(std::size_t entry) const {
+  const auto after = std::ranges::upper_bound(bundles, entry, {}, &Bundle::first_entry);
+  return static_cast<std::size_t>(after - bundles.begin()) - 1;
+}
+
+MomentsPoint MomentsRequest::operator[](std::size_t entry) const {
+  const Bundle& bundle = bundles[find_bundle(entry)];
+  return {theta_deg[bundle.direction], shapes[members[bundle.first + entry - bundle.first_entry]],
+          optics[bundle.index]};
 }
 
 double MomentsRequest::finer_tolerance(double share) const {
@@ -19,65 +31,79 @@ double MomentsRequest::finer_tolerance(double share) const {
   return precision == Precision::kDouble ? finer : std::max(finer, std::min(kLeastFloatTolerance, tolerance));
 }
 
-SlopeShape MomentsRequest::shape(std::size_t number) const {
-  const std::size_t azimuth = number % azimuth_deg.size();
-  number /= azimuth_deg.size();
-  const std::size_t cross = number % sigma_cross.size();
-  number /= sigma_cross.size();
-  return CrossSlopes{sigma_cross[cross], azimuth_deg[azimuth], wind_model}.shape(sigma[number / q.size()],
-                                                                                 q[number % q.size()]);
-}
+bool MomentsRequest::has_elliptic_shapes() const { return std::ranges::any_of(shapes, is_elliptic); }
 
-bool MomentsRequest::has_elliptic_shapes() const {
-  const bool has_cross = std::ranges::any_of(sigma_cross, [](double cross) { return cross > 0.0; });
-  if (!has_cross && wind_model == WindModel::kIsotropic) return false;
-  const std::size_t count = layout == Layout::kGrid ? shapes() : size();
-  for (std::size_t i = 0; i < count; ++i) {
-    if (is_elliptic(layout == Layout::kGrid ? shape(i) : (*this)[i].shape)) return true;
+void MomentsRequest::set_grid() {
+  bundles.clear();
+  for (std::uint32_t index = 0; index < optics.size(); ++index) {
+    for (std::uint32_t direction = 0; direction < theta_deg.size(); ++direction)
+      bundles.push_back({.direction = direction, .index = index});
   }
-  return false;
+  set_shapes(std::move(shapes));
 }
 
-MomentsPoint MomentsRequest::operator[](std::size_t entry) const {
-  if (layout == Layout::kList) {
-    return {theta_deg[entry], {sigma[entry], q[entry], sigma_cross[entry], azimuth_deg[entry]}, optics[entry]};
-  }
-  const std::size_t pair = entry / shapes();
-  return {theta_deg[pair % theta_deg.size()], shape(entry % shapes()), optics[pair / theta_deg.size()]};
+void MomentsRequest::set_shapes(std::vector<SlopeShape> new_shapes) {
+  shapes = std::move(new_shapes);
+  members.resize(shapes.size());
+  std::iota(members.begin(), members.end(), 0U);
+  std::vector<Bundle> old;
+  old.swap(bundles);
+  for (const Bundle& bundle : old)
+    add_bundle(bundle.direction, bundle.index, 0, static_cast<std::uint32_t>(shapes.size()));
 }
 
-MomentsRequest MomentsRequest::select_directions(std::span<const std::size_t> directions) const {
+void MomentsRequest::add_bundle(std::uint32_t direction, std::uint32_t index, std::uint32_t first,
+                                std::uint32_t count) {
+  bundles.push_back({direction, index, first, count, size()});
+}
+
+void MomentsRequest::append(const MomentsPoint& point) {
+  const std::uint32_t shape = last_position(shapes, point.shape);
+  if (members.size() < shapes.size()) members.push_back(shape);
+  add_bundle(last_position(theta_deg, point.theta_deg), last_position(optics, point.index), shape, 1);
+}
+
+MomentsRequest MomentsRequest::without_entries() const {
+  MomentsRequest empty = *this;
+  empty.theta_deg.clear();
+  empty.optics.clear();
+  empty.shapes.clear();
+  empty.members.clear();
+  empty.bundles.clear();
+  return empty;
+}
+
+MomentsRequest MomentsRequest::select_bundles(std::span<const std::size_t> positions) const {
   MomentsRequest part = *this;
-  part.theta_deg.clear();
-  part.wanted.clear();
-  for (const std::size_t i : directions) part.theta_deg.push_back(theta_deg[i]);
-  for (std::size_t index = 0; !wanted.empty() && index < optics.size(); ++index) {
-    for (const std::size_t i : directions) {
-      const auto first = wanted.begin() + static_cast<std::ptrdiff_t>((index * theta_deg.size() + i) * shapes());
-      part.wanted.insert(part.wanted.end(), first, first + static_cast<std::ptrdiff_t>(shapes()));
-    }
+  part.bundles.clear();
+  for (const std::size_t i : positions)
+    part.add_bundle(bundles[i].direction, bundles[i].index, bundles[i].first, bundles[i].count);
+  return part;
+}
+
+MomentsRequest MomentsRequest::select_entries(std::span<const std::size_t> entries) const {
+  MomentsRequest part = *this;
+  part.bundles.clear();
+  for (auto next = entries.begin(); next != entries.end();) {
+    const Bundle& bundle = bundles[find_bundle(*next)];
+    const auto first = static_cast<std::uint32_t>(part.members.size());
+    for (; next != entries.end() && *next < bundle.first_entry + bundle.count; ++next)
+      part.members.push_back(members[bundle.first + *next - bundle.first_entry]);
+    const auto count = static_cast<std::uint32_t>(part.members.size()) - first;
+    const bool is_whole = count == bundle.count;
+    if (is_whole) part.members.resize(first);
+    part.add_bundle(bundle.direction, bundle.index, is_whole ? bundle.first : first, count);
   }
   return part;
 }
 
-void MomentsRequest::append(const MomentsPoint& point) {
-  if (theta_deg.empty()) {
-    sigma_cross.clear();
-    azimuth_deg.clear();
+std::vector<SlopeShape> shape_product(std::span<const double> sigma, std::span<const double> q) {
+  std::vector<SlopeShape> shapes;
+  shapes.reserve(sigma.size() * q.size());
+  for (const double own_sigma : sigma) {
+    for (const double own_q : q) shapes.push_back({own_sigma, own_q});
   }
-  layout = Layout::kList;
-  theta_deg.push_back(point.theta_deg);
-  sigma.push_back(point.shape.sigma);
-  q.push_back(point.shape.q);
-  sigma_cross.push_back(is_elliptic(point.shape) ? point.shape.sigma_cross : 0.0);
-  azimuth_deg.push_back(point.shape.azimuth_deg);
-  optics.push_back(point.index);
-}
-
-bool MomentsRequest::continues(std::size_t entry) const {
-  const auto repeats = [&](const std::vector<double>& values) { return values[entry] == values[entry - 1]; };
-  return entry > 0 && repeats(theta_deg) && repeats(sigma) && repeats(q) && repeats(sigma_cross) &&
-         repeats(azimuth_deg);
+  return shapes;
 }
 
 }  // namespace dolp

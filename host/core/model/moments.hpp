@@ -41,12 +41,23 @@ struct Response {
   friend bool operator==(const Response&, const Response&) = default;
 };
 
-/// The entries form a grid or a list. A grid has all combinations of `optics`, `theta_deg`, `sigma`, `q`, `sigma_cross`
-/// and `azimuth_deg`; the last varies fastest. In a list each of these vectors has one value per entry. `entry`:
-/// position in the grid or list.
-struct MomentsRequest {
-  enum class Layout { kGrid, kList };
+/// Entries with the same direction and index. They are consecutive in a request.
+struct Bundle {
+  std::uint32_t direction = 0;    ///< position in MomentsRequest::theta_deg
+  std::uint32_t index = 0;        ///< position in MomentsRequest::optics
+  std::uint32_t first = 0;        ///< position in MomentsRequest::members
+  std::uint32_t count = 0;        ///< number of entries
+  std::size_t first_entry = 0;    ///< number of the first entry in the request
+  friend bool operator==(const Bundle&, const Bundle&) = default;
+  /// True if both bundles have the same direction and slope distributions.
+  bool has_geometry(const Bundle& other) const {
+    return direction == other.direction && first == other.first && count == other.count;
+  }
+};
 
+/// The entries are given by lists of values, and by bundles that point into these lists. A grid has a bundle for each
+/// pair of a direction and an index, and all bundles share one range of members.
+struct MomentsRequest {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
   Scattering scattering = Scattering::kSingle;  ///< kMultiple only with v-cavity
@@ -54,40 +65,51 @@ struct MomentsRequest {
   double tolerance = 1e-4;                      ///< allowed error of a moment, as a share of r_i
   double scene_tolerance = 0.0;                 ///< limits the cost of tables if `tolerance` is far smaller
   Precision precision = Precision::kAuto;       ///< kAuto means float
-  bool may_interpolate = true;                 ///< allows interpolation between slope distributions, within `tolerance`
-  bool has_extra_splits = false;               ///< integrates with more panels than usual, to check another computation
+  bool may_interpolate = true;              ///< allows interpolation between slope distributions, within `tolerance`
+  /// The entries are scattered points. Then it depends on all of them whether responses save work, and whether the
+  /// responses are interpolated between directions.
+  bool is_scattered = false;
+  bool has_extra_splits = false;            ///< integrates with more panels than usual, to check another computation
   std::shared_ptr<const ResponseBasis> basis;  ///< if set, moments are sums of the responses of this basis
   std::shared_ptr<const SkyBasis> sky;  ///< if set, Moments::columns has one element for each function of this sky
   std::optional<Response> response;     ///< if set, Moments::columns has one element for each response
-  Layout layout = Layout::kGrid;
   std::vector<double> theta_deg;
   std::vector<FacetOptics> optics;
-  std::vector<double> sigma;
-  std::vector<double> q;
-  std::vector<double> sigma_cross = {0.0};  ///< SlopeShape::sigma_cross; not with masking integral if above 0
-  std::vector<double> azimuth_deg = {0.0};
-  WindModel wind_model = WindModel::kIsotropic;  ///< see CrossSlopes; directional only in a grid
-  std::vector<char> wanted;  ///< a flag per entry of a grid. If empty, all are wanted. Unwanted moments are undefined
+  std::vector<SlopeShape> shapes;  ///< elliptic ones not with masking integral
+  /// Positions in `shapes`. They begin with 0, 1, 2, ... for all shapes. In the range of a bundle they ascend.
+  std::vector<std::uint32_t> members;
+  std::vector<Bundle> bundles;
 
-  std::size_t size() const;
-  bool is_wanted(std::size_t entry) const { return wanted.empty() || wanted[entry] != 0; }
-  std::size_t wanted_count() const;
+  std::size_t size() const { return bundles.empty() ? 0 : bundles.back().first_entry + bundles.back().count; }
+  MomentsPoint operator[](std::size_t entry) const;
+  std::size_t find_bundle(std::size_t entry) const;  ///< the position of an entry's bundle
+  std::span<const std::uint32_t> bundle_shapes(const Bundle& bundle) const {
+    return std::span(members).subspan(bundle.first, bundle.count);
+  }
   /// `share` times the tolerance. In float it is at least kLeastFloatTolerance, but never more than `tolerance`.
   double finer_tolerance(double share) const;
-  std::size_t shapes() const { return sigma.size() * q.size() * sigma_cross.size() * azimuth_deg.size(); }
-  SlopeShape shape(std::size_t number) const;  ///< number `number` of a grid's shapes()
   bool has_elliptic_shapes() const;
   /// Elliptic slopes with smith masking: only the direct emission is computed. The other moments have the values of a
   /// surface that reflects nothing.
   bool has_only_direct() const { return masking == Masking::kSmith && has_elliptic_shapes(); }
-  MomentsPoint operator[](std::size_t entry) const;
-  /// This request for only some directions of a grid, given by their positions in `theta_deg`.
-  MomentsRequest select_directions(std::span<const std::size_t> directions) const;
-  void append(const MomentsPoint& point);  ///< adds an entry; the request becomes a list
-  /// In a list: true if the entry has the direction and slope distribution of the entry before it.
-  bool continues(std::size_t entry) const;
+
+  /// Replaces the entries by all combinations of optics, theta_deg and shapes; the last varies fastest.
+  void set_grid();
+  /// Replaces the slope distributions: each bundle gets all of `new_shapes`.
+  void set_shapes(std::vector<SlopeShape> new_shapes);
+  void add_bundle(std::uint32_t direction, std::uint32_t index, std::uint32_t first, std::uint32_t count);
+  void append(const MomentsPoint& point);  ///< adds an entry
+  /// This request without its entries and its lists of values.
+  MomentsRequest without_entries() const;
+  /// This request for only some bundles, given by their positions, or for only some entries, given by ascending
+  /// numbers.
+  MomentsRequest select_bundles(std::span<const std::size_t> positions) const;
+  MomentsRequest select_entries(std::span<const std::size_t> entries) const;
   friend bool operator==(const MomentsRequest&, const MomentsRequest&) = default;
 };
+
+/// All combinations of sigma and q; q varies fastest.
+std::vector<SlopeShape> shape_product(std::span<const double> sigma, std::span<const double> q);
 
 /// Moments of one entry with a function g in the integrands, |g| <= 1. There are two kinds of columns:
 /// - Sky: g depends on the zenith of the reflected ray. It multiplies the integrands of r_i and r_q.

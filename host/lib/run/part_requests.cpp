@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <boost/functional/hash.hpp>
+#include <functional>
 #include <limits>
+#include <map>
 #include <set>
 #include <tuple>
 #include <unordered_map>
@@ -34,18 +36,39 @@ Treatment treatment(const SceneValues& scene, const SceneEntry& entry) {
                           entry.shape);
 }
 
-constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();  // position of a value without requests
-
-/// Appends the used values to `axis`, in their order. Returns for each value its position in `axis`, or kUnused.
+/// Appends the used values to `axis`, in their order. Returns for each value its position in `axis`.
 std::vector<std::uint32_t> compact_used_values(const std::vector<double>& values, const std::vector<char>& is_used,
                                                std::vector<double>& axis) {
-  std::vector<std::uint32_t> positions(values.size(), kUnused);
+  std::vector<std::uint32_t> positions(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (is_used[i] == 0) continue;
     positions[i] = static_cast<std::uint32_t>(axis.size());
     axis.push_back(values[i]);
   }
   return positions;
+}
+
+/// Numbers different keys in the order of their first use.
+template <class Key>
+class Numbering {
+ public:
+  /// The number of a key. Calls add() if the key is new.
+  std::uint32_t number(const Key& key, const std::function<void()>& add) {
+    const auto [known, is_new] = known_.try_emplace(key, static_cast<std::uint32_t>(known_.size()));
+    if (is_new) add();
+    return known->second;
+  }
+
+ private:
+  std::unordered_map<Key, std::uint32_t, boost::hash<Key>> known_;
+};
+
+/// For each variant, the first variant with the same samples, among neighbours. Variants may differ in other values.
+std::vector<std::uint32_t> first_equal_variants(const SpectralIndices& samples) {
+  std::vector<std::uint32_t> first;
+  for (std::uint32_t i = 0; i < samples.size(); ++i)
+    first.push_back(i > 0 && samples[i] == samples[i - 1] ? first.back() : i);
+  return first;
 }
 
 // A grid uses responses (see run_basis) only if it has this many entries per index. With fewer, they save little.
@@ -148,8 +171,9 @@ PartRequests::PartRequests(const SceneValues& scene, const SpectralIndices& samp
   moments_.basis = level.basis;
   moments_.sky = plan.sky;
   moments_.may_interpolate = level.may_interpolate;
-  if (plan.kept.moments && selection.part.is_grid()) request_grid(selection);
-  if (plan.kept.moments && !selection.part.is_grid()) request_points(selection);
+  if (plan.kept.moments && selection.is_whole_grid()) request_grid(selection.part);
+  if (plan.kept.moments && !selection.is_whole_grid()) request_entries(selection);
+  if (moments_.has_elliptic_shapes()) moments_.basis = nullptr;  // responses are for isotropic slopes
   if (plan.needs_beams) request_beams(selection);
 }
 
@@ -170,143 +194,156 @@ std::vector<FacetOptics> PartRequests::index_set_samples(const SceneEntries& gri
   return with_index(samples_[set / (n_values * k_values)], grid.index_at(on_axes));
 }
 
-void PartRequests::request_grid(const Selection& selection) {
-  const SceneEntries& grid = selection.part;
-  const PerAxis& counts = grid.counts();
-  const bool is_whole = selection.chosen.empty();
-  const std::size_t variants = !grid.has_own_index() || has_films() ? grid.variants().size() : 1;
-  const std::size_t sets = grid.has_own_index() ? variants * counts[Axis::kN] * counts[Axis::kK] : variants;
-  const Axis zenith_axis = moment_axis(scene_);
-  std::vector<double> zeniths = grid.axes()[zenith_axis];
+void PartRequests::request_grid(const SceneEntries& grid) {
+  std::vector<double> zeniths = grid.axes()[moment_axis(scene_)];
   if (zeniths.empty()) zeniths = {scene_.geometry.view_zenith_deg};
   std::vector<char> theta(zeniths.size(), 0), sigma(grid.sigma().size(), 0), q(grid.q().size(), 0);
-  std::vector<char> set(sets, is_whole ? 1 : 0);
-  for (const std::size_t i : selection.chosen) {
-    if (!wants_moments(scene_, grid[i], plan_)) continue;
-    const PerAxis on_axes = grid.axis_positions(i);
-    theta[on_axes[zenith_axis]] = set[index_set(grid, on_axes)] = 1;
-  }
   for (std::size_t i = 0; i < sigma.size(); ++i) {
     for (std::size_t j = 0; j < q.size(); ++j) {
       const SlopeShape shape{grid.sigma()[i], grid.q()[j]};
       if (!is_mirror(shape)) sigma[i] = q[j] = 1;
-      for (std::size_t t = 0; is_whole && t < theta.size(); ++t) {
+      for (std::size_t t = 0; t < theta.size(); ++t) {
         const SceneEntry entry{.theta_deg = zeniths[t], .shape = shape, .view_zenith_deg = zeniths[t]};
         if (theta[t] == 0) theta[t] = wants_moments(scene_, entry, plan_) ? 1 : 0;
       }
     }
   }
   if (std::ranges::find(theta, 1) == theta.end()) return;
-  moments_.layout = MomentsRequest::Layout::kGrid;
-  request_indices(grid, set);
-  sigma_at_ = compact_used_values(grid.sigma(), sigma, moments_.sigma);
+  request_indices(grid);
+  std::vector<double> used_sigma, used_q;
+  sigma_at_ = compact_used_values(grid.sigma(), sigma, used_sigma);
   if (scene_.surface.distribution == Distribution::kGaussian) {
-    moments_.q = {SlopeShape{}.q};
+    used_q = {SlopeShape{}.q};
     q_at_.assign(q.size(), 0);
   } else {
-    q_at_ = compact_used_values(grid.q(), q, moments_.q);
+    q_at_ = compact_used_values(grid.q(), q, used_q);
   }
-  request_cross_slopes(grid);
   theta_at_ = compact_used_values(zeniths, theta, moments_.theta_deg);
   for (double& theta_deg : moments_.theta_deg) {
     theta_deg = zenith_before_limit_deg(scene_.surface.masking, theta_deg);
   }
-  if (!is_whole) mark_wanted(selection);
+  CrossSlopes slopes = grid.slopes();
+  const auto cross = grid.has_values(Axis::kSigmaCross) ? grid.axes()[Axis::kSigmaCross] : std::vector{slopes.sigma_cross};
+  const auto azimuth =
+      grid.has_values(Axis::kSurfaceAzimuth) ? grid.axes()[Axis::kSurfaceAzimuth] : std::vector{slopes.azimuth_deg};
+  moments_.shapes = shape_product(used_sigma, used_q);
+  std::vector<SlopeShape> elliptic;
+  for (const SlopeShape& shape : moments_.shapes) {
+    for (const double sigma_cross : cross) {
+      for (const double azimuth_deg : azimuth)
+        elliptic.push_back(CrossSlopes{sigma_cross, azimuth_deg, slopes.wind_model}.shape(shape.sigma, shape.q));
+    }
+  }
+  shape_counts_[Axis::kQ] = used_q.size();
+  shape_counts_[Axis::kSigmaCross] = shape_counts_[Axis::kSurfaceAzimuth] = 1;
+  if (std::ranges::any_of(elliptic, is_elliptic)) {  // otherwise all azimuths share their moments
+    shape_counts_[Axis::kSigmaCross] = cross.size();
+    shape_counts_[Axis::kSurfaceAzimuth] = azimuth.size();
+    moments_.shapes = std::move(elliptic);
+  }
+  moments_.set_grid();
 }
 
-/// Leaves the request without slopes along and across if they are equal: then azimuths share their moments.
-void PartRequests::request_cross_slopes(const SceneEntries& grid) {
-  const auto [cross, azimuth_deg, wind_model] = grid.slopes();
-  MomentsRequest request = moments_;
-  request.wind_model = wind_model;
-  request.sigma_cross = grid.has_values(Axis::kSigmaCross) ? grid.axes()[Axis::kSigmaCross] : std::vector{cross};
-  request.azimuth_deg =
-      grid.has_values(Axis::kSurfaceAzimuth) ? grid.axes()[Axis::kSurfaceAzimuth] : std::vector{azimuth_deg};
-  if (!request.has_elliptic_shapes()) return;
-  moments_ = std::move(request);
-  moments_.basis = nullptr;  // responses are for isotropic slopes
-}
-
-/// Adds the n and k of the used index sets to the request for moments. A set that equals the one before adds nothing.
-void PartRequests::request_indices(const SceneEntries& grid, const std::vector<char>& is_used) {
-  index_set_offset_.assign(is_used.size(), 0);
+/// Adds the n and k of the index sets to the request for moments. A set that equals the one before adds nothing.
+void PartRequests::request_indices(const SceneEntries& grid) {
+  const std::size_t variants = !grid.has_own_index() || has_films() ? grid.variants().size() : 1;
+  const std::size_t sets =
+      grid.has_own_index() ? variants * grid.counts()[Axis::kN] * grid.counts()[Axis::kK] : variants;
   std::vector<FacetOptics> last;
   std::uint32_t first = 0;
-  for (std::size_t set = 0; set < is_used.size(); ++set) {
-    if (is_used[set] == 0) continue;
+  for (std::size_t set = 0; set < sets; ++set) {
     std::vector<FacetOptics> next_samples = index_set_samples(grid, set);
     if (next_samples != last) {
       first = static_cast<std::uint32_t>(moments_.optics.size());
       moments_.optics.insert(moments_.optics.end(), next_samples.begin(), next_samples.end());
       last = std::move(next_samples);
     }
-    index_set_offset_[set] = first;
+    index_set_offset_.push_back(first);
   }
-}
-
-void PartRequests::mark_wanted(const Selection& selection) {
-  moments_.wanted.assign(moments_.size(), 0);
-  EntryReader reader(selection.part);
-  for (std::size_t i = 0; i < selection.size(); ++i) {
-    const SceneEntry& entry = reader[selection.position(i)];
-    if (!wants_moments(scene_, entry, plan_)) continue;
-    const MomentsSpan span = member_moments(i, reader.on_axes());
-    const std::size_t samples = span.stride == 0 ? 1 : samples_[entry.variant].size();
-    for (std::size_t j = 0; j < samples; ++j) moments_.wanted[span.first + j * span.stride] = 1;
-  }
-  if (moments_.wanted_count() == moments_.size()) moments_.wanted.clear();
 }
 
 PartRequests::MomentsSpan PartRequests::member_moments(std::size_t member, const PerAxis& on_axes) const {
-  if (!spans_of_points_.empty()) return spans_of_points_[member];
+  if (!spans_.empty()) return spans_[member];
   const SceneEntries& grid = selection_.part;
-  const std::size_t entries_per_index = moments_.theta_deg.size() * moments_.shapes();
-  std::size_t shape = sigma_at_[on_axes[Axis::kSigma]] * moments_.q.size() + q_at_[on_axes[Axis::kQ]];
-  shape = shape * moments_.sigma_cross.size() + on_axes[Axis::kSigmaCross] % moments_.sigma_cross.size();
-  shape = shape * moments_.azimuth_deg.size() + on_axes[Axis::kSurfaceAzimuth] % moments_.azimuth_deg.size();
-  const std::size_t theta_offset = theta_at_[on_axes[moment_axis(scene_)]] * moments_.shapes();
+  const std::size_t shapes = moments_.shapes.size();
+  const std::size_t entries_per_index = moments_.theta_deg.size() * shapes;
+  std::size_t shape = sigma_at_[on_axes[Axis::kSigma]] * shape_counts_[Axis::kQ] + q_at_[on_axes[Axis::kQ]];
+  for (const Axis axis : {Axis::kSigmaCross, Axis::kSurfaceAzimuth})
+    shape = shape * shape_counts_[axis] + on_axes[axis] % shape_counts_[axis];
+  const std::size_t theta_offset = theta_at_[on_axes[moment_axis(scene_)]] * shapes;
   const bool has_one_index = grid.has_own_index() && !has_films();
   return {index_set_offset_[index_set(grid, on_axes)] * entries_per_index + theta_offset + shape,
           has_one_index ? std::size_t{0} : entries_per_index};
 }
 
-std::optional<std::size_t> PartRequests::requested_direction(std::size_t member) const {
-  if (theta_at_.empty()) return std::nullopt;
-  const std::uint32_t at = theta_at_[selection_.part.axis_positions(selection_.position(member))[moment_axis(scene_)]];
-  return at == kUnused ? std::nullopt : std::optional<std::size_t>(at);
-}
-
-void PartRequests::request_points(const Selection& selection) {
-  moments_.layout = MomentsRequest::Layout::kList;
-  spans_of_points_.reserve(selection.size());
-  using PointKey = std::array<double, 8>;
-  std::unordered_map<PointKey, MomentsSpan, boost::hash<PointKey>> known(selection.size());
+void PartRequests::request_entries(const Selection& selection) {
+  struct IndexSet {
+    std::uint32_t first = 0;  // position in moments_.optics
+    std::uint32_t count = 0;
+    bool has_own_index = false;  // a bare medium with the n and k of the entry, at all wavelengths
+  };
+  struct Place {
+    std::uint32_t direction, set, shape;
+    std::size_t member;
+  };
+  moments_.is_scattered = !selection.part.is_grid();
+  Numbering<double> directions;
+  Numbering<std::array<double, 4>> shapes;
+  Numbering<std::array<double, 3>> index_sets;
+  std::vector<IndexSet> sets;
+  std::vector<Place> places;
+  const std::vector<std::uint32_t> equal_variants = first_equal_variants(samples_);
+  EntryReader reader(selection.part);
   for (std::size_t i = 0; i < selection.size(); ++i) {
-    const SceneEntry entry = selection[i];
-    if (!wants_moments(scene_, entry, plan_)) {
-      spans_of_points_.emplace_back();
-      continue;
-    }
+    const SceneEntry& entry = reader[selection.position(i)];
+    if (!wants_moments(scene_, entry, plan_)) continue;
     const double zenith_deg = zenith_before_limit_deg(scene_.surface.masking, moment_zenith_deg(scene_, entry));
     const SlopeShape shape = normalised(scene_, entry.shape);
-    // An entry without its own n and k has the key (number of its variant, -1). No real index has k = -1.
-    const OpticalConstants key = entry.index.value_or(OpticalConstants{static_cast<double>(entry.variant), -1.0});
-    const double films_at = has_films() ? entry.variant : -1.0;
-    const auto [known_span, is_new] = known.try_emplace(
-        {zenith_deg, shape.sigma, shape.q, shape.sigma_cross, shape.azimuth_deg, key.n, key.k, films_at},
-        MomentsSpan{});
-    if (is_new) {
-      const std::vector<FacetOptics> entry_optics = with_index(samples_[entry.variant], entry.index);
-      known_span->second = {moments_.size(), entry.index && !has_films() ? std::size_t{0} : std::size_t{1}};
-      for (const FacetOptics& sample : entry_optics) moments_.append({zenith_deg, shape, sample});
+    const bool has_own_index = entry.index && !has_films();
+    const double variant = has_own_index ? -1.0 : equal_variants[entry.variant];
+    const OpticalConstants key = entry.index.value_or(OpticalConstants{0.0, -1.0});  // no real index has k = -1
+    places.push_back(
+        {directions.number(zenith_deg, [&] { moments_.theta_deg.push_back(zenith_deg); }),
+         index_sets.number({key.n, key.k, variant},
+                           [&] {
+                             const std::vector<FacetOptics> own = with_index(samples_[entry.variant], entry.index);
+                             sets.push_back({static_cast<std::uint32_t>(moments_.optics.size()),
+                                             static_cast<std::uint32_t>(own.size()), has_own_index});
+                             moments_.optics.insert(moments_.optics.end(), own.begin(), own.end());
+                           }),
+         shapes.number({shape.sigma, shape.q, shape.sigma_cross, shape.azimuth_deg},
+                       [&] { moments_.shapes.push_back(shape); }),
+         i});
+  }
+  const auto position = [](const Place& place) { return std::tuple(place.direction, place.set, place.shape); };
+  std::ranges::sort(places, {}, position);
+  moments_.set_shapes(std::move(moments_.shapes));
+  spans_.resize(selection.size());
+  std::map<std::vector<std::uint32_t>, std::uint32_t> known;  // positions of lists of shapes in moments_.members
+  for (std::size_t i = 0, end = 0; i < places.size(); i = end) {
+    const auto& [direction, set, first_shape, member] = places[i];
+    const std::size_t first_entry = moments_.size();
+    std::vector<std::uint32_t> own;
+    for (; end < places.size() && places[end].direction == direction && places[end].set == set; ++end) {
+      if (own.empty() || own.back() != places[end].shape) own.push_back(places[end].shape);
+      spans_[places[end].member].first = first_entry + own.size() - 1;
     }
-    spans_of_points_.push_back(known_span->second);
+    const auto count = static_cast<std::uint32_t>(own.size());
+    for (std::size_t j = i; j < end; ++j) spans_[places[j].member].stride = sets[set].has_own_index ? 0 : count;
+    std::uint32_t first = own.front();  // neighbouring shapes are in moments_.members already
+    if (own.back() - first + 1 != count) {
+      const auto [list, is_new] = known.try_emplace(own, static_cast<std::uint32_t>(moments_.members.size()));
+      if (is_new) moments_.members.insert(moments_.members.end(), own.begin(), own.end());
+      first = list->second;
+    }
+    for (std::uint32_t j = 0; j < sets[set].count; ++j)
+      moments_.add_bundle(direction, sets[set].first + j, first, count);
   }
 }
 
 void PartRequests::request_beams(const Selection& selection) {
   // All entries of a grid: each direction and each slope distribution is listed once.
-  const bool is_grid = selection.part.is_grid() && selection.chosen.empty();
+  const bool is_grid = selection.is_whole_grid();
   const std::size_t shapes = is_grid ? selection.part.entries_per_direction() : 1;
   if (is_grid) {
     for (std::size_t i = 0; i < selection.part.directions(); ++i)

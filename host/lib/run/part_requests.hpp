@@ -24,6 +24,7 @@ struct Selection {
   const SceneEntries& part;
   std::span<const std::size_t> chosen = {};  ///< position of each member in the part; empty: all entries are selected
 
+  bool is_whole_grid() const { return part.is_grid() && chosen.empty(); }
   std::size_t size() const { return chosen.empty() ? part.size() : chosen.size(); }
   std::size_t position(std::size_t member) const { return chosen.empty() ? member : chosen[member]; }
   SceneEntry operator[](std::size_t member) const { return part[position(member)]; }
@@ -50,10 +51,8 @@ SpectralIndices spectral_indices(const EffectPlan& plan, const SceneEntries& ent
 std::vector<FacetOptics> with_index(const std::vector<FacetOptics>& samples,
                                     const std::optional<OpticalConstants>& index);
 
-/// The requests to an evaluator for a selection of entries at one refinement level. For a grid, the request for
-/// moments has all slope distributions of the part, even unselected ones. The evaluator shares work between slope
-/// distributions, so leaving some out would change the results of the others. For a list of points, points with equal
-/// direction, slope distribution and index share moments.
+/// The requests to an evaluator for a selection of entries at one refinement level. Entries with equal direction, slope
+/// distribution and index share moments.
 class PartRequests {
  public:
   PartRequests(const SceneValues& scene, const SpectralIndices& samples, const EffectPlan& plan,
@@ -67,23 +66,18 @@ class PartRequests {
     std::size_t first = 0;
     std::size_t stride = 0;
   };
-  /// `on_axes`: axis positions of the member's entry, if the entries are a grid.
+  /// Domain: wants_moments() of the member's entry. `on_axes`: its axis positions, if the entries are a grid.
   MomentsSpan member_moments(std::size_t member, const PerAxis& on_axes) const;
-  /// For a grid: the direction whose moments a member uses, as a position in moments().theta_deg. Nullopt if nothing is
-  /// requested for its zenith.
-  std::optional<std::size_t> requested_direction(std::size_t member) const;
   /// The position in beams() of the first beam of a member. A member has one beam per wavelength.
   std::size_t first_beam(std::size_t member) const { return first_beam_[member]; }
 
  private:
-  void request_cross_slopes(const SceneEntries& grid);
-  void request_grid(const Selection& selection);
-  void request_indices(const SceneEntries& grid, const std::vector<char>& is_used);
-  void mark_wanted(const Selection& selection);
+  void request_grid(const SceneEntries& grid);
+  void request_indices(const SceneEntries& grid);
   std::size_t index_set(const SceneEntries& grid, const PerAxis& on_axes) const;
   std::vector<FacetOptics> index_set_samples(const SceneEntries& grid, std::size_t set) const;
   bool has_films() const { return !samples_.front().front().is_bare(); }
-  void request_points(const Selection& selection);
+  void request_entries(const Selection& selection);
   void request_beams(const Selection& selection);
 
   const SceneValues& scene_;
@@ -92,12 +86,14 @@ class PartRequests {
   const Selection selection_;
   MomentsRequest moments_;
   ScatteringRequest beams_;
-  // For a grid: value i of the part's moment_axis() is value theta_at_[i] in moments_.theta_deg, unless nothing is
-  // requested at this zenith, and so on for sigma and q. index_set_offset_[i] is the position in moments_.optics of the
-  // first index (n, k) of the index set i. An index set has the indices of one variant (such as a band). If the grid
-  // has axes n and k, an index set has one value of each, with the films of one variant.
+  // For a whole grid: value i of the part's moment_axis() is value theta_at_[i] in moments_.theta_deg, unless nothing
+  // is requested at this zenith, and so on for sigma and q. shape_counts_ has the numbers of values of q, sigma_cross
+  // and azimuth. index_set_offset_[i] is the position in moments_.optics of the first index (n, k) of the index set i.
+  // An index set has the indices of one variant (such as a band). If the grid has axes n and k, an index set has one
+  // value of each, with the films of one variant.
   std::vector<std::uint32_t> theta_at_, sigma_at_, q_at_, index_set_offset_;
-  std::vector<MomentsSpan> spans_of_points_;  ///< for points: where the evaluator returns the moments of each point
+  PerAxis shape_counts_ = {};
+  std::vector<MomentsSpan> spans_;  ///< otherwise: where the evaluator returns the moments of each member
   std::vector<std::size_t> first_beam_;
 };
 

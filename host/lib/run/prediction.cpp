@@ -64,7 +64,7 @@ class CountingEvaluator final : public ModelEvaluator {
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
     const EvaluationReport before = cpu_.report();
     std::vector<Moments> moments = cpu_.evaluate(request, progress);
-    moments_.add(request.wanted_count(), before, cpu_.report());
+    moments_.add(request.size(), before, cpu_.report());
     return moments;
   }
   std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override {

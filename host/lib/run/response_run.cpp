@@ -27,7 +27,6 @@ namespace {
 
 constexpr std::size_t kBetaAngles = kMostResponses;
 constexpr double kResponseC0 = 0.01;                // cosine near which abscissa() changes from linear to logarithmic
-constexpr OpticalConstants kUnusedIndex{1.5, 0.0};  // a request needs an index; its moments are not used
 // The first quadrature has the tolerance of the table times this factor. Tuned for 64 x 16 x 16 entries at the
 // tolerance 1e-4. Million evaluations at half this value, at this value and at double: 21.0, 22.5, 24.1 with smith
 // masking; 3.24, 3.00, 2.90 with integral masking.
@@ -142,15 +141,16 @@ EntryResponses empty_responses(const MomentsRequest& request) {
   return none;
 }
 
-/// Sets the weights of mirrors. Other weights stay NaN. Returns a flag per entry: 1 if the entry needs the evaluator.
-std::vector<char> set_closed_forms(const MomentsRequest& request, EntryResponses& to) {
-  std::vector<char> wanted(request.size(), 1);
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
+/// Sets the weights of mirrors. Other weights stay NaN. Returns the entries that need the evaluator.
+std::vector<std::size_t> set_closed_forms(const MomentsRequest& request, EntryResponses& to) {
+  std::vector<std::size_t> wanted;
+  for (std::size_t i = 0; i < request.size(); ++i) {
     const MomentsPoint point = request[i];
     const Direction direction = make_direction(request.distribution, request.masking, point.theta_deg, point.shape);
-    wanted[i] = direction.treatment == Treatment::kIntegrated && direction.cos_theta > 0.0 ? 1 : 0;
+    const bool is_integrated = direction.treatment == Treatment::kIntegrated && direction.cos_theta > 0.0;
+    if (is_integrated) wanted.push_back(i);
     double& error = to.responses[ResponseVariable::kResponseError][i];
-    if (wanted[i] != 0 || direction.treatment == Treatment::kMirror) error = std::numeric_limits<double>::infinity();
+    if (is_integrated || direction.treatment == Treatment::kMirror) error = std::numeric_limits<double>::infinity();
     if (direction.treatment != Treatment::kMirror) continue;
     const Moments mirror = mirror_response(request, direction, point.shape);
     take_better(mirror, has_emission(request.masking) ? &mirror : nullptr, direction.cos_theta, i, to);
@@ -225,7 +225,6 @@ MomentsRequest response_request(const Surface& surface) {
   request.distribution = surface.distribution;
   request.masking = surface.masking;
   request.response = {.count = kBetaAngles, .c0 = kResponseC0, .bend = kResponseC0};
-  request.optics = {kUnusedIndex};
   return request;
 }
 
@@ -242,7 +241,8 @@ double response_distance(std::span<const double> a, std::span<const double> b, b
 EntryResponses compute_responses(MomentsRequest request, const Accuracy& accuracy, ModelEvaluator& evaluator,
                                  const Progress& progress) {
   EntryResponses all = empty_responses(request);
-  request.wanted = set_closed_forms(request, all);
+  std::vector<std::size_t> wanted = set_closed_forms(request, all);
+  const std::size_t size = request.size();
   for (double& theta : request.theta_deg) theta = zenith_before_limit_deg(request.masking, theta);
   const bool wants_direct = has_emission(request.masking);
   request.precision = first_level(accuracy, evaluator.has_double()).precision;
@@ -250,14 +250,13 @@ EntryResponses compute_responses(MomentsRequest request, const Accuracy& accurac
   request.tolerance = accuracy.tolerance;
   Work host_work;
   double share = kFirstShare;
-  for (int level = 0; level < kMostLevels && request.wanted_count() > 0; ++level, share *= kFinerBy) {
+  for (int level = 0; level < kMostLevels && !wanted.empty(); ++level, share *= kFinerBy) {
     const auto evaluated = [&](Response::Of of) {
-      MomentsRequest pass = request;
+      MomentsRequest pass = request.select_entries(wanted);
       pass.tolerance = request.finer_tolerance(share);
       pass.wants_direct = of == Response::Of::kDirect;
       pass.response->of = of;
-      const std::size_t size = request.size();
-      const Progress pass_progress = [&, size](std::size_t done, std::size_t total) {
+      const Progress pass_progress = [&](std::size_t done, std::size_t total) {
         const std::size_t own = size * done / std::max<std::size_t>(total, 1);
         const std::size_t half = pass.wants_direct ? (size + own) / 2 : wants_direct ? own / 2 : own;
         return !progress || progress(level == 0 ? half : size, size);
@@ -267,13 +266,12 @@ EntryResponses compute_responses(MomentsRequest request, const Accuracy& accurac
     const PlannedMoments reflected = evaluated(Response::Of::kReflected);
     const PlannedMoments direct = wants_direct ? evaluated(Response::Of::kDirect) : PlannedMoments();
     MomentsReader reflected_reader(reflected), direct_reader(direct);
-    for (std::size_t i = 0; i < request.size(); ++i) {
-      if (!request.is_wanted(i)) continue;
-      const double cosine = cos_sin_deg(request[i].theta_deg).cos;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      const double cosine = cos_sin_deg(request[wanted[i]].theta_deg).cos;
       const Moments* const own_direct = wants_direct ? &direct_reader.read(i, 1).front() : nullptr;
-      take_better(reflected_reader.read(i, 1).front(), own_direct, cosine, i, all);
-      request.wanted[i] = misses(all, i, accuracy.tolerance) ? 1 : 0;
+      take_better(reflected_reader.read(i, 1).front(), own_direct, cosine, wanted[i], all);
     }
+    std::erase_if(wanted, [&](std::size_t i) { return !misses(all, i, accuracy.tolerance); });
     if (accuracy.precision != Precision::kFloat && evaluator.has_double()) request.precision = Precision::kDouble;
     request.may_interpolate = false;
   }
@@ -295,9 +293,10 @@ ResponseOutcome run_responses(const SceneValues& scene, const TableLayout& layou
     box.count[Axis::kTheta] = std::min(at_once, axes[Axis::kTheta].size() - first);
     TableValues part{part_head(layout.head, box)};
     MomentsRequest request = response_request(scene.surface);
+    request.optics = {kUnusedIndex};
     request.theta_deg = part.axes[Axis::kTheta];
-    request.sigma = part.axes[Axis::kSigma];
-    request.q = part.axes[Axis::kQ];
+    request.shapes = shape_product(part.axes[Axis::kSigma], part.axes[Axis::kQ]);
+    request.set_grid();
     EntryResponses computed = compute_responses(request, scene.accuracy, evaluator, [&](std::size_t done, std::size_t) {
       return !progress || progress(outcome.entries + done, layout.head.size());
     });

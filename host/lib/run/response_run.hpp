@@ -25,7 +25,9 @@ struct EntryResponses {
 EntryResponses compute_responses(MomentsRequest request, const Accuracy& accuracy, ModelEvaluator& evaluator,
                                  const Progress& progress);
 
+/// A request for responses without entries. Its entries need an index, whose moments are not used.
 MomentsRequest response_request(const Surface& surface);
+inline constexpr OpticalConstants kUnusedIndex{1.5, 0.0};
 
 /// Sum over m of 2^-m |D_m|, where D_m is the sum over the angles beta_j of T_m(x_j) f_j (a_j - b_j). T_m is a
 /// Chebyshev polynomial, and x_j is its variable at beta_j. f_j is sin^2(beta_j) for weights of Q (`is_of_q`), and 1

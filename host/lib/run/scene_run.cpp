@@ -137,7 +137,7 @@ class MemberResults {
       return moments_;
     }
     const PartRequests::MomentsSpan span = requests_.member_moments(member, entries_.on_axes());
-    if (span.stride == 1 || moments_.size() == 1) return readers_.front().read(span.first, moments_.size());
+    if (moments_.size() == 1) return readers_.front().read(span.first, 1);
     for (std::size_t j = 0; j < moments_.size(); ++j) {
       MomentsReader& reader = readers_[span.stride == 0 ? 0 : j];
       moments_[j] = reader.read(span.first + j * span.stride, 1).front();
@@ -179,7 +179,7 @@ Progress offset_progress(const Progress& progress, std::size_t before, std::size
 
 EvaluatorResults run_requests(const RunContext& context, const PartRequests& requests, MomentsPlan plan,
                               const Progress& progress) {
-  const std::size_t moments = requests.moments().wanted_count();
+  const std::size_t moments = requests.moments().size();
   const std::size_t beams = requests.beams().entries.size();
   const std::size_t total = moments + beams;
   if (total == 0) return {};
@@ -275,6 +275,22 @@ struct FirstResults {
   std::vector<char> is_interpolated;  ///< one flag per direction of the part
 };
 
+/// For each direction of a grid: 1 if its moments are interpolated or sums of responses.
+std::vector<char> interpolated_directions(const RunContext& context, const SceneEntries& grid,
+                                          const PartRequests& requests, const MomentsPlan& plan) {
+  const std::vector<char> saves = plan.saving_bundles();
+  const std::size_t together = grid.entries_per_direction();
+  std::vector<char> directions(grid.size() / together, 0);
+  EntryReader reader(grid);
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    if (!wants_moments(context.scene, reader[i], context.plan)) continue;
+    const std::size_t entry = requests.member_moments(i, reader.on_axes()).first;
+    directions[i / together] = saves[requests.moments().find_bundle(entry)];
+    i += together - 1 - i % together;  // all entries of a direction are in one bundle for each index
+  }
+  return directions;
+}
+
 FirstResults first_results(const RunContext& context, const SceneEntries& part, const Progress& progress) {
   FirstResults first;
   first.level = first_level(context.scene.accuracy, context.evaluator->has_double());
@@ -284,12 +300,8 @@ FirstResults first_results(const RunContext& context, const SceneEntries& part, 
   const PartRequests requests(context.scene, context.spectra.indices, context.plan, {part}, first.level);
   MomentsPlan plan(requests.moments());
   context.summary.response_basis_s += seconds_since(start);
-  const std::vector<char> saves = plan.saving_directions();
+  if (part.is_grid()) first.is_interpolated = interpolated_directions(context, part, requests, plan);
   first.results = selection_results(context, {part}, requests, std::move(plan), progress);
-  for (std::size_t i = 0; !saves.empty() && i < part.size(); i += part.entries_per_direction()) {
-    const std::optional<std::size_t> direction = requests.requested_direction(i);
-    first.is_interpolated.push_back(direction ? saves[*direction] : char{0});
-  }
   return first;
 }
 
@@ -499,7 +511,7 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
   };
   std::optional<RememberingEvaluator> remembering;
   const auto is_repeated = [](const MomentsRequest& request) {  // parts of a list have the same nodes
-    return request.response && request.layout == MomentsRequest::Layout::kGrid && !request.sky;
+    return request.response && !request.is_scattered && !request.sky;
   };
   if (basis && !entries.is_grid()) evaluator = &remembering.emplace(*evaluator, is_repeated);
   std::size_t left = output.finished.parts, before = 0;

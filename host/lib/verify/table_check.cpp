@@ -240,12 +240,10 @@ bool has_rho(const TableValues& table) {
 
 MomentsRequest sample_request(const TableSample& sample, const Surface& surface) {
   MomentsRequest request = response_request(surface);
-  const OpticalConstants index = request.optics.front().index;
-  request.optics.clear();
-  const SceneEntries grid = SceneEntries::grid(sample.table.axes, index);
+  const SceneEntries grid = SceneEntries::grid(sample.table.axes, kUnusedIndex);
   for (const std::size_t position : sample.positions) {
     const SceneEntry entry = grid[position];
-    request.append({entry.theta_deg, entry.shape, index});
+    request.append({entry.theta_deg, entry.shape, kUnusedIndex});
   }
   return request;
 }

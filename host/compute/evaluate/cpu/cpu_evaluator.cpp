@@ -19,7 +19,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kComputedAtOnce = 64;  // entries or directions that a thread computes in one step
+constexpr std::size_t kComputedAtOnce = 64;  // entries or bundles that a thread computes in one step
 constexpr std::size_t kTablesAtOnce = 4096;  // most masking tables in memory; each has 4 KiB in float, 58 KiB in double
 
 std::unique_ptr<CpuKernel> make_kernel(const KernelData& data, bool in_double) {
@@ -28,25 +28,20 @@ std::unique_ptr<CpuKernel> make_kernel(const KernelData& data, bool in_double) {
 
 double choose_roundoff(bool in_double) { return in_double ? kDoubleRoundoff : kFloatRoundoff; }
 
-std::vector<std::size_t> wanted_entries(const MomentsRequest& request) {
-  std::vector<std::size_t> entries;
-  entries.reserve(request.wanted_count());
-  for (std::size_t i = 0; i < request.size(); ++i) {
-    if (request.is_wanted(i)) entries.push_back(i);
-  }
-  return entries;
-}
-
 std::vector<Moments> by_entries(const MomentsRequest& request, const KernelData& data, CpuKernel& kernel,
                                 double unit_roundoff, const Progress& progress) {
-  const std::vector<std::size_t> all = wanted_entries(request);
-  std::vector<Moments> moments(request.size());
+  std::vector<MomentsEntry> all;
+  all.reserve(request.size());
+  for (std::size_t i = 0; i < data.bundles.size(); ++i) {
+    for (const std::uint32_t shape : data.bundle_shapes(i)) all.push_back(data.entry(i, shape));
+  }
+  std::vector<Moments> moments(all.size());
   std::size_t before = 0;
   for (std::size_t first = 0; first < data.shapes.size(); first += kTablesAtOnce) {
     std::vector<std::size_t> entries;
     std::vector<std::uint32_t> shapes;
-    for (const std::size_t i : all) {
-      const std::uint32_t shape = data[i].shape;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const std::uint32_t shape = all[i].shape;
       if (shape < first || shape >= first + kTablesAtOnce) continue;
       entries.push_back(i);
       shapes.push_back(shape);
@@ -56,7 +51,7 @@ std::vector<Moments> by_entries(const MomentsRequest& request, const KernelData&
     shapes.erase(twice.begin(), twice.end());
     kernel.build_masking_tables(std::move(shapes));
     const auto compute_entry = [&](std::size_t i) {
-      const MomentsEntry entry = data[entries[i]];
+      const MomentsEntry& entry = all[entries[i]];
       std::vector<double> columns(column_sums(data));
       const kernel::MomentsNode node = kernel.moments(entry, columns);
       moments[entries[i]] = moments_from_kernel(node, data, entry, unit_roundoff, columns);
@@ -74,16 +69,11 @@ std::vector<Moments> by_slope_samples(const MomentsRequest& request, const Kerne
                                       double unit_roundoff, const Progress& progress) {
   const SlopeSampling sampling(data);
   std::vector<Moments> moments(request.size());
-  const auto compute_direction = [&](std::size_t direction) {
-    for (SampledEntries& entries : sampled_entries(request, data, direction, direction + 1)) {
-      sampling.compute(std::move(entries), kernel, unit_roundoff, moments);
-    }
-  };
-  const std::size_t wanted = request.wanted_count();
+  const auto compute_bundle = [&](std::size_t i) { sampling.compute(i, kernel, unit_roundoff, moments); };
   const Progress entry_progress = [&](std::size_t done, std::size_t all) {
-    return !progress || progress(wanted * done / all, wanted);
+    return !progress || progress(request.size() * done / all, request.size());
   };
-  parallel_for(data.directions, kComputedAtOnce, compute_direction, entry_progress);
+  parallel_for(data.bundles.size(), kComputedAtOnce, compute_bundle, entry_progress);
   return moments;
 }
 

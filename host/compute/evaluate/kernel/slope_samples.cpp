@@ -86,9 +86,9 @@ int nodes_at_roots(const KernelData& data, const KernelSource::Task& task) {
 
 bool has_slope_samples(const MomentsRequest& request) {
   if (request.has_elliptic_shapes()) return true;
-  const bool can_share = request.masking == Masking::kNone || request.masking == Masking::kVCavity;
-  // In a list each entry has its own direction and shares nothing. Then the host's part would take most of the time.
-  return can_share && (request.layout == MomentsRequest::Layout::kGrid || request.scattering == Scattering::kMultiple);
+  if (request.masking != Masking::kNone && request.masking != Masking::kVCavity) return false;
+  // If most bundles have one entry, nothing is shared, and the host's part would take most of the time.
+  return request.size() >= 2 * request.bundles.size() || request.scattering == Scattering::kMultiple;
 }
 
 struct SlopeSampling::Impl {
@@ -301,11 +301,11 @@ struct SlopeSampling::Impl {
 
   void integrate_orders(const SlopeSamples& samples, std::span<const kernel::AzimuthNode> azimuths,
                         std::span<const double> azimuth_columns, double unit_roundoff, std::span<Moments> moments) {
-    const auto& [direction, theta, index, shapes] = samples.entries;
     std::vector<SlopeWeights> sector_weights;
     OrderSums sums;
     SlopeShape known;
-    for (const std::uint32_t shape : shapes) {
+    std::size_t entry = data.bundles[samples.bundle].first_entry;
+    for (const std::uint32_t shape : data.bundle_shapes(samples.bundle)) {
       SlopeShape slopes = data.slopes[shape];
       const double azimuth = slopes.azimuth_deg;
       slopes.azimuth_deg = 0.0;  // all azimuths share the sums
@@ -313,8 +313,8 @@ struct SlopeSampling::Impl {
         sums = order_sums(samples, order_weights(samples, shape, sector_weights), azimuths, azimuth_columns, data);
         known = slopes;
       }
-      moments[data.entry_position(direction, index, shape)] =
-          moments_at_azimuth(sums, data, {theta, shape, index}, azimuth, unit_roundoff);
+      moments[entry++] =
+          moments_at_azimuth(sums, data, data.entry(samples.bundle, shape), azimuth, unit_roundoff);
     }
   }
 };
@@ -322,43 +322,45 @@ struct SlopeSampling::Impl {
 SlopeSampling::SlopeSampling(const KernelData& data) : impl_(std::make_unique<Impl>(data)) {}
 SlopeSampling::~SlopeSampling() = default;
 
-SlopeSamples SlopeSampling::plan(SampledEntries entries) const {
-  const std::vector<kernel::ShapeNode> corners = corner_shapes(impl_->data, entries.shapes);
-  const std::vector<End> ends = impl_->piece_ends(entries.theta, corners);
-  const auto theta = std::bit_cast<KernelSource::ThetaNode>(impl_->data.thetas[entries.theta]);
-  const auto index = std::bit_cast<KernelSource::IndexNode>(impl_->data.indices[entries.index]);
-  SlopeSamples samples;
+SlopeSamples SlopeSampling::plan(std::size_t bundle) const {
+  const KernelData& data = impl_->data;
+  const std::span<const std::uint32_t> shapes = data.bundle_shapes(bundle);
+  const MomentsEntry entry = data.entry(bundle, shapes.front());
+  const std::vector<kernel::ShapeNode> corners = corner_shapes(data, shapes);
+  const std::vector<End> ends = impl_->piece_ends(entry.theta, corners);
+  const auto theta = std::bit_cast<KernelSource::ThetaNode>(data.thetas[entry.theta]);
+  const auto index = std::bit_cast<KernelSource::IndexNode>(data.indices[entry.index]);
+  SlopeSamples samples{.bundle = bundle};
   samples.cut = std::min(corners.front().cut, ends.back().slope);
   std::vector<SampleRequest> requests;
   for (const kernel::ShapeNode& corner : corners) {
     requests.push_back({.all = impl_->source.weight_of_shape(theta, std::bit_cast<KernelSource::ShapeNode>(corner))});
   }
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-    const KernelSource::Task task = impl_->piece_task(entries.theta, ends, i);
+    const KernelSource::Task task = impl_->piece_task(entry.theta, ends, i);
     const KernelSource::Piece piece = impl_->hardest_piece(theta, index, corners, task, requests);
-    const int resolving = nodes_at_roots(impl_->data, task);
-    const int fine = std::min(piece.order + resolving, impl_->data.rule_order);
-    const int coarse = std::min(impl_->source.coarse_order(piece.order) + resolving, impl_->data.rule_order);
+    const int resolving = nodes_at_roots(data, task);
+    const int fine = std::min(piece.order + resolving, data.rule_order);
+    const int coarse = std::min(impl_->source.coarse_order(piece.order) + resolving, data.rule_order);
     samples.pieces.push_back({ends[i].slope, std::min(ends[i + 1].slope, samples.cut),
                               static_cast<std::uint32_t>(samples.slopes.size()), static_cast<std::uint32_t>(fine),
                               static_cast<std::uint32_t>(coarse), ends[i].direction_piece});
     impl_->add_rule(samples, theta, corners, piece, requests, fine);
     impl_->add_rule(samples, theta, corners, piece, requests, coarse);
   }
-  samples.entries = std::move(entries);
-  samples.orders = impl_->data.orders.highest + 1;
+  samples.orders = data.orders.highest + 1;
   return samples;
 }
 
 void SlopeSampling::append(const SlopeSamples& samples, std::size_t at_once,
                            std::vector<kernel::SlopeNode>& nodes) const {
-  const Pieces& pieces = impl_->data.pieces[samples.entries.theta];
+  const MomentsEntry entry = impl_->data.entry(samples.bundle, impl_->data.bundle_shapes(samples.bundle).front());
+  const Pieces& pieces = impl_->data.pieces[entry.theta];
   for (std::size_t order = 0; order < samples.orders; order += at_once) {
     for (const SampledPiece& piece : samples.pieces) {
       for (std::uint32_t i = 0; i < piece.fine + piece.coarse; ++i) {
         const SampledSlope& slope = samples.slopes[piece.first + i];
-        nodes.push_back({slope.t, slope.digits, static_cast<double>(samples.entries.theta),
-                         static_cast<double>(samples.entries.index),
+        nodes.push_back({slope.t, slope.digits, static_cast<double>(entry.theta), static_cast<double>(entry.index),
                          static_cast<double>(pieces.most_nodes[piece.direction_piece]), i < piece.fine ? 0.0 : 1.0,
                          static_cast<double>(order)});
       }
@@ -372,7 +374,6 @@ void SlopeSampling::integrate(const SlopeSamples& samples, const SampledAzimuths
   const auto azimuth_columns =
       std::span(sampled.columns).subspan(first * sampled.per_slope, azimuths.size() * sampled.per_slope);
   const KernelData& data = impl_->data;
-  const auto& [direction, theta, index, shapes] = samples.entries;
   double evaluations = 0.0;
   for (const kernel::AzimuthNode& azimuth : azimuths) evaluations += azimuth.evaluations;
   if (samples.orders > 1) {
@@ -382,46 +383,29 @@ void SlopeSampling::integrate(const SlopeSamples& samples, const SampledAzimuths
   SlopeWeights weights;
   Eigen::ArrayXd shape_weights(static_cast<Eigen::Index>(samples.slopes.size()));
   std::vector<double> columns(column_sums(data));
-  for (const std::uint32_t shape : shapes) {
+  const Bundle& bundle = data.bundles[samples.bundle];
+  std::size_t position = bundle.first_entry;
+  for (const std::uint32_t shape : data.bundle_shapes(samples.bundle)) {
+    const MomentsEntry entry = data.entry(samples.bundle, shape);
     const auto node = std::bit_cast<KernelSource::ShapeNode>(data.shapes[shape]);
     if (node.m != weights.m) weights = impl_->slope_weights(samples, node);
     kernel::MomentsNode sums =
         impl_->integrate_shape(samples, node, weights, azimuths, azimuth_columns, shape_weights, columns);
-    sums.deficit += data.thetas[theta].c * impl_->source.slope_tail(node, samples.cut);
-    sums.evaluations = evaluations / static_cast<double>(shapes.size());
-    moments[data.entry_position(direction, index, shape)] =
-        moments_from_kernel(sums, data, {theta, shape, index}, unit_roundoff, columns);
+    sums.deficit += data.thetas[entry.theta].c * impl_->source.slope_tail(node, samples.cut);
+    sums.evaluations = evaluations / static_cast<double>(bundle.count);
+    moments[position++] = moments_from_kernel(sums, data, entry, unit_roundoff, columns);
   }
 }
 
-void SlopeSampling::compute(SampledEntries entries, CpuKernel& kernel, double unit_roundoff,
+void SlopeSampling::compute(std::size_t bundle, CpuKernel& kernel, double unit_roundoff,
                             std::span<Moments> moments) const {
-  const SlopeSamples samples = plan(std::move(entries));
+  const SlopeSamples samples = plan(bundle);
   std::vector<kernel::SlopeNode> slopes;
   append(samples, 1, slopes);
   SampledAzimuths azimuths(slopes.size(), impl_->data);
   for (std::size_t i = 0; i < slopes.size(); ++i)
     azimuths.nodes[i] = kernel.azimuths(slopes[i], azimuths.slope_columns(i));
   integrate(samples, azimuths, 0, unit_roundoff, moments);
-}
-
-std::vector<SampledEntries> sampled_entries(const MomentsRequest& request, const KernelData& data, std::size_t first,
-                                            std::size_t last) {
-  std::vector<SampledEntries> sampled;
-  for (auto direction = static_cast<std::uint32_t>(first); direction < last; ++direction) {
-    if (!data.is_grid) {
-      sampled.push_back({direction, direction, direction, {data.shape_positions[direction]}});
-      continue;
-    }
-    for (std::uint32_t index = 0; index < data.indices.size(); ++index) {
-      SampledEntries entries{direction, data.theta_position(direction, index, 0), index, {}};
-      for (std::uint32_t shape = 0; shape < data.shapes.size(); ++shape) {
-        if (request.is_wanted(data.entry_position(direction, index, shape))) entries.shapes.push_back(shape);
-      }
-      if (!entries.shapes.empty()) sampled.push_back(std::move(entries));
-    }
-  }
-  return sampled;
 }
 
 }  // namespace dolp

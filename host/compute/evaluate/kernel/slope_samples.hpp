@@ -18,15 +18,6 @@ namespace dolp {
 /// True if the moments of this request are sums over slope samples, false if the kernel sums over the slopes.
 bool has_slope_samples(const MomentsRequest& request);
 
-/// The wanted entries of one direction and one refractive index. `direction` is the position among the directions of
-/// the request. The other members are positions in the lists of KernelData.
-struct SampledEntries {
-  std::uint32_t direction = 0;
-  std::uint32_t theta = 0;
-  std::uint32_t index = 0;
-  std::vector<std::uint32_t> shapes;
-};
-
 struct SampledSlope {
   double t = 0.0;
   double dt = 0.0;
@@ -44,9 +35,9 @@ struct SampledPiece {
   std::uint32_t direction_piece = 0;  ///< number of the direction's piece (see Pieces) that contains this piece
 };
 
-/// The slopes at which the kernel computes samples for one direction and one index. All entries.shapes share them.
+/// The slopes at which the kernel computes samples for a bundle. All its entries share them.
 struct SlopeSamples {
-  SampledEntries entries;
+  std::size_t bundle = 0;  ///< position in KernelData::bundles
   double cut = 0.0;  ///< largest slope; steeper facets are left out
   std::vector<SampledPiece> pieces;
   std::vector<SampledSlope> slopes;
@@ -74,22 +65,18 @@ class SlopeSampling {
   explicit SlopeSampling(const KernelData& data);
   ~SlopeSampling();
 
-  SlopeSamples plan(SampledEntries entries) const;
+  SlopeSamples plan(std::size_t bundle) const;
   /// Appends what the kernel needs for each slope and each group of `at_once` azimuthal orders.
   void append(const SlopeSamples& samples, std::size_t at_once, std::vector<kernel::SlopeNode>& nodes) const;
-  /// Computes the moments of samples.entries from the kernel's sums over the azimuths. The sums for samples.slopes[0]
+  /// Computes the moments of samples.bundle from the kernel's sums over the azimuths. The sums for samples.slopes[0]
   /// and order 0 are in azimuths.nodes[first].
   void integrate(const SlopeSamples& samples, const SampledAzimuths& azimuths, std::size_t first, double unit_roundoff,
                  std::span<Moments> moments) const;
-  void compute(SampledEntries entries, CpuKernel& kernel, double unit_roundoff, std::span<Moments> moments) const;
+  void compute(std::size_t bundle, CpuKernel& kernel, double unit_roundoff, std::span<Moments> moments) const;
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-/// The wanted entries of each pair of a direction and an index, for the directions from `first` to `last` - 1.
-std::vector<SampledEntries> sampled_entries(const MomentsRequest& request, const KernelData& data, std::size_t first,
-                                            std::size_t last);
 
 }  // namespace dolp

@@ -11,6 +11,7 @@ namespace {
 using TaskWords = std::array<std::uint32_t, 4>;
 
 constexpr std::size_t kRowsAtOnce = 512;
+constexpr std::size_t kEntriesAtOnce = 1024;
 constexpr std::size_t kMostRanges = 16;  // ranges of rows in a tile, as each range looks at all pieces of the tile
 
 class RowRun final : public TiledRun {
@@ -50,7 +51,6 @@ class RowRun final : public TiledRun {
     cost_.curves_s = data_.curves_s;
     std::vector<kernel::MomentsNode> results(rows_.rows.size() * rows_.width);
     column_results_.assign(results.size() * column_sums(data_), 0.0);
-    const std::size_t wanted = request_.wanted_count();
     for (const Block& block : tiles_.blocks()) {
       const std::vector<RowPiece> pieces = row_pieces(rows_, data_, block.first_row, block.row_count);
       if (!pieces.empty()) begin_block(block);
@@ -64,7 +64,7 @@ class RowRun final : public TiledRun {
         upload_tile(block, tile);
         submit_tile(count, result_bytes(count), data_, [&, tile, share] {
           add_pieces(tile, results);
-          note_progress(progress, share, wanted);
+          note_progress(progress, share, request_.size());
         });
       }
       finish_tiles();
@@ -110,9 +110,9 @@ class RowRun final : public TiledRun {
     for (const RowPiece& row_piece : pieces) {
       const Row& row = rows_.rows[row_piece.row];
       const Chunk& chunk = rows_.chunks[row.chunk];
-      const std::uint32_t theta = rows_.theta_position(data_, row);
-      words.push_back({thetas_(theta), chunk.first - block.first_shape, indices_(row.index),
-                       task_word(data_.pieces[theta], row_piece.piece, chunk.count)});
+      const MomentsEntry entry = rows_.entry(data_, row);
+      words.push_back({thetas_(entry.theta), chunk.first - block.first_shape, indices_(entry.index),
+                       task_word(data_.pieces[entry.theta], row_piece.piece, chunk.count)});
     }
     upload_bytes(DOLP_BINDING_TASKS, std::as_bytes(std::span(words)));
     const std::span<const std::uint32_t> thetas = thetas_.used(), indices = indices_.used();
@@ -136,10 +136,10 @@ class RowRun final : public TiledRun {
       for (std::size_t i = 0; i < pieces.size(); ++i) {
         const std::size_t row = pieces[i].row - first_row;
         if (row < first || row >= last) continue;
-        const Row& piece_row = rows_.rows[pieces[i].row];
-        for (std::uint32_t g = 0; g < rows_.chunks[piece_row.chunk].count; ++g) {
+        const std::uint32_t count = rows_.chunks[rows_.rows[pieces[i].row].chunk].count;
+        for (std::uint32_t g = 0; g < count; ++g) {
           auto node = packing_.read<kernel::MomentsNode>(scratch_, i * rows_.width + g);
-          node.evaluations /= piece_row.used;
+          node.evaluations /= count;
           const std::size_t member = pieces[i].row * std::size_t{rows_.width} + g;
           add_piece(results[member], node);
           packing_.read_numbers(scratch_,
@@ -156,16 +156,12 @@ class RowRun final : public TiledRun {
   std::vector<Moments> entry_moments(std::span<const kernel::MomentsNode> results) const {
     std::vector<Moments> moments(request_.size());
     const std::size_t per_entry = column_sums(data_);
-    parallel_for(rows_.rows.size(), kRowsAtOnce, [&](std::size_t i) {
-      const Row& row = rows_.rows[i];
-      const Chunk& chunk = rows_.chunks[row.chunk];
-      const std::uint32_t theta = rows_.theta_position(data_, row);
-      for (std::uint32_t g = 0; g < chunk.count; ++g) {
-        const std::uint32_t shape = rows_.shape_positions[chunk.first + g];
-        moments[data_.entry_position(row.direction, row.index, shape)] =
-            moments_from_kernel(results[i * rows_.width + g], data_, {theta, shape, row.index}, context_.unit_roundoff,
-                                std::span(column_results_).subspan((i * rows_.width + g) * per_entry, per_entry));
-      }
+    parallel_for(moments.size(), kEntriesAtOnce, [&](std::size_t i) {
+      const auto& [row, place] = rows_.entries[i];
+      const std::size_t at = row * std::size_t{rows_.width} + place;
+      moments[i] = moments_from_kernel(results[at], data_, rows_.entry(data_, rows_.rows[row], place),
+                                       context_.unit_roundoff,
+                                       std::span(column_results_).subspan(at * per_entry, per_entry));
     });
     return moments;
   }

@@ -32,11 +32,9 @@ class SlopeRun final : public TiledRun {
  protected:
   std::vector<Moments> compute_tiles(const Progress& progress) override {
     std::vector<Moments> moments(request_.size());
-    const std::size_t wanted = request_.wanted_count();
-    const std::size_t at_once = tiles_.batch_directions();
+    const std::size_t bundles = data_.bundles.size();
     cost_.curves_s = data_.curves_s;
-    for (std::size_t first = 0; first < data_.directions; first += at_once) {
-      const std::size_t last = std::min(first + at_once, data_.directions);
+    for (std::size_t first = 0; first < bundles; first += SlopeTiles::kBatchBundles) {
       const SlopeBatch batch = tiles_.batch(first);
       SampledAzimuths azimuths(batch.nodes, data_);
       const std::span<const std::uint32_t> slopes(batch.in_lockstep);
@@ -46,12 +44,13 @@ class SlopeRun final : public TiledRun {
         const auto tile = slopes.subspan(done, std::min<std::size_t>(pace_.invocations(), slopes.size() - done));
         done += tile.size();
         const double batch_share = static_cast<double>(done) / static_cast<double>(slopes.size());
-        const double share = (static_cast<double>(first) + batch_share * static_cast<double>(last - first)) /
-                             static_cast<double>(data_.directions);
+        const double share =
+            (static_cast<double>(first) + batch_share * static_cast<double>(batch.samples.size())) /
+            static_cast<double>(bundles);
         upload_tile(batch, tile);
         submit_tile(tile.size(), result_bytes(tile.size()), data_, [&, tile, share] {
           read_tile(batch, tile, azimuths);
-          note_progress(progress, share, wanted);
+          note_progress(progress, share, request_.size());
         });
       }
       finish_tiles();

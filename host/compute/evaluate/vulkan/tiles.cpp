@@ -16,7 +16,6 @@ using EntryWords = std::array<std::uint32_t, 4>;
 
 constexpr std::uint64_t kHeapFraction =
     8;  // all tiles in flight get an eighth of the memory, masking tables another eighth
-constexpr std::size_t kSampledAtOnce = 1024;  // pairs of direction and index in a batch; each has some hundred slopes
 
 // Largest factor between the sizes of a tile and the next. Costs of neighbouring invocations can differ by a factor 10.
 constexpr double kLargestChange = 4.0;
@@ -51,7 +50,8 @@ std::vector<std::uint32_t> in_lockstep(const SlopeBatch& batch, const KernelData
   std::map<std::uint16_t, std::vector<std::uint32_t>> by_bound;
   for (std::size_t i = 0; i < batch.samples.size(); ++i) {
     const SlopeSamples& samples = batch.samples[i];
-    const Pieces& pieces = data.pieces[samples.entries.theta];
+    const MomentsEntry entry = data.entry(samples.bundle, data.bundle_shapes(samples.bundle).front());
+    const Pieces& pieces = data.pieces[entry.theta];
     for (const SampledPiece& piece : samples.pieces) {
       std::vector<std::uint32_t>& alike = by_bound[pieces.lockstep[piece.direction_piece]];
       for (std::size_t order = 0; order < samples.orders; order += batch.orders_at_once) {
@@ -91,7 +91,7 @@ RowTiles::RowTiles(const MomentsRequest& request, const dolp::Device& device, co
                    Tables tables)
     : packing(make_packing(request.precision)),
       data(kernel_data(request, tables)),
-      rows(make_rows(request, data, widest_row(device))),
+      rows(make_rows(data, widest_row(device))),
       costs{.invocation_bytes = sizeof(EntryWords) + packing.node_bytes<kernel::ThetaNode>() +
                                 packing.node_bytes<kernel::IndexNode>() +
                                 rows.width * packing.output_bytes<kernel::MomentsNode>(column_sums(data)),
@@ -135,33 +135,25 @@ DispatchCount RowTiles::count() const {
   return count;
 }
 
-SlopeTiles::SlopeTiles(const MomentsRequest& moments_request, const dolp::Device& device, const VulkanOptions& options,
+SlopeTiles::SlopeTiles(const MomentsRequest& request, const dolp::Device& device, const VulkanOptions& options,
                        Tables tables)
-    : request(moments_request),
-      packing(make_packing(request.precision)),
+    : packing(make_packing(request.precision)),
       data(kernel_data(request, tables)),
       sampling(data),
       costs{.invocation_bytes = packing.node_bytes<kernel::SlopeNode>() + packing.node_bytes<kernel::ThetaNode>() +
                                 packing.node_bytes<kernel::IndexNode>() +
                                 orders_at_once(data) * packing.output_bytes<kernel::AzimuthNode>(column_azimuths(data)),
             .rule_bytes = rule_bytes(device, packing, data)} {
-  const std::uint64_t pairs = std::uint64_t{data.directions} * (data.is_grid ? data.indices.size() : 1);
-  const std::uint64_t most = pairs * DOLP_MAX_PIECES * 2 * static_cast<std::uint64_t>(data.rule_order);
+  const std::uint64_t most = data.bundles.size() * DOLP_MAX_PIECES * 2 * static_cast<std::uint64_t>(data.rule_order);
   const std::uint32_t fit =
       sizes_on(device, costs, std::min<std::uint64_t>(options.max_tile_invocations, most)).invocations;
   slopes = std::max(fit - fit % kLockstep, kLockstep);
 }
 
-std::size_t SlopeTiles::batch_directions() const {
-  return std::max<std::size_t>(kSampledAtOnce / (data.is_grid ? data.indices.size() : 1), 1);
-}
-
 SlopeBatch SlopeTiles::batch(std::size_t first) const {
-  const std::size_t last = std::min(first + batch_directions(), data.directions);
-  std::vector<SampledEntries> entries = sampled_entries(request, data, first, last);
   SlopeBatch batch;
-  batch.samples.resize(entries.size());
-  parallel_for(entries.size(), 1, [&](std::size_t i) { batch.samples[i] = sampling.plan(std::move(entries[i])); });
+  batch.samples.resize(std::min(kBatchBundles, data.bundles.size() - first));
+  parallel_for(batch.samples.size(), 1, [&](std::size_t i) { batch.samples[i] = sampling.plan(first + i); });
   batch.orders_at_once = orders_at_once(data);
   for (const SlopeSamples& samples : batch.samples) {
     batch.first.push_back(batch.slopes.size());
@@ -183,7 +175,7 @@ std::size_t orders_at_once(const KernelData& data) { return data.orders.highest 
 
 DispatchCount SlopeTiles::count() const {
   DispatchCount count{.tile_invocations = slopes};
-  for (std::size_t first = 0; first < data.directions; first += batch_directions()) {
+  for (std::size_t first = 0; first < data.bundles.size(); first += kBatchBundles) {
     const SlopeBatch slope_batch = batch(first);
     count.dispatches += tiles_in(slope_batch.in_lockstep.size(), slopes);
     count.rows += slope_batch.samples.size();
@@ -212,7 +204,7 @@ void Renumbering::clear() {
 namespace dolp {
 
 vulkan::DispatchCount count_dispatches(const MomentsRequest& request, const dolp::Device& device) {
-  if (request.wanted_count() == 0) return {};
+  if (request.size() == 0) return {};
   const VulkanOptions options;
   if (has_slope_samples(request)) return vulkan::SlopeTiles(request, device, options, Tables::kCounted).count();
   return vulkan::RowTiles(request, device, options, Tables::kCounted).count();

@@ -59,7 +59,7 @@ struct Block {
   std::uint32_t row_count = 0;
 };
 
-/// The slope samples of some directions, and the kernel's input for them. A run computes one batch at a time.
+/// The slope samples of some bundles, and the kernel's input for them. A run computes one batch at a time.
 struct SlopeBatch {
   std::vector<SlopeSamples> samples;
   /// Where the results of one of `slopes` belong in SampledAzimuths: the result of order g of its group at node + g *
@@ -82,7 +82,7 @@ struct DispatchCount {
   std::uint32_t tile_invocations = 0;
   std::uint32_t block_shapes = 0;
   std::uint32_t row_width = 1;     ///< largest number of entries per invocation, see plan/rows.hpp
-  std::uint64_t rows = 0;          ///< kernel rows; for slope samples, pairs of a direction and an index
+  std::uint64_t rows = 0;          ///< kernel rows; for slope samples, bundles
   std::uint64_t slopes = 0;        ///< slopes of all slope samples
   std::uint64_t dispatches = 0;    ///< at least; TilePace divides the work into more if it takes long
   std::uint64_t device_bytes = 0;  ///< upper bound of the memory of all buffers
@@ -106,15 +106,14 @@ struct RowTiles {
 /// Azimuthal orders that one invocation computes.
 std::size_t orders_at_once(const KernelData& data);
 
-/// The dispatches of a request for moments, if the kernel computes slope samples. The request must outlive the object.
+/// The dispatches of a request for moments, if the kernel computes slope samples.
 struct SlopeTiles {
   SlopeTiles(const MomentsRequest& request, const dolp::Device& device, const VulkanOptions& options,
              Tables tables = Tables::kComputed);
-  std::size_t batch_directions() const;
-  SlopeBatch batch(std::size_t first) const;
+  static constexpr std::size_t kBatchBundles = 1024;  ///< each has some hundred slopes
+  SlopeBatch batch(std::size_t first) const;          ///< of bundles from number `first` on
   DispatchCount count() const;
 
-  const MomentsRequest& request;
   Packing packing;
   KernelData data;
   SlopeSampling sampling;

@@ -24,19 +24,6 @@ constexpr std::uint32_t kShrinking = 4;
 constexpr std::uint32_t kSmallestTile = 64;
 constexpr int kMostLosses = 3;  // per request; the first tile has then shrunk from 1,024 to 16 invocations
 
-void check_entries(const MomentsRequest& request) {
-  const std::size_t size = request.size();
-  const bool is_points = request.layout == MomentsRequest::Layout::kList;
-  const bool is_even = request.optics.size() == size && request.sigma.size() == size && request.q.size() == size;
-  if (is_points && !(is_even && request.wanted.empty())) {
-    throw InputError("the lists of a request for points differ in length, or it has a mask");
-  }
-  if (!request.wanted.empty() && request.wanted.size() != size) {
-    throw InputError("the mask of a request for " + std::to_string(size) + " entries has " +
-                     std::to_string(request.wanted.size()));
-  }
-}
-
 }  // namespace
 
 class VulkanEvaluator::Impl {
@@ -157,8 +144,7 @@ VulkanEvaluator::~VulkanEvaluator() = default;
 
 std::vector<Moments> VulkanEvaluator::evaluate(const MomentsRequest& request, const Progress& progress) {
   if (!impl_) throw DeviceError("the Vulkan device was given up after work that did not finish in time");
-  check_entries(request);
-  if (request.wanted_count() == 0) return std::vector<Moments>(request.size());
+  if (request.size() == 0) return {};
   std::uint32_t most = UINT32_MAX;  // invocations of a tile
   for (int losses = 0;;) {
     try {

@@ -75,13 +75,10 @@ class DeviceRule final : public Solver {
     words_.clear();
     for (std::size_t first = 0; first < nodes; first += most_zeniths) {
       const std::size_t zeniths = std::min(most_zeniths, nodes - first);
-      for (std::size_t i = 0; i < data.size(); ++i) {
-        const MomentsEntry entry = data[i];
-        // KernelData may contain a direction several times, because dolp may split its integral in several ways. The
-        // product rule does not split the integral, so it takes the first copy.
-        const auto direction = static_cast<std::uint32_t>(entry.theta % data.directions);
-        words_.push_back(
-            {direction, entry.shape, entry.index, static_cast<std::uint32_t>(first + kZenithUnit * zeniths)});
+      for (const Bundle& bundle : data.bundles) {
+        for (std::uint32_t member = bundle.first; member < bundle.first + bundle.count; ++member)
+          words_.push_back({bundle.direction, data.members[member], bundle.index,
+                            static_cast<std::uint32_t>(first + kZenithUnit * zeniths)});
       }
     }
   }

@@ -62,8 +62,8 @@ MomentsRequest steel_request(Masking masking, const Axes& grid) {
   request.masking = masking;
   request.theta_deg = grid[Axis::kTheta];
   request.optics = {{kIndex, 0.0}};
-  request.sigma = grid[Axis::kSigma];
-  request.q = grid[Axis::kQ];
+  request.shapes = shape_product(grid[Axis::kSigma], grid[Axis::kQ]);
+  request.set_grid();
   return request;
 }
 

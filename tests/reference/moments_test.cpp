@@ -34,10 +34,7 @@ Moments moments(Distribution distribution, Masking masking, double theta_deg, Sl
   request.distribution = distribution;
   request.masking = masking;
   request.tolerance = 0.0;
-  request.theta_deg = {theta_deg};
-  request.sigma = {shape.sigma};
-  request.q = {shape.q};
-  request.optics = {index};
+  request.append({theta_deg, shape, index});
   return ReferenceEvaluator(options).evaluate(request, {}).at(0);
 }
 

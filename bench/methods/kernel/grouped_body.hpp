@@ -72,16 +72,16 @@ class Kernel final : public GroupedKernel {
     const RowPiece& own = work_.pieces[piece];
     const Row& entries = work_.rows.rows[own.row];
     const Chunk& chunk = work_.rows.chunks[entries.chunk];
-    const std::uint32_t theta = work_.rows.theta_position(work_.data, entries);
+    const MomentsEntry first = work_.rows.entry(work_.data, entries);
     typename Own::Row row;
     for (std::uint32_t g = 0; g < kWidth; ++g) {
       const std::size_t shape = chunk.first + std::min(g, chunk.count - 1);
       row.shape[g] = shapes_[shape];
       row.table[g] = table(shape);
     }
-    const std::uint32_t word = task_word(work_.data.pieces[theta], own.piece, chunk.count);
-    const auto task = source_.with_slopes(source_.unpack_task(word), thetas_[theta]);
-    const auto moments = source_.piece_moments(rule_, thetas_[theta], row, indices_[entries.index], task);
+    const std::uint32_t word = task_word(work_.data.pieces[first.theta], own.piece, chunk.count);
+    const auto task = source_.with_slopes(source_.unpack_task(word), thetas_[first.theta]);
+    const auto moments = source_.piece_moments(rule_, thetas_[first.theta], row, indices_[first.index], task);
     for (std::size_t g = 0; g < kWidth; ++g) {
       members[g] = convert_reals<double, kernel::MomentsNode, real>(moments.member[g]);
     }

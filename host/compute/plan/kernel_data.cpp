@@ -356,7 +356,8 @@ double worst_iterations(const KernelData& data) {
   double worst = 0.0;
   for (std::size_t i = 0; i < data.bundles.size(); ++i) {
     const double critical = data.indices[data.bundles[i].index].critical_cos;
-    for (const std::uint32_t direction : data.bundle_thetas[i]) {
+    for (const std::uint32_t shape : data.bundle_shapes(i)) {
+      const std::uint32_t direction = data.entry(i, shape).theta;
       const Pieces& pieces = data.pieces[direction];
       const kernel::ThetaNode& theta = data.thetas[direction];
       for (std::uint32_t piece = 0; piece < pieces.count; ++piece) {

@@ -20,12 +20,15 @@ RowMajor weighted_sums(const Weights& weights, const Rows& rows) {
   return sums;
 }
 
-/// The sum of each row of `values`, with its own row of `weights`.
+/// The sum of each row of `values`. `weights` has a row for each of them, or one row for all.
 template <class Weights, class Values>
 Eigen::ArrayXd weighted_row_sums(const Weights& weights, const Values& values) {
-  Eigen::ArrayXd sums = Eigen::ArrayXd::Zero(weights.rows());
-  for (Eigen::Index j = 0; j < weights.cols(); ++j)
-    sums += (weights.col(j) == 0.0).select(0.0, weights.col(j) * values.col(j));
+  Eigen::ArrayXd sums = Eigen::ArrayXd::Zero(values.rows());
+  const bool is_shared = weights.rows() == 1;
+  for (Eigen::Index j = 0; j < weights.cols(); ++j) {
+    if (!is_shared) sums += (weights.col(j) == 0.0).select(0.0, weights.col(j) * values.col(j));
+    if (is_shared && weights(0, j) != 0.0) sums += weights(0, j) * values.col(j);
+  }
   return sums;
 }
 

@@ -26,7 +26,7 @@ MomentsPoint MomentsRequest::operator[](std::size_t entry) const {
           optics[bundle.index]};
 }
 
-double MomentsRequest::finer_tolerance(double share) const {
+double MomentsSettings::finer_tolerance(double share) const {
   const double finer = share * tolerance;
   return precision == Precision::kDouble ? finer : std::max(finer, std::min(kLeastFloatTolerance, tolerance));
 }
@@ -64,12 +64,8 @@ void MomentsRequest::append(const MomentsPoint& point) {
 }
 
 MomentsRequest MomentsRequest::without_entries() const {
-  MomentsRequest empty = *this;
-  empty.theta_deg.clear();
-  empty.optics.clear();
-  empty.shapes.clear();
-  empty.members.clear();
-  empty.bundles.clear();
+  MomentsRequest empty;
+  static_cast<MomentsSettings&>(empty) = *this;
   return empty;
 }
 

@@ -43,11 +43,11 @@ struct Response {
 
 /// Entries with the same direction and index. They are consecutive in a request.
 struct Bundle {
-  std::uint32_t direction = 0;    ///< position in MomentsRequest::theta_deg
-  std::uint32_t index = 0;        ///< position in MomentsRequest::optics
-  std::uint32_t first = 0;        ///< position in MomentsRequest::members
-  std::uint32_t count = 0;        ///< number of entries
-  std::size_t first_entry = 0;    ///< number of the first entry in the request
+  std::uint32_t direction = 0;  ///< position in MomentsRequest::theta_deg
+  std::uint32_t index = 0;      ///< position in MomentsRequest::optics
+  std::uint32_t first = 0;      ///< position in MomentsRequest::members
+  std::uint32_t count = 0;      ///< number of entries
+  std::size_t first_entry = 0;  ///< number of the first entry in the request
   friend bool operator==(const Bundle&, const Bundle&) = default;
   /// True if both bundles have the same direction and slope distributions.
   bool has_geometry(const Bundle& other) const {
@@ -55,9 +55,8 @@ struct Bundle {
   }
 };
 
-/// The entries are given by lists of values, and by bundles that point into these lists. A grid has a bundle for each
-/// pair of a direction and an index, and all bundles share one range of members.
-struct MomentsRequest {
+/// What a request asks for each of its entries.
+struct MomentsSettings {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;
   Scattering scattering = Scattering::kSingle;  ///< kMultiple only with v-cavity
@@ -65,14 +64,23 @@ struct MomentsRequest {
   double tolerance = 1e-4;                      ///< allowed error of a moment, as a share of r_i
   double scene_tolerance = 0.0;                 ///< limits the cost of tables if `tolerance` is far smaller
   Precision precision = Precision::kAuto;       ///< kAuto means float
-  bool may_interpolate = true;              ///< allows interpolation between slope distributions, within `tolerance`
+  bool may_interpolate = true;  ///< allows interpolation between slope distributions, within `tolerance`
   /// The entries are scattered points. Then it depends on all of them whether responses save work, and whether the
   /// responses are interpolated between directions.
   bool is_scattered = false;
-  bool has_extra_splits = false;            ///< integrates with more panels than usual, to check another computation
+  bool has_extra_splits = false;               ///< integrates with more panels than usual, to check another computation
   std::shared_ptr<const ResponseBasis> basis;  ///< if set, moments are sums of the responses of this basis
   std::shared_ptr<const SkyBasis> sky;  ///< if set, Moments::columns has one element for each function of this sky
   std::optional<Response> response;     ///< if set, Moments::columns has one element for each response
+
+  /// `share` times the tolerance. In float it is at least kLeastFloatTolerance, but never more than `tolerance`.
+  double finer_tolerance(double share) const;
+  friend bool operator==(const MomentsSettings&, const MomentsSettings&) = default;
+};
+
+/// The entries are given by lists of values, and by bundles that point into these lists. A grid has a bundle for each
+/// pair of a direction and an index, and all bundles share one range of members.
+struct MomentsRequest : MomentsSettings {
   std::vector<double> theta_deg;
   std::vector<FacetOptics> optics;
   std::vector<SlopeShape> shapes;  ///< elliptic ones not with masking integral
@@ -86,8 +94,6 @@ struct MomentsRequest {
   std::span<const std::uint32_t> bundle_shapes(const Bundle& bundle) const {
     return std::span(members).subspan(bundle.first, bundle.count);
   }
-  /// `share` times the tolerance. In float it is at least kLeastFloatTolerance, but never more than `tolerance`.
-  double finer_tolerance(double share) const;
   bool has_elliptic_shapes() const;
   /// Elliptic slopes with smith masking: only the direct emission is computed. The other moments have the values of a
   /// surface that reflects nothing.
@@ -99,8 +105,7 @@ struct MomentsRequest {
   void set_shapes(std::vector<SlopeShape> new_shapes);
   void add_bundle(std::uint32_t direction, std::uint32_t index, std::uint32_t first, std::uint32_t count);
   void append(const MomentsPoint& point);  ///< adds an entry
-  /// This request without its entries and its lists of values.
-  MomentsRequest without_entries() const;
+  MomentsRequest without_entries() const;  ///< only the settings
   /// This request for only some bundles, given by their positions, or for only some entries, given by ascending
   /// numbers.
   MomentsRequest select_bundles(std::span<const std::size_t> positions) const;

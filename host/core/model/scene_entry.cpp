@@ -144,7 +144,7 @@ SceneEntry SceneEntries::grid_entry(const PerAxis& at) const {
   SceneEntry result;
   result.theta_deg = theta_deg()[at[Axis::kTheta]];
   result.shape = slopes_.shape(sigma()[at[Axis::kSigma]], q()[at[Axis::kQ]]);
-  if (has_own_index()) result.index = index_at(at);
+  if (!axes_[Axis::kN].empty() || !axes_[Axis::kK].empty()) result.index = index_at(at);
   const auto take = [&](Axis axis, auto& member) {
     if (!axes_[axis].empty()) member = axes_[axis][at[axis]];
   };
@@ -164,7 +164,21 @@ SceneEntries SceneEntries::part(const PerAxis& first, const PerAxis& count) cons
   return part;
 }
 
+bool SceneEntries::has_own_index() const {
+  if (is_grid_) return !axes_[Axis::kN].empty() || !axes_[Axis::kK].empty();
+  return std::ranges::any_of(points_, [](const SceneEntry& point) { return point.index.has_value(); });
+}
+
+void SceneEntries::for_each_run(const SceneEntries& whole, const std::function<void(const GridRun&)>& use) const {
+  if (is_grid_) dolp::for_each_run(first_in(whole), counts_, whole.counts_, use);
+  if (!is_grid_) use({0, first_point_ - whole.first_point_, size()});
+}
+
 std::optional<std::size_t> SceneEntries::find_position(std::size_t in_whole) const {
+  if (!is_grid_) {
+    const bool is_here = in_whole >= first_point_ && in_whole - first_point_ < size();
+    return is_here ? std::optional(in_whole - first_point_) : std::nullopt;
+  }
   const PerAxis on_axes = positions_on_axes(in_whole, whole_);
   std::size_t position = 0;
   for (std::size_t i = 0; i < on_axes.size(); ++i) {
@@ -259,6 +273,8 @@ std::vector<SceneEntries> SceneEntries::parts(std::size_t most) const {
     std::vector<std::size_t> positions(std::min(most, size() - first));
     std::iota(positions.begin(), positions.end(), first);
     parts.push_back(chosen(positions));
+    parts.back().first_point_ = first_point_ + first;
+    parts.back().whole_points_ = whole_size();
   }
   if (!is_grid_) return parts;
   const std::function<void(PerAxis, PerAxis, std::size_t)> cut_along = [&](PerAxis first, PerAxis count,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <compare>
 #include <cstddef>
@@ -67,7 +68,7 @@ void set_value(SceneVariant& variant, Axis axis, double value);
 
 std::vector<SceneVariant> grid_variants(const Axes& axes);
 
-/// `count` entries that are consecutive in a part of a grid (from `in_part`) and in the whole grid (from `in_whole`).
+/// `count` entries that are consecutive in a part (from `in_part`) and in the whole grid or list (from `in_whole`).
 struct GridRun {
   std::size_t in_part = 0;
   std::size_t in_whole = 0;
@@ -101,6 +102,13 @@ class SceneEntries {
   /// variant for each combination of values on kVariantAxes.
   const std::vector<SceneVariant>& variants() const { return variants_; }
 
+  /// A direction of a grid is a combination of theta, view zenith and relative azimuth. A direction's entries are
+  /// consecutive, and so are the directions of one variant and index. In a list each entry has its own direction.
+  std::size_t entries_per_direction() const {
+    return is_grid_ ? sigma().size() * q().size() * counts_[Axis::kSigmaCross] * counts_[Axis::kSurfaceAzimuth] : 1;
+  }
+  bool has_own_index() const;  ///< true if some entries have their own n or k
+
   // The functions from here to index_at() need a grid.
   SceneEntry grid_entry(const PerAxis& on_axes) const;
   const Axes& axes() const { return axes_; }
@@ -109,11 +117,6 @@ class SceneEntries {
   const std::vector<double>& sigma() const { return axes_[Axis::kSigma]; }
   const std::vector<double>& q() const { return axes_[Axis::kQ]; }
   PerAxis axis_positions(std::size_t entry) const { return positions_on_axes(entry, counts_); }
-  /// A direction of a grid is a combination of theta, view zenith and relative azimuth. A direction's entries are
-  /// consecutive, and so are the directions of one variant and index.
-  std::size_t entries_per_direction() const {
-    return sigma().size() * q().size() * counts_[Axis::kSigmaCross] * counts_[Axis::kSurfaceAzimuth];
-  }
   std::size_t directions() const {
     return counts_[Axis::kViewZenith] * counts_[Axis::kRelativeAzimuth] * counts_[Axis::kTheta];
   }
@@ -121,7 +124,6 @@ class SceneEntries {
   const CrossSlopes& slopes() const { return slopes_; }
   /// The subscript in variants() for the entry with the axis positions `on_axes`.
   std::size_t variant_at(const PerAxis& on_axes) const;
-  bool has_own_index() const { return !axes_[Axis::kN].empty() || !axes_[Axis::kK].empty(); }
   /// The refractive index at the positions `on_axes`. Domain: the grid has an axis of n or k.
   OpticalConstants index_at(const PerAxis& on_axes) const;
 
@@ -141,8 +143,14 @@ class SceneEntries {
   PerAxis first_in(const SceneEntries& whole) const;  ///< like first(), but relative to `whole`, a larger part
   const PerAxis& whole() const { return whole_; }     ///< number of values on each axis of the whole grid
   const Axes& whole_axes() const { return *whole_axes_; }
-  /// Converts an entry's position in the whole grid to its position in this part; nullopt if the part lacks the entry.
+  SceneEntries whole_grid() const { return grid(*whole_axes_, index_, slopes_); }
+  /// The number of entries in the whole grid or list.
+  std::size_t whole_size() const { return is_grid_ ? grid_size(whole_) : std::max(whole_points_, points_.size()); }
+  /// Converts an entry's position in the whole grid or list to its position in this part; nullopt if the part lacks the
+  /// entry.
   std::optional<std::size_t> find_position(std::size_t in_whole) const;
+  /// Calls `use` for the consecutive entries that this part shares with `whole`, a larger part.
+  void for_each_run(const SceneEntries& whole, const std::function<void(const GridRun&)>& use) const;
 
  private:
   bool is_grid_ = false;
@@ -155,6 +163,7 @@ class SceneEntries {
   std::shared_ptr<const Axes> whole_axes_;
   std::vector<SceneVariant> variants_ = {{}};
   std::vector<SceneEntry> points_;
+  std::size_t first_point_ = 0, whole_points_ = 0;  ///< of a part of a list: position in the list, size of the list
 };
 
 /// Reads entries one by one. In a grid, reading the next entry is faster than SceneEntries::operator[].

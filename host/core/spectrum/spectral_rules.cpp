@@ -12,11 +12,6 @@ namespace {
 
 constexpr std::size_t kMostKeptSamples = std::size_t{1} << 16U;  // with a sky, a sample takes 1.5 KiB
 
-bool has_own_index(const SceneEntries& entries) {
-  if (entries.is_grid()) return entries.has_own_index();
-  return std::ranges::any_of(entries.all(), [](const SceneEntry& entry) { return entry.index.has_value(); });
-}
-
 /// True if the rules of two variants may have different numbers of samples.
 bool differ(const SceneVariant& a, const SceneVariant& b) {
   return a.material != b.material || a.band != b.band || a.films != b.films;
@@ -25,7 +20,7 @@ bool differ(const SceneVariant& a, const SceneVariant& b) {
 }  // namespace
 
 SpectralRules::SpectralRules(const SceneModel& scene, const SceneEntries& entries)
-    : scene_(scene), is_thin_(!has_own_index(entries)) {
+    : scene_(scene), is_thin_(!entries.has_own_index()) {
   const std::vector<SceneVariant>& variants = entries.variants();
   std::vector<std::shared_ptr<const SpectralRule>> rules(variants.size());
   rules.front() = computed(variants.front());

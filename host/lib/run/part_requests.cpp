@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <boost/functional/hash.hpp>
-#include <functional>
 #include <limits>
 #include <map>
 #include <set>
@@ -52,8 +51,10 @@ std::vector<std::uint32_t> compact_used_values(const std::vector<double>& values
 template <class Key>
 class Numbering {
  public:
+  explicit Numbering(std::size_t most) : known_(most) {}
   /// The number of a key. Calls add() if the key is new.
-  std::uint32_t number(const Key& key, const std::function<void()>& add) {
+  template <class Add>
+  std::uint32_t number(const Key& key, const Add& add) {
     const auto [known, is_new] = known_.try_emplace(key, static_cast<std::uint32_t>(known_.size()));
     if (is_new) add();
     return known->second;
@@ -62,6 +63,10 @@ class Numbering {
  private:
   std::unordered_map<Key, std::uint32_t, boost::hash<Key>> known_;
 };
+
+std::array<double, 4> numbers_in(const SlopeShape& shape) {
+  return {shape.sigma, shape.q, shape.sigma_cross, shape.azimuth_deg};
+}
 
 /// For each variant, the first variant with the same samples, among neighbours. Variants may differ in other values.
 std::vector<std::uint32_t> first_equal_variants(const SpectralIndices& samples) {
@@ -97,7 +102,7 @@ std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const Scene
 std::vector<FacetOptics> indices_of_grid(const SceneModel& scene, const EffectPlan& plan, const SceneEntries& entries) {
   const PerAxis& counts = entries.whole();
   if (counts[moment_axis(scene)] * counts[Axis::kSigma] * counts[Axis::kQ] < kLeastEntries) return {};
-  const SceneEntries whole = SceneEntries::grid(entries.whole_axes(), entries.index(), entries.slopes());
+  const SceneEntries whole = entries.whole_grid();
   std::vector<FacetOptics> indices;
   if (whole.has_own_index()) {
     PerAxis on_axes{};
@@ -223,7 +228,8 @@ void PartRequests::request_grid(const SceneEntries& grid) {
     theta_deg = zenith_before_limit_deg(scene_.surface.masking, theta_deg);
   }
   CrossSlopes slopes = grid.slopes();
-  const auto cross = grid.has_values(Axis::kSigmaCross) ? grid.axes()[Axis::kSigmaCross] : std::vector{slopes.sigma_cross};
+  const auto cross =
+      grid.has_values(Axis::kSigmaCross) ? grid.axes()[Axis::kSigmaCross] : std::vector{slopes.sigma_cross};
   const auto azimuth =
       grid.has_values(Axis::kSurfaceAzimuth) ? grid.axes()[Axis::kSurfaceAzimuth] : std::vector{slopes.azimuth_deg};
   moments_.shapes = shape_product(used_sigma, used_q);
@@ -287,11 +293,12 @@ void PartRequests::request_entries(const Selection& selection) {
     std::size_t member;
   };
   moments_.is_scattered = !selection.part.is_grid();
-  Numbering<double> directions;
-  Numbering<std::array<double, 4>> shapes;
-  Numbering<std::array<double, 3>> index_sets;
+  Numbering<double> directions(selection.size());
+  Numbering<std::array<double, 4>> shapes(selection.size());
+  Numbering<std::array<double, 3>> index_sets(selection.size());
   std::vector<IndexSet> sets;
   std::vector<Place> places;
+  places.reserve(selection.size());
   const std::vector<std::uint32_t> equal_variants = first_equal_variants(samples_);
   EntryReader reader(selection.part);
   for (std::size_t i = 0; i < selection.size(); ++i) {
@@ -302,18 +309,16 @@ void PartRequests::request_entries(const Selection& selection) {
     const bool has_own_index = entry.index && !has_films();
     const double variant = has_own_index ? -1.0 : equal_variants[entry.variant];
     const OpticalConstants key = entry.index.value_or(OpticalConstants{0.0, -1.0});  // no real index has k = -1
-    places.push_back(
-        {directions.number(zenith_deg, [&] { moments_.theta_deg.push_back(zenith_deg); }),
-         index_sets.number({key.n, key.k, variant},
-                           [&] {
-                             const std::vector<FacetOptics> own = with_index(samples_[entry.variant], entry.index);
-                             sets.push_back({static_cast<std::uint32_t>(moments_.optics.size()),
-                                             static_cast<std::uint32_t>(own.size()), has_own_index});
-                             moments_.optics.insert(moments_.optics.end(), own.begin(), own.end());
-                           }),
-         shapes.number({shape.sigma, shape.q, shape.sigma_cross, shape.azimuth_deg},
-                       [&] { moments_.shapes.push_back(shape); }),
-         i});
+    places.push_back({directions.number(zenith_deg, [&] { moments_.theta_deg.push_back(zenith_deg); }),
+                      index_sets.number({key.n, key.k, variant},
+                                        [&] {
+                                          const std::vector<FacetOptics> own =
+                                              with_index(samples_[entry.variant], entry.index);
+                                          sets.push_back({static_cast<std::uint32_t>(moments_.optics.size()),
+                                                          static_cast<std::uint32_t>(own.size()), has_own_index});
+                                          moments_.optics.insert(moments_.optics.end(), own.begin(), own.end());
+                                        }),
+                      shapes.number(numbers_in(shape), [&] { moments_.shapes.push_back(shape); }), i});
   }
   const auto position = [](const Place& place) { return std::tuple(place.direction, place.set, place.shape); };
   std::ranges::sort(places, {}, position);
@@ -342,14 +347,8 @@ void PartRequests::request_entries(const Selection& selection) {
 }
 
 void PartRequests::request_beams(const Selection& selection) {
-  // All entries of a grid: each direction and each slope distribution is listed once.
-  const bool is_grid = selection.is_whole_grid();
-  const std::size_t shapes = is_grid ? selection.part.entries_per_direction() : 1;
-  if (is_grid) {
-    for (std::size_t i = 0; i < selection.part.directions(); ++i)
-      beams_.angles.push_back(requested_angles(scene_, selection.part[i * shapes]));
-    for (std::size_t i = 0; i < shapes; ++i) beams_.shapes.push_back(selection.part[i].shape);
-  }
+  Numbering<std::array<double, 3>> directions(selection.size());
+  Numbering<std::array<double, 4>> shapes(selection.size());
   std::vector<std::uint32_t> first_index;
   for (const std::vector<FacetOptics>& wavelength_optics : samples_) {
     first_index.push_back(static_cast<std::uint32_t>(beams_.optics.size()));
@@ -360,15 +359,11 @@ void PartRequests::request_beams(const Selection& selection) {
     const SceneEntry entry = selection[i];
     first_beam_.push_back(beams_.entries.size());
     if (!wants_beam(scene_, entry, plan_)) continue;
+    const BeamAngles angles = requested_angles(scene_, entry);
     ScatteringEntry wanted;
-    if (is_grid) {
-      wanted.angles = static_cast<std::uint32_t>(i / shapes % selection.part.directions());
-      wanted.shape = static_cast<std::uint32_t>(i % shapes);
-    } else {
-      wanted.angles = wanted.shape = static_cast<std::uint32_t>(beams_.angles.size());
-      beams_.angles.push_back(requested_angles(scene_, entry));
-      beams_.shapes.push_back(entry.shape);
-    }
+    wanted.angles = directions.number({angles.theta_i_deg, angles.theta_r_deg, angles.delta_phi_deg},
+                                      [&] { beams_.angles.push_back(angles); });
+    wanted.shape = shapes.number(numbers_in(entry.shape), [&] { beams_.shapes.push_back(entry.shape); });
     for (std::uint32_t j = 0; j < samples_[entry.variant].size(); ++j) {
       wanted.index = first_index[entry.variant] + j;
       if (entry.index) {

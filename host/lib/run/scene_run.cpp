@@ -308,7 +308,7 @@ FirstResults first_results(const RunContext& context, const SceneEntries& part, 
 /// Computes again the entries that miss the tolerance. They are counted already, so `progress` can only cancel here.
 void refine(const RunContext& context, const SceneEntries& part, FirstResults& first, const Progress& progress) {
   const Progress is_wanted = [&](std::size_t, std::size_t) { return progress(1, 1); };
-  const std::size_t entries_per_direction = part.is_grid() ? part.entries_per_direction() : 1;
+  const std::size_t entries_per_direction = part.entries_per_direction();
   RunResults& results = first.results;
   EntriesByLevel by_level;
   // The entries of one direction are neighbours in `members`.
@@ -360,15 +360,13 @@ RunResults recompute_for_check(const RunContext& context, const SceneEntries& pa
 }
 
 /// `checked`: positions in the whole table or list. Returns the positions in `part` of the checked entries that have
-/// moments. `before`: number of entries in the parts before it.
+/// moments.
 std::vector<std::size_t> positions_in(const RunContext& context, const SceneEntries& part,
-                                      std::span<const std::size_t> checked, std::size_t before) {
+                                      std::span<const std::size_t> checked) {
   std::vector<std::size_t> positions;
   for (const std::size_t in_whole : checked) {
-    const std::optional<std::size_t> position =
-        part.is_grid() ? part.find_position(in_whole) : std::optional(in_whole - before);  // wraps if it is below
-    if (!position || *position >= part.size()) continue;
-    if (wants_moments(context.scene, part[*position], context.plan)) positions.push_back(*position);
+    const std::optional<std::size_t> position = part.find_position(in_whole);
+    if (position && wants_moments(context.scene, part[*position], context.plan)) positions.push_back(*position);
   }
   return positions;
 }
@@ -411,13 +409,9 @@ Sink CollectedResults::sink() {
       results_ = std::move(results);
       return;
     }
-    if (collected_ == 0) results_ = RunResults(results.quantities(), results.derivatives, entries_.size());
-    if (!part.is_grid()) results_.copy(results, 0, collected_, part.size());
-    if (part.is_grid()) {
-      for_each_run(part.first_in(entries_), part.counts(), entries_.counts(),
-                   [&](const GridRun& run) { results_.copy(results, run.in_part, run.in_whole, run.count); });
-    }
-    collected_ += part.size();
+    if (results_.size() == 0) results_ = RunResults(results.quantities(), results.derivatives, entries_.size());
+    part.for_each_run(entries_,
+                      [&](const GridRun& run) { results_.copy(results, run.in_part, run.in_whole, run.count); });
   };
 }
 
@@ -437,8 +431,7 @@ Run::Run(const SceneValues& scene, SceneEntries entries, const RunOptions& optio
       derivative_keys_(options.derivatives),
       derivatives_(scene_derivatives(scene, entries_, derivative_keys_)),
       progress_(options.progress) {
-  const SceneEntries whole =
-      entries_.is_grid() ? SceneEntries::grid(entries_.whole_axes(), entries_.index(), entries_.slopes()) : entries_;
+  const SceneEntries whole = entries_.is_grid() ? entries_.whole_grid() : entries_;
   outcome_.plan = plan_effects(scene, whole, options.keep_all);
   outcome_.effects = list_effects(scene, whole, outcome_.plan);
   outcome_.spectral_rule_s = wall_s();
@@ -492,7 +485,7 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
   const EffectPlan plan = with_spectra(given, scene, entries);
   const Quantities quantities = output_quantities(scene, &plan);
   const std::size_t samples = plan.rules->most_samples(entries);
-  const std::size_t whole = entries.is_grid() ? grid_size(entries.whole()) : entries.size();
+  const std::size_t whole = entries.whole_size();
   const bool has_moments = entries.is_grid() && plan.kept.moments;
   RunSummary summary = output.finished.summary;
   const auto start = std::chrono::steady_clock::now();
@@ -526,7 +519,7 @@ RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, cons
       const Spectra spectra(scene, plan, part.variants(), evaluator);
       summary.radiometry_s += seconds_since(spectra_start);
       const RunContext context{scene, plan, spectra, evaluator, basis, quantities, summary, grooves};
-      const std::vector<std::size_t> positions = positions_in(context, part, checked, before);
+      const std::vector<std::size_t> positions = positions_in(context, part, checked);
       RunResults results = part_results(context, part, positions, summary.check, part_progress);
       summary.add(scene, part, results);
       output.sink(part, std::move(results), with_evaluation());

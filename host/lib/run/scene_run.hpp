@@ -54,7 +54,6 @@ class CollectedResults {
  private:
   const SceneEntries& entries_;
   RunResults results_;
-  std::size_t collected_ = 0;
 };
 
 /// A function that makes the evaluator. A run calls it only if something must be computed.

@@ -212,10 +212,7 @@ TEST(Mueller, HemisphericalSum_GivesTheMoments) {
   MomentsRequest request;
   request.precision = Precision::kDouble;
   request.masking = Masking::kNone;
-  request.theta_deg = {50.0};
-  request.sigma = {surface.shape.sigma};
-  request.q = {surface.shape.q};
-  request.optics = {surface.index};
+  request.append({50.0, surface.shape, surface.index});
   const Moments moments = CpuEvaluator().evaluate(request, {}).front();
   double r_i = 0.0;
   double r_q = 0.0;

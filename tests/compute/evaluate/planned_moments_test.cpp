@@ -51,8 +51,8 @@ MomentsRequest dense_request() {
   request.precision = Precision::kDouble;
   request.theta_deg = {10.0, 40.0};
   request.optics = {{1.5, 0.1}};
-  request.sigma = spaced(0.05, 1.0, 48);
-  request.q = spaced(1.75, 8.0, 40);
+  request.shapes = shape_product(spaced(0.05, 1.0, 48), spaced(1.75, 8.0, 40));
+  request.set_grid();
   return request;
 }
 

@@ -44,13 +44,14 @@ MomentsRequest small_request(Distribution distribution, Masking masking) {
   request.distribution = distribution;
   request.masking = masking;
   request.theta_deg = {0.0, 17.0, 45.0, 60.0, 75.5, 89.0, 90.0};
-  request.sigma = {0.05, 0.2, 0.445, 0.7, 1.1};
-  request.q = {2.0, 1.6};
+  std::vector<double> sigma = {0.05, 0.2, 0.445, 0.7, 1.1};
   request.optics = {{1.508, 0.0}, {2.5, 3.0}};
   std::printf("seed %u\n", kSeed);
   std::mt19937 random(kSeed);
   std::ranges::shuffle(request.theta_deg, random);
-  std::ranges::shuffle(request.sigma, random);
+  std::ranges::shuffle(sigma, random);
+  request.shapes = shape_product(sigma, std::array{2.0, 1.6});
+  request.set_grid();
   return request;
 }
 
@@ -93,20 +94,9 @@ TEST(VulkanDeathTest, ThreadsRefused_IsAMemoryErrorAndNoWait) {
   });
 }
 
-TEST(VulkanEvaluator, ListsThatDoNotFitTheLayout_ThrowInputError) {
-  VulkanEvaluator evaluator(validated());
-  MomentsRequest request = small_request(Distribution::kCauchy, Masking::kNone);
-  request.wanted.assign(request.size() - 1, 1);
-  EXPECT_THROW(evaluator.evaluate(request, {}), InputError);
-  MomentsRequest points;
-  points.append({10.0, {0.3, 2.0}, {1.5, 0.0}});
-  points.sigma.push_back(0.4);
-  EXPECT_THROW(evaluator.evaluate(points, {}), InputError);
-}
-
 TEST(RowTiles, OnlyProcessors_ComputeSeveralEntriesAtOnce) {
   MomentsRequest request = small_request(Distribution::kCauchy, Masking::kSmith);
-  request.q = {2.0, 2.1, 2.2, 2.3};
+  request.set_shapes(shape_product(std::array{0.05, 0.2, 0.445, 0.7, 1.1}, std::array{2.0, 2.1, 2.2, 2.3}));
   dolp::Device device = vulkan::Context({}).description();
   for (const bool is_processor : {false, true}) {
     device.type = is_processor ? dolp::Device::Type::kCpu : dolp::Device::Type::kDiscrete;
@@ -118,25 +108,22 @@ TEST(RowTiles, OnlyProcessors_ComputeSeveralEntriesAtOnce) {
   }
 }
 
-TEST(VulkanEvaluator, PointsAndMasks_SayTheSameAsTheGrid) {
+TEST(VulkanEvaluator, PointsAndSelections_SayTheSameAsTheGrid) {
   VulkanEvaluator evaluator(validated(Precision::kDouble));
   const MomentsRequest request = small_request(Distribution::kCauchy, Masking::kIntegral);
   const std::vector<Moments> expected = evaluator.evaluate(request, {});
-  MomentsRequest masked = request;
   MomentsRequest points;
   points.masking = request.masking;
   std::vector<std::size_t> positions;
-  masked.wanted.assign(request.size(), 0);
   for (std::size_t i = 0; i < request.size(); i += 3) {
-    masked.wanted[i] = 1;
     points.append(request[i]);
     positions.push_back(i);
   }
-  const std::vector<Moments> of_mask = evaluator.evaluate(masked, {});
+  const std::vector<Moments> selected = evaluator.evaluate(request.select_entries(positions), {});
   const std::vector<Moments> of_points = evaluator.evaluate(points, {});
-  ASSERT_EQ(of_mask.size(), request.size());
+  ASSERT_EQ(selected.size(), positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    EXPECT_TRUE(are_same(of_mask[positions[i]], expected[positions[i]])) << i;
+    EXPECT_TRUE(are_same(selected[i], expected[positions[i]])) << i;
     EXPECT_TRUE(are_same(of_points[i], expected[positions[i]])) << i;
   }
 }
@@ -220,6 +207,7 @@ TEST(VulkanEvaluator, WantedTimeOfATile_ChangesTheDispatchesAndNoBit) {
   for (const Masking masking : {Masking::kVCavity, Masking::kIntegral}) {
     MomentsRequest request = small_request(Distribution::kCauchy, masking);
     for (double theta_deg = 1.5; theta_deg < 89.0; theta_deg += 4.0) request.theta_deg.push_back(theta_deg);
+    request.set_grid();
     VulkanOptions options = validated();
     options.first_tile_invocations = 64;
     options.tile_s = kLongTime;
@@ -237,6 +225,7 @@ TEST(VulkanEvaluator, SmallRequestAfterALargeOne_HasTheBitsOfAFreshEvaluator) {
   MomentsRequest small = large;
   small.theta_deg = {33.0};
   small.optics = {{1.2, 0.1}};
+  small.set_grid();
   MomentsRequest slopes = small;
   slopes.masking = Masking::kVCavity;
   VulkanEvaluator evaluator(validated());
@@ -325,7 +314,9 @@ class SentinelRun {
     buffers_.emplace_back(session.device, request.size() * sizeof(Words), MemoryUse::kUpload);
     std::vector<Words> words;
     for (std::size_t i = 0; i < request.size(); ++i) {
-      const MomentsEntry entry = data_[i];
+      const std::size_t bundle = request.find_bundle(i);
+      const MomentsEntry entry =
+          data_.entry(bundle, data_.bundle_shapes(bundle)[i - request.bundles[bundle].first_entry]);
       words.push_back({entry.theta, entry.shape, entry.index, task_word(data_.pieces[entry.theta], 0, 1)});
     }
     buffers_.back().write(std::as_bytes(std::span(words)));
@@ -394,7 +385,7 @@ TEST(Kernels, LastWorkgroup_WritesNothingBeyondItsCount) {
     const std::vector<float> moments = run.numbers(DOLP_BINDING_MOMENTS, kNode * room);
     EXPECT_EQ(std::count_if(moments.begin(), moments.begin() + kNode * kCount, kIsSentinel), 0);
     EXPECT_TRUE(std::all_of(moments.begin() + kNode * kCount, moments.end(), kIsSentinel));
-    const std::size_t shapes = request.sigma.size() * request.q.size();
+    const std::size_t shapes = request.shapes.size();
     const std::vector<float> tables = run.numbers(DOLP_BINDING_MASKING_TABLE, kTable * (shapes + 1));
     const auto end = tables.begin() + static_cast<std::ptrdiff_t>(kTable * shapes);
     EXPECT_EQ(std::count_if(tables.begin(), end, kIsSentinel), 0);

@@ -23,8 +23,8 @@ MomentsRequest request_for(Distribution distribution, Scattering scattering) {
   request.precision = Precision::kDouble;
   request.theta_deg = {0.0, 30.0, 60.0, 75.0, 85.0};
   request.optics = {{1.5, 0.1}, {3.4, 0.01}, {10.0, 60.0}, {0.6, 0.3}};
-  request.sigma = {0.1, 0.3, 0.8};
-  request.q = {1.8, 3.0, 6.0};
+  request.shapes = shape_product(std::array{0.1, 0.3, 0.8}, std::array{1.8, 3.0, 6.0});
+  request.set_grid();
   return request;
 }
 

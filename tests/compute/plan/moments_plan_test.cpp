@@ -65,15 +65,18 @@ MomentsRequest random_grid(Random& random, const Model& model, Scattering scatte
   }
   const bool is_dense = sharing == Sharing::kShapes;
   const double sigma = random.log_uniform(1e-3, 2.0);
-  request.sigma = in_ratios(sigma, std::min(10.0, sigma * random.log_uniform(1.2, 60.0)), is_dense ? 64 : 3);
+  const std::vector<double> sigmas =
+      in_ratios(sigma, std::min(10.0, sigma * random.log_uniform(1.2, 60.0)), is_dense ? 64 : 3);
   const double origin = model.masking == Masking::kSmith ? 1.5 : 1.0;
   const double q = random.log_uniform(0.02, 8.0);
-  request.q = in_ratios(q, q * random.log_uniform(1.2, 30.0),
-                        is_dense                    ? 48
-                        : sharing == Sharing::kRows ? 12
-                                                    : 4,
-                        origin);
-  if (model.distribution == Distribution::kGaussian) request.q = {2.0};
+  std::vector<double> qs = in_ratios(q, q * random.log_uniform(1.2, 30.0),
+                                     is_dense                    ? 48
+                                     : sharing == Sharing::kRows ? 12
+                                                                 : 4,
+                                     origin);
+  if (model.distribution == Distribution::kGaussian) qs = {2.0};
+  request.shapes = shape_product(sigmas, qs);
+  request.set_grid();
   return request;
 }
 
@@ -81,6 +84,7 @@ MomentsRequest random_grid(Random& random, const Model& model, Scattering scatte
 MomentsRequest random_points(Random& random, const Model& model) {
   constexpr std::size_t kPoints = 9'000;
   MomentsRequest request = request_of(model, {}, random.log_uniform(3e-4, 1e-2));
+  request.is_scattered = true;
   const bool has_direct = model.masking == Masking::kVCavity || model.masking == Masking::kSmith;
   request.wants_direct = has_direct && random.chance(0.5);
   const double sigma = random.log_uniform(1e-3, 2.0), sigma_ratio = random.log_uniform(1.2, 6.0);
@@ -176,10 +180,10 @@ TEST(SecondPass, SomeShapesOfAGrid_HeaviestTailIsNotLost) {
     request.masking = masking;
     request.theta_deg = {60.0};
     request.optics = {{1.5, 0.0}};
-    request.sigma = {0.5, 0.55, 0.6};
-    request.q = {1.2, 8.0};
-    request.wanted = {0, 1, 1, 0, 0, 1};
-    constexpr std::size_t kHeavy = 2;
+    request.shapes = shape_product(std::array{0.5, 0.55, 0.6}, std::array{1.2, 8.0});
+    request.set_grid();
+    request = request.select_entries(std::array<std::size_t, 3>{1, 2, 5});
+    constexpr std::size_t kHeavy = 1;
     const auto evaluator = make_evaluator(Kernel::kCpuDouble);
     const Moments own = evaluator->evaluate(request, {})[kHeavy];
     const Point alone{60.0, {0.55, 1.2}, {1.5, 0.0}};

@@ -39,13 +39,13 @@ constexpr double kDriverLimit = 65535.0;
 TEST(Loops, HardDirectionsAndIndicesAtEveryTolerance_StayBelowTheDriversLimit) {
   MomentsRequest request;
   request.theta_deg = {0.0, 1e-6, 12.857142857, 12.9, 18.0, 30.0, 30.2, 44.9, 45.0, 45.1, 60.0, 89.99, 90.0};
-  request.sigma = {0.3, 1e-3, 5.0};
-  request.q = {2.0, 1.6, 45.0};
+  request.shapes = shape_product(std::array{0.3, 1e-3, 5.0}, std::array{2.0, 1.6, 45.0});
   for (const bool total_reflection : {false, true}) {
     request.optics = {{1.508, 0.0}, {27.0, 90.0}};
     if (total_reflection) {
       for (const double n : {0.999, 0.8, std::numbers::sqrt2 / 2.0, 0.5, 0.1}) request.optics.push_back({n, 0.0});
     }
+    request.set_grid();
     for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
       for (int masking = 0; masking <= 4; ++masking) {  // 0 to 3: maskings; 4: all bounces
         request.distribution = distribution;
@@ -90,7 +90,9 @@ TEST(Breakpoints, Directions_AreAtTheAnglesWhereLinesMeet) {
        {},
        {{0, 0}, {10, kRootAbove}, {15, kRootAbove}, {30, kRootAbove}, {45, 0}, {60, kRootBelow}, {75, kRootBelow}}}};
   for (const auto& [theta_deg, masking, variant, expected] : cases) {
-    const std::vector<Breakpoint> points = breakpoints(theta_deg, {.masking = masking}, variant, {}, 1);
+    MomentsRequest request;
+    request.masking = masking;
+    const std::vector<Breakpoint> points = breakpoints(theta_deg, request, variant, {}, 1);
     ASSERT_EQ(points.size(), expected.size()) << theta_deg;
     for (std::size_t i = 0; i < points.size(); ++i) {
       EXPECT_NEAR(points[i].slope, tan_deg(expected[i].first), 1e-14 * (1.0 + points[i].slope))
@@ -174,7 +176,9 @@ TEST(ReflectanceCurve, MeasuredRows_AreReadWithTheirKinks) {
 TEST(KernelData, SceneTolerance_LimitsTheTablesOfTighterLevels) {
   FacetOptics film(1.5, 0.0);
   film.films = {{{2.2, 0.01}, 5.8}};
-  MomentsRequest request{.tolerance = 1e-5, .theta_deg = {40.0}, .optics = {film}, .sigma = {0.2}, .q = {2.0}};
+  MomentsRequest request;
+  request.tolerance = 1e-5;
+  request.append({40.0, {0.2, 2.0}, film});
   const double cells = kernel_data(request).indices[0].curve_cells;
   request.tolerance = 1e-8;
   EXPECT_GT(kernel_data(request).indices[0].curve_cells, cells);

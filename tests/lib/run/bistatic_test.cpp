@@ -60,10 +60,7 @@ Radiance model_radiance(const SceneValues& scene, double theta_i_deg) {
   MomentsRequest request;
   request.distribution = surface.distribution;
   request.masking = surface.masking;
-  request.theta_deg = {scene.geometry.view_zenith_deg};
-  request.sigma = {surface.sigma};
-  request.q = {surface.q};
-  request.optics = {surface.material.constant};
+  request.append({scene.geometry.view_zenith_deg, {surface.sigma, surface.q}, surface.material.constant});
   const Moments moments = ReferenceEvaluator().evaluate(request, {}).front();
   const double cos_i = std::cos(theta_i_deg * std::numbers::pi / 180.0);
   const double cos_v = std::cos(scene.geometry.view_zenith_deg * std::numbers::pi / 180.0);

@@ -105,10 +105,7 @@ double quotient_before(Masking masking, const OpticalConstants& index, double q,
   request.masking = masking;
   request.tolerance = 1e-8;
   request.precision = Precision::kDouble;
-  request.theta_deg = {90.0 - short_deg};
-  request.sigma = {0.3};
-  request.q = {q};
-  request.optics = {index};
+  request.append({90.0 - short_deg, {0.3, q}, index});
   const Moments moments = CpuEvaluator().evaluate(request, {}).front();
   return moments.r_q / moments.r_i;
 }

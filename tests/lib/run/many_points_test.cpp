@@ -104,13 +104,11 @@ TEST(ManyPoints, FewPoints_AreIntegrated) {
 
 TEST(RememberingEvaluator, RequestTwice_IsComputedOnce) {
   CpuEvaluator cpu;
-  RememberingEvaluator evaluator(cpu, [](const MomentsRequest& request) { return request.sigma.front() > 0.2; });
+  RememberingEvaluator evaluator(cpu, [](const MomentsRequest& request) { return request.shapes.front().sigma > 0.2; });
   MomentsRequest request;
-  request.theta_deg = {30.0};
-  request.optics = {{1.5, 0.1}};
-  request.q = {2.0};
+  request.append({30.0, {}, {1.5, 0.1}});
   for (const auto& [sigma, calls] : {std::pair{0.3, 1.0}, std::pair{0.1, 2.0}}) {
-    request.sigma = {sigma};
+    request.shapes = {{sigma, 2.0}};
     const double before = cpu.report().evaluations;
     const Moments first = evaluator.evaluate(request, {}).front();
     const double each = cpu.report().evaluations - before;

@@ -20,7 +20,7 @@ class FirstRequests final : public ModelEvaluator {
  public:
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override {
     is_over |= request.has_extra_splits;
-    if (!is_over) moments += request.wanted_count();
+    if (!is_over) moments += request.size();
     if (!is_over) ++requests;
     return own_.evaluate(request, progress);
   }
@@ -75,7 +75,7 @@ TEST(Prediction, CountsOfTheFirstLevel_AreThoseOfTheRun) {
     std::size_t requests = 0, moments = 0;
     const RequestVisitor visitor = [&](const MomentsRequest& request) {
       ++requests;
-      moments += request.wanted_count();
+      moments += request.size();
     };
     const RunPrediction predicted = predict_run(scene, entries, plan, true, visitor);
     EXPECT_EQ(predicted.moments, moments);

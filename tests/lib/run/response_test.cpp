@@ -22,10 +22,8 @@ EntryResponses responses(const Model& model, const std::vector<Point>& points, d
   surface.distribution = model.distribution;
   surface.masking = model.masking;
   MomentsRequest request = response_request(surface);
-  const FacetOptics index = request.optics.front();
-  request.optics.clear();
   request.has_extra_splits = has_extra_splits;
-  for (const Point& p : points) request.append({p.theta_deg, p.shape, index});
+  for (const Point& p : points) request.append({p.theta_deg, p.shape, kUnusedIndex});
   return compute_responses(request, {.tolerance = tolerance}, evaluator, {});
 }
 
@@ -105,8 +103,9 @@ TEST(Responses, OfADevice_AreThoseOfTheCpu) {
     surface.masking = model.masking;
     MomentsRequest grid = response_request(surface);
     grid.theta_deg = {0.0, 60.0, 90.0};
-    grid.sigma = {0.1, 0.5};
-    grid.q = {2.5};
+    grid.optics = {kUnusedIndex};
+    grid.shapes = {{0.1, 2.5}, {0.5, 2.5}};
+    grid.set_grid();
     expect_within_bounds(compute_responses(grid, {.tolerance = 1e-4}, device, {}), responses(model, points, 1e-9, cpu),
                          points);
   }
@@ -120,8 +119,10 @@ TEST(Responses, OfADenseGrid_AreThoseOfEntriesByThemselves) {
     surface.masking = model.masking;
     MomentsRequest grid = response_request(surface);
     grid.theta_deg = {30.0, 75.0};
-    grid.sigma = spaced(0.1, 0.6, 32);
-    grid.q = model.distribution == Distribution::kGaussian ? std::vector{2.0} : spaced(1.8, 5.0, 24);
+    grid.optics = {kUnusedIndex};
+    const std::vector q = model.distribution == Distribution::kGaussian ? std::vector{2.0} : spaced(1.8, 5.0, 24);
+    grid.shapes = shape_product(spaced(0.1, 0.6, 32), q);
+    grid.set_grid();
     std::vector<Point> points;
     for (std::size_t i = 0; i < grid.size(); i += kStep) points.push_back({grid[i].theta_deg, grid[i].shape, {}});
     CpuEvaluator evaluator;

@@ -45,16 +45,16 @@ std::vector<Moments> computed(const MomentsRequest& request, const RuleModel& mo
   const KernelData data = kernel_data(request, model);
   const std::unique_ptr<CpuKernel> kernel = make_cpu_kernel_double(data);
   const SlopeSampling sampling(data);
-  std::vector<Moments> moments(data.size());
+  std::vector<Moments> moments(request.size());
   std::vector<std::uint32_t> shapes(data.shapes.size());
   std::iota(shapes.begin(), shapes.end(), 0U);
   if (data.needs_masking_table()) kernel->build_masking_tables(std::move(shapes));
   const auto one = [&](std::size_t i) {
     if (has_slope_samples(request)) {
-      sampling.compute(sampled_entries(request, data, i, i + 1).front(), *kernel, kDoubleRoundoff, moments);
+      sampling.compute(i, *kernel, kDoubleRoundoff, moments);
       return;
     }
-    const MomentsEntry entry = data[i];
+    const MomentsEntry entry = data.entry(i, data.bundle_shapes(i).front());
     moments[i] = moments_from_kernel(kernel->moments(entry, {}), data, entry, kDoubleRoundoff);
   };
   parallel_for(moments.size(), 64, one);
@@ -71,10 +71,7 @@ double log_work(const MomentsRequest& all, double tolerance, const RuleModel& mo
   MomentsRequest request = all;
   request.tolerance = tolerance;
   for (int level = 0; level < kMostLevels && !wanted.empty(); ++level) {
-    request.theta_deg.clear();
-    request.optics.clear();
-    request.sigma.clear();
-    request.q.clear();
+    request = request.without_entries();
     for (const std::uint32_t i : wanted) request.append(all[i]);
     const std::vector<Moments> moments = computed(request, model);
     std::vector<std::uint32_t> again;

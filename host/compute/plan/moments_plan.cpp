@@ -39,12 +39,22 @@ std::vector<const MomentsRequest*> MomentsStep::kernel_requests() const {
 }
 
 MomentsPlan::MomentsPlan(const MomentsRequest& request) : size_(request.size()), bundles_(request.bundles.size()) {
-  for (std::vector<std::size_t>& bundles : split_grazing_bundles(request)) {
+  std::vector<char> is_left(bundles_, 1);
+  for (std::vector<std::size_t>& bundles : interpolation_groups(request)) {
     MomentsStep step{.bundles = std::move(bundles)};
     step.request = request.select_bundles(step.bundles);
     step.shapes = shape_plan(step.request);
+    if (!step.shapes) continue;
+    for (const std::size_t bundle : step.bundles) is_left[bundle] = 0;
     add(std::move(step));
   }
+  MomentsStep rest;
+  for (std::size_t i = 0; i < bundles_; ++i) {
+    if (is_left[i] != 0) rest.bundles.push_back(i);
+  }
+  if (rest.bundles.empty()) return;
+  rest.request = rest.bundles.size() == bundles_ ? request : request.select_bundles(rest.bundles);
+  add(std::move(rest));
 }
 
 void MomentsPlan::add(MomentsStep step) {

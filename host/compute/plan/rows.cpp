@@ -38,30 +38,30 @@ void unite(std::span<kernel::ShapeNode> chunk) {
   }
 }
 
-/// The chunks of the shapes of a bundle, as positions in `shapes`. Bundles that have the same shapes share them.
+/// The chunks of the shapes of a bundle, as positions in `shapes`. They do not depend on the order of the shapes.
 using BundleChunks = std::vector<std::vector<std::uint32_t>>;
 
 BundleChunks bundle_chunks(const KernelData& data, std::span<const std::uint32_t> shapes, std::uint32_t width) {
+  std::vector<std::uint32_t> ascending(shapes.size());
+  std::iota(ascending.begin(), ascending.end(), 0U);
+  const auto shape = [&](std::uint32_t i) { return data.slopes[shapes[i]]; };
+  std::ranges::sort(ascending, {}, [&](std::uint32_t i) { return std::tuple(shape(i).sigma, shape(i).q, i); });
   BundleChunks chunks;
-  for (std::size_t first = 0, end = 0; first < shapes.size(); first = end) {
-    while (end < shapes.size() && data.slopes[shapes[end]].sigma == data.slopes[shapes[first]].sigma) ++end;
-    std::vector<std::uint32_t> ascending(end - first);
-    std::iota(ascending.begin(), ascending.end(), static_cast<std::uint32_t>(first));
-    std::ranges::stable_sort(ascending, {}, [&](std::uint32_t i) { return data.slopes[shapes[i]].q; });
-    for (const std::uint32_t i : ascending) {
-      const bool is_first = i == ascending.front();
-      if (is_first || chunks.back().size() == width || !belongs(data, shapes[chunks.back().front()], shapes[i]))
-        chunks.emplace_back();
-      chunks.back().push_back(i);
-    }
+  for (const std::uint32_t i : ascending) {
+    const bool is_next = !chunks.empty() && chunks.back().size() < width &&
+                         shape(chunks.back().front()).sigma == shape(i).sigma &&
+                         belongs(data, shapes[chunks.back().front()], shapes[i]);
+    if (!is_next) chunks.emplace_back();
+    chunks.back().push_back(i);
   }
-  return chunks;
+  const auto places = static_cast<double>(width) * static_cast<double>(chunks.size());
+  return static_cast<double>(shapes.size()) > kLeastRowUse * places || width == 1 ? chunks
+                                                                                  : bundle_chunks(data, shapes, 1);
 }
 
 class RowMaker {
  public:
-  RowMaker(const KernelData& data, std::uint32_t width) : data_(data) {
-    rows_.width = width;
+  RowMaker(const KernelData& data, std::uint32_t widest) : data_(data), widest_(widest) {
     for (std::uint32_t bundle = 0; bundle < data.bundles.size(); ++bundle) add_bundle(bundle);
     order_rows();
   }
@@ -73,7 +73,7 @@ class RowMaker {
     const std::span<const std::uint32_t> shapes = data_.bundle_shapes(number);
     if (number == 0 || bundle.first != data_.bundles[number - 1].first ||
         bundle.count != data_.bundles[number - 1].count) {
-      chunks_ = bundle_chunks(data_, shapes, rows_.width);
+      chunks_ = bundle_chunks(data_, shapes, widest_);
       numbers_.clear();
       for (const std::vector<std::uint32_t>& chunk : chunks_) numbers_.push_back(chunk_number(chunk, shapes));
     }
@@ -93,6 +93,7 @@ class RowMaker {
     if (!is_new) return known->second;
     const std::size_t first = rows_.shapes.size();
     rows_.chunks.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(positions.size())});
+    if (positions.size() > 1) rows_.width = widest_;
     for (const std::uint32_t shape : positions) {
       rows_.shape_positions.push_back(shape);
       rows_.shapes.push_back(data_.shapes[shape]);
@@ -118,6 +119,7 @@ class RowMaker {
   }
 
   const KernelData& data_;
+  std::uint32_t widest_;
   Rows rows_;
   BundleChunks chunks_;                 // of the last bundle
   std::vector<std::uint32_t> numbers_;  // of these chunks
@@ -126,11 +128,7 @@ class RowMaker {
 
 }  // namespace
 
-Rows make_rows(const KernelData& data, std::uint32_t widest) {
-  Rows rows = RowMaker(data, widest).take();
-  const auto places = static_cast<double>(widest) * static_cast<double>(rows.rows.size());
-  return static_cast<double>(rows.entries.size()) > kLeastRowUse * places ? rows : RowMaker(data, 1).take();
-}
+Rows make_rows(const KernelData& data, std::uint32_t widest) { return RowMaker(data, widest).take(); }
 
 std::vector<RowPiece> row_pieces(const Rows& rows, const KernelData& data, std::uint32_t first, std::uint32_t count) {
   std::vector<std::uint32_t> counts;

@@ -48,8 +48,9 @@ struct Rows {
   }
 };
 
-/// Kernel rows with `widest` places for entries, kRowWidth or 1. If at least half of all places would be empty, the
-/// rows have one place. Which entries of a bundle share a row does not depend on other bundles.
+/// Kernel rows with `widest` places for entries, kRowWidth or 1. If at least half of the places of a bundle would be
+/// empty, its entries have rows of their own. If all entries do, the rows have one place. Which entries of a bundle
+/// share a row does not depend on other bundles.
 Rows make_rows(const KernelData& data, std::uint32_t widest);
 
 /// The pieces of `count` rows from row `first`. Each invocation of the kernel computes one piece. Pieces with about

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
 
 #include "model/chebyshev.hpp"
 #include "model/choices.hpp"
@@ -43,11 +46,10 @@ struct SlopeAxes {
   std::vector<double> sigma, q;
 };
 
-/// The values of sigma and q if each bundle has all pairs of them; otherwise nullopt.
-std::optional<SlopeAxes> product_axes(const MomentsRequest& request) {
-  const std::vector<SlopeShape>& shapes = request.shapes;
-  const auto lacks_shapes = [&](const Bundle& bundle) { return bundle.count != shapes.size(); };
-  if (std::ranges::any_of(request.bundles, lacks_shapes)) return std::nullopt;
+/// The values of sigma and q if the bundles of the group have all pairs of them; otherwise nullopt.
+std::optional<SlopeAxes> product_axes(const MomentsRequest& group) {
+  std::vector<SlopeShape> shapes;
+  for (const std::uint32_t i : group.bundle_shapes(group.bundles.front())) shapes.push_back(group.shapes[i]);
   SlopeAxes axes;
   for (const SlopeShape& shape : shapes) {
     if (axes.sigma.empty() || axes.sigma.back() != shape.sigma) axes.sigma.push_back(shape.sigma);
@@ -82,13 +84,11 @@ ShapeParameter sigma_parameter(Distribution distribution) {
   return {0.0, distribution == Distribution::kGaussian ? 0.78 : 1.15};
 }
 
-/// How to interpolate over q. Domain: either all directions of the request are grazing, or none is.
-ShapeParameter q_parameter(const MomentsRequest& request) {
+/// How to interpolate over q. `theta_deg`: the zenith of one direction; either all are grazing, or none is.
+ShapeParameter q_parameter(const MomentsRequest& request, double theta_deg, const std::vector<double>& q) {
   const bool needs_mean_slope =
-      request.masking == Masking::kSmith ||
-      (!keeps_projected_area(request.masking) && is_grazing(request.theta_deg[request.bundles.front().direction]));
-  const bool has_mean_slope = request.distribution == Distribution::kCauchy &&
-                              std::ranges::all_of(request.shapes, [](const SlopeShape& shape) { return shape.q > 1.5; });
+      request.masking == Masking::kSmith || (!keeps_projected_area(request.masking) && is_grazing(theta_deg));
+  const bool has_mean_slope = request.distribution == Distribution::kCauchy && std::ranges::min(q) > 1.5;
   return {needs_mean_slope && has_mean_slope ? 1.5 : 1.0, 1.45};
 }
 
@@ -157,19 +157,21 @@ double half_length_deg(std::size_t panel) { return 0.5 * (kPanelEnds_deg[panel +
 
 }  // namespace
 
-std::vector<std::vector<std::size_t>> split_grazing_bundles(const MomentsRequest& request) {
-  std::vector<std::vector<std::size_t>> groups(2);
+std::vector<std::vector<std::size_t>> interpolation_groups(const MomentsRequest& request) {
+  // Elliptic shapes share their slope samples.
+  if (!request.may_interpolate || request.is_scattered || request.has_elliptic_shapes()) return {};
+  std::map<std::tuple<bool, std::uint32_t, std::uint32_t>, std::vector<std::size_t>> by_shapes;
   for (std::size_t i = 0; i < request.bundles.size(); ++i) {
-    const double theta_deg = request.theta_deg[request.bundles[i].direction];
-    groups[!keeps_projected_area(request.masking) && is_grazing(theta_deg) ? 1 : 0].push_back(i);
+    const Bundle& bundle = request.bundles[i];
+    const bool is_apart = !keeps_projected_area(request.masking) && is_grazing(request.theta_deg[bundle.direction]);
+    by_shapes[{is_apart, bundle.first, bundle.count}].push_back(i);
   }
-  std::erase_if(groups, [](const std::vector<std::size_t>& group) { return group.empty(); });
+  std::vector<std::vector<std::size_t>> groups;
+  for (auto& [shapes, bundles] : by_shapes) groups.push_back(std::move(bundles));
   return groups;
 }
 
 std::optional<ShapePlan> shape_plan(const MomentsRequest& request) {
-  // Elliptic shapes share their slope samples.
-  if (!request.may_interpolate || request.size() == 0 || request.has_elliptic_shapes()) return std::nullopt;
   const std::optional<SlopeAxes> axes = product_axes(request);
   if (!axes) return std::nullopt;
   const double digits = kExtraShapeDigits - std::log10(request.tolerance);
@@ -178,9 +180,10 @@ std::optional<ShapePlan> shape_plan(const MomentsRequest& request) {
     return shape_axis(parameter, range_of_values(values), values, digits, kLeastAxisGain);
   };
   plan.sigma = axis(sigma_parameter(request.distribution), axes->sigma);
-  plan.q = axis(q_parameter(request), axes->q);
+  const double theta_deg = request.theta_deg[request.bundles.front().direction];
+  plan.q = axis(q_parameter(request, theta_deg, axes->q), axes->q);
   std::vector<SlopeShape> nodes = shape_product(plan.sigma.nodes, plan.q.nodes);
-  if (request.shapes.size() < kLeastShapeGain * nodes.size()) return std::nullopt;
+  if (request.bundles.front().count < kLeastShapeGain * nodes.size()) return std::nullopt;
   plan.nodes = request;
   plan.nodes.tolerance = request.finer_tolerance(kShapeNodeTolerance);
   plan.nodes.set_shapes(std::move(nodes));
@@ -252,18 +255,20 @@ bool PointPlan::reaches(double theta_deg) { return theta_deg <= kPanelEnds_deg.b
 
 std::optional<PointPlan> point_plan(const MomentsRequest& points) {
   const std::vector<Bundle>& bundles = points.bundles;
-  if (!points.is_scattered || !points.may_interpolate || bundles.size() < kLeastPoints ||
-      points.has_elliptic_shapes())
+  if (!points.is_scattered || !points.may_interpolate || bundles.size() < kLeastPoints || points.has_elliptic_shapes())
     return std::nullopt;
   const double digits = kExtraShapeDigits - std::log10(kResponseTolerance * points.tolerance);
   PointPlan plan;
-  const auto axis = [&](const ShapeParameter& parameter, double SlopeShape::*member) {
-    std::vector<double> values;
-    for (const SlopeShape& shape : points.shapes) values.push_back(shape.*member);
+  const auto axis = [&](const ShapeParameter& parameter, const std::vector<double>& values) {
     return shape_axis(parameter, rounded_range(parameter, values), values, digits, 0.0);
   };
-  plan.shapes.sigma = axis(sigma_parameter(points.distribution), &SlopeShape::sigma);
-  plan.shapes.q = axis(q_parameter(points), &SlopeShape::q);
+  std::vector<double> sigma, q;
+  for (const SlopeShape& shape : points.shapes) {
+    sigma.push_back(shape.sigma);
+    q.push_back(shape.q);
+  }
+  plan.shapes.sigma = axis(sigma_parameter(points.distribution), sigma);
+  plan.shapes.q = axis(q_parameter(points, kPanelEnds_deg.front(), q), q);
   plan.in_panel = lobatto_points(static_cast<Eigen::Index>(nodes_needed(kInPanel, 1.0, digits)));
   plan.coefficients = chebyshev_coefficients(static_cast<Eigen::Index>(plan.in_panel.size()));
   MomentsRequest& nodes = plan.shapes.nodes = points.without_entries();

@@ -14,10 +14,10 @@
 
 namespace dolp {
 
-/// Groups of bundles that can share one interpolation over slope distributions, as positions in the request. If the
-/// masking is none or integral, grazing directions are a group of their own, because their moments depend on the mean
-/// slope.
-std::vector<std::vector<std::size_t>> split_grazing_bundles(const MomentsRequest& request);
+/// Groups of bundles that can share one interpolation over slope distributions, as positions in the request: those with
+/// the same slope distributions. If the masking is none or integral, grazing directions are groups of their own,
+/// because their moments depend on the mean slope. Empty if the request cannot be interpolated.
+std::vector<std::vector<std::size_t>> interpolation_groups(const MomentsRequest& request);
 
 struct ShapeAxis {
   std::vector<double> nodes;     ///< values at which moments are computed; without interpolation all values
@@ -33,8 +33,8 @@ struct ShapePlan {
   MomentsRequest nodes;
 };
 
-/// Plans the interpolation for the bundles of one group of split_grazing_bundles(). Returns nullopt if it would save
-/// little or is impossible, for example if a bundle lacks some pairs of sigma and q.
+/// Plans the interpolation for a request that has the bundles of one group. Returns nullopt if it would save little, or
+/// if the bundles lack some pairs of sigma and q.
 std::optional<ShapePlan> shape_plan(const MomentsRequest& request);
 
 /// The known moments of a bundle. `bounds` has their error bounds and the estimated errors of

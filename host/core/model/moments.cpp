@@ -58,6 +58,7 @@ void MomentsRequest::add_bundle(std::uint32_t direction, std::uint32_t index, st
 }
 
 void MomentsRequest::append(const MomentsPoint& point) {
+  has_lone_entries = true;
   const std::uint32_t shape = last_position(shapes, point.shape);
   if (members.size() < shapes.size()) members.push_back(shape);
   add_bundle(last_position(theta_deg, point.theta_deg), last_position(optics, point.index), shape, 1);

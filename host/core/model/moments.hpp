@@ -68,6 +68,7 @@ struct MomentsSettings {
   /// The entries are scattered points. Then it depends on all of them whether responses save work, and whether the
   /// responses are interpolated between directions.
   bool is_scattered = false;
+  bool has_lone_entries = false;               ///< most bundles have one entry, so there are no slope samples to share
   bool has_extra_splits = false;               ///< integrates with more panels than usual, to check another computation
   std::shared_ptr<const ResponseBasis> basis;  ///< if set, moments are sums of the responses of this basis
   std::shared_ptr<const SkyBasis> sky;  ///< if set, Moments::columns has one element for each function of this sky
@@ -104,7 +105,7 @@ struct MomentsRequest : MomentsSettings {
   /// Replaces the slope distributions: each bundle gets all of `new_shapes`.
   void set_shapes(std::vector<SlopeShape> new_shapes);
   void add_bundle(std::uint32_t direction, std::uint32_t index, std::uint32_t first, std::uint32_t count);
-  void append(const MomentsPoint& point);  ///< adds an entry
+  void append(const MomentsPoint& point);  ///< adds a lone entry
   MomentsRequest without_entries() const;  ///< only the settings
   /// This request for only some bundles, given by their positions, or for only some entries, given by ascending
   /// numbers.

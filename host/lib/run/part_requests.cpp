@@ -176,9 +176,13 @@ PartRequests::PartRequests(const SceneValues& scene, const SpectralIndices& samp
   moments_.basis = level.basis;
   moments_.sky = plan.sky;
   moments_.may_interpolate = level.may_interpolate;
+  if (plan.kept.moments && selection.part.is_grid()) request_shapes(selection.part);
   if (plan.kept.moments && selection.is_whole_grid()) request_grid(selection.part);
   if (plan.kept.moments && !selection.is_whole_grid()) request_entries(selection);
   if (moments_.has_elliptic_shapes()) moments_.basis = nullptr;  // responses are for isotropic slopes
+  // The parts of a grid and later requests for some of its entries must do as the whole grid does.
+  moments_.has_lone_entries = selection.part.is_grid() ? selection.part.entries_per_direction() == 1
+                                                       : moments_.size() < 2 * moments_.bundles.size();
   if (plan.needs_beams) request_beams(selection);
 }
 
@@ -199,22 +203,13 @@ std::vector<FacetOptics> PartRequests::index_set_samples(const SceneEntries& gri
   return with_index(samples_[set / (n_values * k_values)], grid.index_at(on_axes));
 }
 
-void PartRequests::request_grid(const SceneEntries& grid) {
-  std::vector<double> zeniths = grid.axes()[moment_axis(scene_)];
-  if (zeniths.empty()) zeniths = {scene_.geometry.view_zenith_deg};
-  std::vector<char> theta(zeniths.size(), 0), sigma(grid.sigma().size(), 0), q(grid.q().size(), 0);
+void PartRequests::request_shapes(const SceneEntries& grid) {
+  std::vector<char> sigma(grid.sigma().size(), 0), q(grid.q().size(), 0);
   for (std::size_t i = 0; i < sigma.size(); ++i) {
     for (std::size_t j = 0; j < q.size(); ++j) {
-      const SlopeShape shape{grid.sigma()[i], grid.q()[j]};
-      if (!is_mirror(shape)) sigma[i] = q[j] = 1;
-      for (std::size_t t = 0; t < theta.size(); ++t) {
-        const SceneEntry entry{.theta_deg = zeniths[t], .shape = shape, .view_zenith_deg = zeniths[t]};
-        if (theta[t] == 0) theta[t] = wants_moments(scene_, entry, plan_) ? 1 : 0;
-      }
+      if (!is_mirror({grid.sigma()[i], grid.q()[j]})) sigma[i] = q[j] = 1;
     }
   }
-  if (std::ranges::find(theta, 1) == theta.end()) return;
-  request_indices(grid);
   std::vector<double> used_sigma, used_q;
   sigma_at_ = compact_used_values(grid.sigma(), sigma, used_sigma);
   if (scene_.surface.distribution == Distribution::kGaussian) {
@@ -223,11 +218,7 @@ void PartRequests::request_grid(const SceneEntries& grid) {
   } else {
     q_at_ = compact_used_values(grid.q(), q, used_q);
   }
-  theta_at_ = compact_used_values(zeniths, theta, moments_.theta_deg);
-  for (double& theta_deg : moments_.theta_deg) {
-    theta_deg = zenith_before_limit_deg(scene_.surface.masking, theta_deg);
-  }
-  CrossSlopes slopes = grid.slopes();
+  const CrossSlopes& slopes = grid.slopes();
   const auto cross =
       grid.has_values(Axis::kSigmaCross) ? grid.axes()[Axis::kSigmaCross] : std::vector{slopes.sigma_cross};
   const auto azimuth =
@@ -246,6 +237,31 @@ void PartRequests::request_grid(const SceneEntries& grid) {
     shape_counts_[Axis::kSigmaCross] = cross.size();
     shape_counts_[Axis::kSurfaceAzimuth] = azimuth.size();
     moments_.shapes = std::move(elliptic);
+  }
+}
+
+std::uint32_t PartRequests::shape_position(const PerAxis& on_axes) const {
+  std::size_t shape = sigma_at_[on_axes[Axis::kSigma]] * shape_counts_[Axis::kQ] + q_at_[on_axes[Axis::kQ]];
+  for (const Axis axis : {Axis::kSigmaCross, Axis::kSurfaceAzimuth})
+    shape = shape * shape_counts_[axis] + on_axes[axis] % shape_counts_[axis];
+  return static_cast<std::uint32_t>(shape);
+}
+
+void PartRequests::request_grid(const SceneEntries& grid) {
+  std::vector<double> zeniths = grid.axes()[moment_axis(scene_)];
+  if (zeniths.empty()) zeniths = {scene_.geometry.view_zenith_deg};
+  std::vector<char> theta(zeniths.size(), 0);
+  for (std::size_t t = 0; t < theta.size(); ++t) {
+    for (const SlopeShape& shape : moments_.shapes) {
+      const SceneEntry entry{.theta_deg = zeniths[t], .shape = shape, .view_zenith_deg = zeniths[t]};
+      if (theta[t] == 0) theta[t] = wants_moments(scene_, entry, plan_) ? 1 : 0;
+    }
+  }
+  if (std::ranges::find(theta, 1) == theta.end()) return;
+  request_indices(grid);
+  theta_at_ = compact_used_values(zeniths, theta, moments_.theta_deg);
+  for (double& theta_deg : moments_.theta_deg) {
+    theta_deg = zenith_before_limit_deg(scene_.surface.masking, theta_deg);
   }
   moments_.set_grid();
 }
@@ -273,12 +289,9 @@ PartRequests::MomentsSpan PartRequests::member_moments(std::size_t member, const
   const SceneEntries& grid = selection_.part;
   const std::size_t shapes = moments_.shapes.size();
   const std::size_t entries_per_index = moments_.theta_deg.size() * shapes;
-  std::size_t shape = sigma_at_[on_axes[Axis::kSigma]] * shape_counts_[Axis::kQ] + q_at_[on_axes[Axis::kQ]];
-  for (const Axis axis : {Axis::kSigmaCross, Axis::kSurfaceAzimuth})
-    shape = shape * shape_counts_[axis] + on_axes[axis] % shape_counts_[axis];
   const std::size_t theta_offset = theta_at_[on_axes[moment_axis(scene_)]] * shapes;
   const bool has_one_index = grid.has_own_index() && !has_films();
-  return {index_set_offset_[index_set(grid, on_axes)] * entries_per_index + theta_offset + shape,
+  return {index_set_offset_[index_set(grid, on_axes)] * entries_per_index + theta_offset + shape_position(on_axes),
           has_one_index ? std::size_t{0} : entries_per_index};
 }
 
@@ -289,10 +302,11 @@ void PartRequests::request_entries(const Selection& selection) {
     bool has_own_index = false;  // a bare medium with the n and k of the entry, at all wavelengths
   };
   struct Place {
-    std::uint32_t direction, set, shape;
-    std::size_t member;
+    std::uint32_t direction = 0, set = 0, shape = 0;
+    std::size_t member = 0;
   };
-  moments_.is_scattered = !selection.part.is_grid();
+  const bool is_grid = selection.part.is_grid();
+  moments_.is_scattered = !is_grid;
   Numbering<double> directions(selection.size());
   Numbering<std::array<double, 4>> shapes(selection.size());
   Numbering<std::array<double, 3>> index_sets(selection.size());
@@ -309,16 +323,17 @@ void PartRequests::request_entries(const Selection& selection) {
     const bool has_own_index = entry.index && !has_films();
     const double variant = has_own_index ? -1.0 : equal_variants[entry.variant];
     const OpticalConstants key = entry.index.value_or(OpticalConstants{0.0, -1.0});  // no real index has k = -1
-    places.push_back({directions.number(zenith_deg, [&] { moments_.theta_deg.push_back(zenith_deg); }),
-                      index_sets.number({key.n, key.k, variant},
-                                        [&] {
-                                          const std::vector<FacetOptics> own =
-                                              with_index(samples_[entry.variant], entry.index);
-                                          sets.push_back({static_cast<std::uint32_t>(moments_.optics.size()),
-                                                          static_cast<std::uint32_t>(own.size()), has_own_index});
-                                          moments_.optics.insert(moments_.optics.end(), own.begin(), own.end());
-                                        }),
-                      shapes.number(numbers_in(shape), [&] { moments_.shapes.push_back(shape); }), i});
+    Place& place = places.emplace_back();
+    place.member = i;
+    place.direction = directions.number(zenith_deg, [&] { moments_.theta_deg.push_back(zenith_deg); });
+    place.set = index_sets.number({key.n, key.k, variant}, [&] {
+      const std::vector<FacetOptics> own = with_index(samples_[entry.variant], entry.index);
+      sets.push_back(
+          {static_cast<std::uint32_t>(moments_.optics.size()), static_cast<std::uint32_t>(own.size()), has_own_index});
+      moments_.optics.insert(moments_.optics.end(), own.begin(), own.end());
+    });
+    place.shape = is_grid ? shape_position(reader.on_axes())
+                          : shapes.number(numbers_in(shape), [&] { moments_.shapes.push_back(shape); });
   }
   const auto position = [](const Place& place) { return std::tuple(place.direction, place.set, place.shape); };
   std::ranges::sort(places, {}, position);

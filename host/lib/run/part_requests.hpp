@@ -72,6 +72,10 @@ class PartRequests {
   std::size_t first_beam(std::size_t member) const { return first_beam_[member]; }
 
  private:
+  /// Adds the slope distributions of a grid. Requests for some of its entries have them all, because the orders and
+  /// nodes for slopes that differ along and across depend on them.
+  void request_shapes(const SceneEntries& grid);
+  std::uint32_t shape_position(const PerAxis& on_axes) const;
   void request_grid(const SceneEntries& grid);
   void request_indices(const SceneEntries& grid);
   std::size_t index_set(const SceneEntries& grid, const PerAxis& on_axes) const;
@@ -86,11 +90,12 @@ class PartRequests {
   const Selection selection_;
   MomentsRequest moments_;
   ScatteringRequest beams_;
-  // For a whole grid: value i of the part's moment_axis() is value theta_at_[i] in moments_.theta_deg, unless nothing
-  // is requested at this zenith, and so on for sigma and q. shape_counts_ has the numbers of values of q, sigma_cross
-  // and azimuth. index_set_offset_[i] is the position in moments_.optics of the first index (n, k) of the index set i.
-  // An index set has the indices of one variant (such as a band). If the grid has axes n and k, an index set has one
-  // value of each, with the films of one variant.
+  // For a grid: value i of sigma has the number sigma_at_[i] among the values that moments_.shapes have, and so on for
+  // q. shape_counts_ has the numbers of values of q, sigma_cross and azimuth. For a whole grid: value i of the part's
+  // moment_axis() is value theta_at_[i] in moments_.theta_deg, unless nothing is requested there. index_set_offset_[i]
+  // is the position in moments_.optics of the first index (n, k) of the index set i. An index set has the indices of
+  // one variant (such as a band). If the grid has axes n and k, an index set has one value of each, with the films of
+  // one variant.
   std::vector<std::uint32_t> theta_at_, sigma_at_, q_at_, index_set_offset_;
   PerAxis shape_counts_ = {};
   std::vector<MomentsSpan> spans_;  ///< otherwise: where the evaluator returns the moments of each member

@@ -172,6 +172,24 @@ std::string case_name(const testing::TestParamInfo<std::tuple<Kernel, Sharing>>&
 INSTANTIATE_TEST_SUITE_P(Kernels, Grids, testing::Combine(testing::ValuesIn(kKernels), testing::ValuesIn(kSharings)),
                          case_name);
 
+TEST(MomentsRequest, SelectedEntries_AreThoseOfTheWhole) {
+  MomentsRequest request;
+  request.theta_deg = {10.0, 60.0};
+  request.optics = {{1.5, 0.0}, {2.0, 1.0}};
+  request.shapes = shape_product(std::array{0.1, 0.3}, std::array{2.0, 5.0});
+  request.set_grid();
+  ASSERT_EQ(request.size(), 16U);
+  const std::vector<std::size_t> chosen = {1, 3, 4, 5, 6, 7, 15};
+  const MomentsRequest part = request.select_entries(chosen);
+  ASSERT_EQ(part.size(), chosen.size());
+  EXPECT_EQ(part.bundles.size(), 3U);
+  for (std::size_t i = 0; i < chosen.size(); ++i) EXPECT_EQ(part[i], request[chosen[i]]);
+  EXPECT_EQ(part.bundles[1].first, request.bundles[1].first);  // a whole bundle shares the list of its shapes
+  const MomentsRequest bundles = part.select_bundles(std::array<std::size_t, 2>{0, 2});
+  ASSERT_EQ(bundles.size(), 3U);
+  EXPECT_EQ(bundles[2], request[15]);
+}
+
 // A second pass computes only some entries of a grid, with the same nodes on the slope axis for all of them. These
 // nodes must reach far enough for the entry with the heaviest tail (q = 1.2).
 TEST(SecondPass, SomeShapesOfAGrid_HeaviestTailIsNotLost) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <tuple>
 
 #include "draws.hpp"
@@ -51,6 +52,29 @@ TEST(ChosenEntries, OfAGrid_HaveTheWavelengthsAmongThemAlone) {
   }
 }
 
+TEST(PartsOfAList, KnowTheirPlaceInTheWhole) {
+  const SceneEntries list = list_of(SceneEntries::grid({10.0, 20.0, 30.0, 40.0, 50.0}, {0.1}, {2.0}));
+  const std::vector<SceneEntries> parts = list.parts(2);
+  ASSERT_EQ(parts.size(), 3U);
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    EXPECT_EQ(parts[part].whole_size(), list.size());
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const std::optional<std::size_t> position = parts[part].find_position(i);
+      EXPECT_EQ(position.has_value(), i / 2 == part);
+      if (!position) continue;
+      EXPECT_EQ(parts[part][*position].theta_deg, list[i].theta_deg);
+      ++found;
+    }
+    EXPECT_EQ(found, parts[part].size());
+    parts[part].for_each_run(list, [&](const GridRun& run) {
+      EXPECT_EQ(run.in_part, 0U);
+      EXPECT_EQ(run.in_whole, 2 * part);
+      EXPECT_EQ(run.count, parts[part].size());
+    });
+  }
+}
+
 void expect_same_bits(const SceneValues& scene, bool device) {
   const SceneEntries grid = grid_entries(scene);
   const std::vector<PointResult> whole = in_parts(scene, {grid}, device);
@@ -95,6 +119,23 @@ TEST_P(PartsOfModel, AxesOfIndexAndWavelength_KeepTheirBitsInParts) {
   SceneValues own = scene();
   own.grid = make_axes({80.0, 30.0, 90.0}, {0.1, 0.4}, {2.0, 1.8, 5.0}, {8.0, 10.0}, {1.4, 4.0}, {0.0, 3.0});
   expect_same_bits(own, true);
+}
+
+// The entries of a list that have the same direction and index share work as in a grid, in whatever order they come.
+TEST_P(PartsOfModel, ListOfAllEntriesOfAGrid_HasTheBitsOfTheGrid) {
+  SceneValues sparse = scene();
+  sparse.accuracy.may_interpolate = false;
+  sparse.grid = make_axes({70.0, 20.0, 0.0, 45.0, 89.0}, {0.3, 2.0, 0.02}, {2.0, 3.0, least_q(), 8.0});
+  const SceneEntries grid = grid_entries(sparse);
+  std::vector<SceneEntry> list = list_of(grid);
+  std::ranges::rotate(list, list.begin() + 7);
+  const auto evaluator = evaluator_on(true);
+  const std::vector<PointResult> expected = evaluate_scene(sparse, grid, *evaluator, {});
+  const std::vector<PointResult> results = evaluate_scene(sparse, list, *evaluator, {});
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const std::size_t in_grid = (i + 7) % expected.size();
+    EXPECT_EQ(bits_of(results[i]), bits_of(expected[in_grid])) << text_of(sparse, list[i]);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(SceneParts, PartsOfModel,

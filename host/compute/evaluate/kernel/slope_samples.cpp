@@ -86,9 +86,9 @@ int nodes_at_roots(const KernelData& data, const KernelSource::Task& task) {
 
 bool has_slope_samples(const MomentsRequest& request) {
   if (request.has_elliptic_shapes()) return true;
-  if (request.masking != Masking::kNone && request.masking != Masking::kVCavity) return false;
-  // If most bundles have one entry, nothing is shared, and the host's part would take most of the time.
-  return request.size() >= 2 * request.bundles.size() || request.scattering == Scattering::kMultiple;
+  const bool can_share = request.masking == Masking::kNone || request.masking == Masking::kVCavity;
+  // With lone entries the host's part would take most of the time.
+  return can_share && (!request.has_lone_entries || request.scattering == Scattering::kMultiple);
 }
 
 struct SlopeSampling::Impl {
@@ -313,8 +313,7 @@ struct SlopeSampling::Impl {
         sums = order_sums(samples, order_weights(samples, shape, sector_weights), azimuths, azimuth_columns, data);
         known = slopes;
       }
-      moments[entry++] =
-          moments_at_azimuth(sums, data, data.entry(samples.bundle, shape), azimuth, unit_roundoff);
+      moments[entry++] = moments_at_azimuth(sums, data, data.entry(samples.bundle, shape), azimuth, unit_roundoff);
     }
   }
 };

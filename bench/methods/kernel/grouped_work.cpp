@@ -9,7 +9,7 @@ constexpr double kUnitRoundoff = 0x1p-24;  // relative rounding error of float
 
 GroupedWork::GroupedWork(const MomentsRequest& request)
     : data(kernel_data(request)),
-      rows(make_rows(data, kRowWidth)),
+      rows(make_rows(request, data, kRowWidth)),
       pieces(row_pieces(rows, data, 0, static_cast<std::uint32_t>(rows.rows.size()))) {}
 
 std::vector<Moments> moments_of(const GroupedWork& work, const std::vector<kernel::MomentsNode>& nodes) {

@@ -149,7 +149,7 @@ inline constexpr std::size_t kLeastPointGain = 4;
 inline constexpr double kPointNodeTolerance = 0.0025;
 /// Largest ratio of two values of q - 1 in a kernel row. Shapes that differ more need nodes at other slopes.
 inline constexpr double kMostRowSpread = 6.0;
-/// The entries of a bundle share kernel rows of kRowWidth places if they fill more than this share of them.
+/// Kernel rows have kRowWidth places if the shapes of a request fill more than this share of them, otherwise one place.
 inline constexpr double kLeastRowUse = 0.5;  // 1.87, 1.87, 5.63; 1.81, 1.81, 5.60
 /// If the error of an entry is f times the tolerance, the entry is computed again. Its new tolerance is smaller by the
 /// factor f * kRefinementSafety, but at least by 10^kLeastDecades and at most by 10^kMostDecades.

@@ -54,14 +54,13 @@ BundleChunks bundle_chunks(const KernelData& data, std::span<const std::uint32_t
     if (!is_next) chunks.emplace_back();
     chunks.back().push_back(i);
   }
-  const auto places = static_cast<double>(width) * static_cast<double>(chunks.size());
-  return static_cast<double>(shapes.size()) > kLeastRowUse * places || width == 1 ? chunks
-                                                                                  : bundle_chunks(data, shapes, 1);
+  return chunks;
 }
 
 class RowMaker {
  public:
-  RowMaker(const KernelData& data, std::uint32_t widest) : data_(data), widest_(widest) {
+  RowMaker(const KernelData& data, std::uint32_t width) : data_(data) {
+    rows_.width = width;
     for (std::uint32_t bundle = 0; bundle < data.bundles.size(); ++bundle) add_bundle(bundle);
     order_rows();
   }
@@ -73,7 +72,7 @@ class RowMaker {
     const std::span<const std::uint32_t> shapes = data_.bundle_shapes(number);
     if (number == 0 || bundle.first != data_.bundles[number - 1].first ||
         bundle.count != data_.bundles[number - 1].count) {
-      chunks_ = bundle_chunks(data_, shapes, widest_);
+      chunks_ = bundle_chunks(data_, shapes, rows_.width);
       numbers_.clear();
       for (const std::vector<std::uint32_t>& chunk : chunks_) numbers_.push_back(chunk_number(chunk, shapes));
     }
@@ -93,7 +92,6 @@ class RowMaker {
     if (!is_new) return known->second;
     const std::size_t first = rows_.shapes.size();
     rows_.chunks.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(positions.size())});
-    if (positions.size() > 1) rows_.width = widest_;
     for (const std::uint32_t shape : positions) {
       rows_.shape_positions.push_back(shape);
       rows_.shapes.push_back(data_.shapes[shape]);
@@ -119,7 +117,6 @@ class RowMaker {
   }
 
   const KernelData& data_;
-  std::uint32_t widest_;
   Rows rows_;
   BundleChunks chunks_;                 // of the last bundle
   std::vector<std::uint32_t> numbers_;  // of these chunks
@@ -128,7 +125,13 @@ class RowMaker {
 
 }  // namespace
 
-Rows make_rows(const KernelData& data, std::uint32_t widest) { return RowMaker(data, widest).take(); }
+Rows make_rows(const MomentsRequest& request, const KernelData& data, std::uint32_t widest) {
+  std::vector<std::uint32_t> all(data.shapes.size());
+  std::iota(all.begin(), all.end(), 0U);
+  const double places = static_cast<double>(widest) * static_cast<double>(bundle_chunks(data, all, widest).size());
+  const bool is_filled = !request.has_lone_entries && static_cast<double>(all.size()) > kLeastRowUse * places;
+  return RowMaker(data, is_filled ? widest : 1).take();
+}
 
 std::vector<RowPiece> row_pieces(const Rows& rows, const KernelData& data, std::uint32_t first, std::uint32_t count) {
   std::vector<std::uint32_t> counts;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "model/moments.hpp"
 #include "plan/kernel_data.hpp"
 
 namespace dolp {
@@ -48,10 +49,10 @@ struct Rows {
   }
 };
 
-/// Kernel rows with `widest` places for entries, kRowWidth or 1. If at least half of the places of a bundle would be
-/// empty, its entries have rows of their own. If all entries do, the rows have one place. Which entries of a bundle
-/// share a row does not depend on other bundles.
-Rows make_rows(const KernelData& data, std::uint32_t widest);
+/// Kernel rows with `widest` places for entries, kRowWidth or 1. If at least half of the places would be empty in rows
+/// with all shapes of the request, the rows have one place. Which entries of a bundle share a row does not depend on
+/// other bundles.
+Rows make_rows(const MomentsRequest& request, const KernelData& data, std::uint32_t widest);
 
 /// The pieces of `count` rows from row `first`. Each invocation of the kernel computes one piece. Pieces with about
 /// equal work are neighbours, because neighbouring invocations wait for each other.

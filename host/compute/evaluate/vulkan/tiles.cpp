@@ -91,7 +91,7 @@ RowTiles::RowTiles(const MomentsRequest& request, const dolp::Device& device, co
                    Tables tables)
     : packing(make_packing(request.precision)),
       data(kernel_data(request, tables)),
-      rows(make_rows(data, widest_row(device))),
+      rows(make_rows(request, data, widest_row(device))),
       costs{.invocation_bytes = sizeof(EntryWords) + packing.node_bytes<kernel::ThetaNode>() +
                                 packing.node_bytes<kernel::IndexNode>() +
                                 rows.width * packing.output_bytes<kernel::MomentsNode>(column_sums(data)),

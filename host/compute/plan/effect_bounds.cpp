@@ -105,13 +105,7 @@ EntriesExtent extent_of_grid(const SceneModel& scene, const SceneEntries& entrie
   for (std::size_t i = 0; i < entries.entries_per_direction(); ++i) extent.add(entries[i].shape);
   for (std::size_t i = 0; i < entries.directions(); ++i)
     extent.beams.push_back(beam_angles(scene, entries[i * entries.entries_per_direction()]));
-  if (!entries.has_own_index()) return extent;
-  PerAxis position{};
-  for (position[Axis::kN] = 0; position[Axis::kN] < entries.counts()[Axis::kN]; ++position[Axis::kN]) {
-    for (position[Axis::kK] = 0; position[Axis::kK] < entries.counts()[Axis::kK]; ++position[Axis::kK]) {
-      extent.optics.push_back(entries.index_at(position));
-    }
-  }
+  for (const OpticalConstants& index : entries.own_indices()) extent.optics.emplace_back(index);
   return extent;
 }
 

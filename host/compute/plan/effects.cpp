@@ -172,11 +172,9 @@ Effect complex_index_row(const SceneValues& scene, const EffectPlan& plan, const
     const auto absorbs = [](const Film& film) { return film.index.k > 0.0; };
     return optics.index.k > 0.0 || optics.measured || std::ranges::any_of(optics.films, absorbs);
   };
-  const bool has_complex_entry =
-      entries.is_grid()
-          ? std::ranges::any_of(entries.axes()[Axis::kK], [](double k) { return k > 0.0; })
-          : std::ranges::any_of(entries.all(), [&](const SceneEntry& e) { return e.index && is_complex(*e.index); });
-  if (!has_complex_entry && std::ranges::none_of(first_rule(plan, entries)->indices(), is_complex))
+  const auto has_k = [](const OpticalConstants& index) { return index.k > 0.0; };
+  if (std::ranges::none_of(entries.own_indices(), has_k) &&
+      std::ranges::none_of(first_rule(plan, entries)->indices(), is_complex))
     return absent(kName, "k is 0");
   const bool is_used = plan.kept.moments || plan.needs_beams || (is_fresnel(scene) && plan.kept.emission);
   if (!is_used) return {kName, EffectState::kNotNeeded, "nothing depends on the index"};

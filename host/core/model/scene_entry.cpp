@@ -169,6 +169,21 @@ bool SceneEntries::has_own_index() const {
   return std::ranges::any_of(points_, [](const SceneEntry& point) { return point.index.has_value(); });
 }
 
+std::vector<OpticalConstants> SceneEntries::own_indices() const {
+  std::vector<OpticalConstants> indices;
+  for (const SceneEntry& point : points_)
+    if (point.index) indices.push_back(*point.index);
+  PerAxis on_axes{};
+  for (std::size_t n = 0; is_grid_ && has_own_index() && n < counts_[Axis::kN]; ++n) {
+    for (std::size_t k = 0; k < counts_[Axis::kK]; ++k) {
+      on_axes[Axis::kN] = n;
+      on_axes[Axis::kK] = k;
+      indices.push_back(index_at(on_axes));
+    }
+  }
+  return indices;
+}
+
 void SceneEntries::for_each_run(const SceneEntries& whole, const std::function<void(const GridRun&)>& use) const {
   if (is_grid_) dolp::for_each_run(first_in(whole), counts_, whole.counts_, use);
   if (!is_grid_) use({0, first_point_ - whole.first_point_, size()});

@@ -108,6 +108,8 @@ class SceneEntries {
     return is_grid_ ? sigma().size() * q().size() * counts_[Axis::kSigmaCross] * counts_[Axis::kSurfaceAzimuth] : 1;
   }
   bool has_own_index() const;  ///< true if some entries have their own n or k
+  /// The n and k that entries have: all combinations of a grid's axes, or those of the points.
+  std::vector<OpticalConstants> own_indices() const;
 
   // The functions from here to index_at() need a grid.
   SceneEntry grid_entry(const PerAxis& on_axes) const;
@@ -143,7 +145,8 @@ class SceneEntries {
   PerAxis first_in(const SceneEntries& whole) const;  ///< like first(), but relative to `whole`, a larger part
   const PerAxis& whole() const { return whole_; }     ///< number of values on each axis of the whole grid
   const Axes& whole_axes() const { return *whole_axes_; }
-  SceneEntries whole_grid() const { return grid(*whole_axes_, index_, slopes_); }
+  /// The grid of which this is a part. A list is returned as it is.
+  SceneEntries whole_entries() const { return is_grid_ ? grid(*whole_axes_, index_, slopes_) : *this; }
   /// The number of entries in the whole grid or list.
   std::size_t whole_size() const { return is_grid_ ? grid_size(whole_) : std::max(whole_points_, points_.size()); }
   /// Converts an entry's position in the whole grid or list to its position in this part; nullopt if the part lacks the

@@ -102,16 +102,13 @@ std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const Scene
 std::vector<FacetOptics> indices_of_grid(const SceneModel& scene, const EffectPlan& plan, const SceneEntries& entries) {
   const PerAxis& counts = entries.whole();
   if (counts[moment_axis(scene)] * counts[Axis::kSigma] * counts[Axis::kQ] < kLeastEntries) return {};
-  const SceneEntries whole = entries.whole_grid();
+  const SceneEntries whole = entries.whole_entries();
   std::vector<FacetOptics> indices;
   if (whole.has_own_index()) {
-    PerAxis on_axes{};
     for (const std::vector<FacetOptics>& samples : spectral_indices(plan, whole)) {
-      for (std::size_t& n = on_axes[Axis::kN] = 0; n < whole.counts()[Axis::kN]; ++n) {
-        for (std::size_t& k = on_axes[Axis::kK] = 0; k < whole.counts()[Axis::kK]; ++k) {
-          const std::vector<FacetOptics> with_this_index = with_index(samples, whole.index_at(on_axes));
-          indices.insert(indices.end(), with_this_index.begin(), with_this_index.end());
-        }
+      for (const OpticalConstants& own : whole.own_indices()) {
+        const std::vector<FacetOptics> with_this_index = with_index(samples, own);
+        indices.insert(indices.end(), with_this_index.begin(), with_this_index.end());
       }
       if (samples.front().is_bare()) break;  // without films, the indices are the same at all wavelengths
     }

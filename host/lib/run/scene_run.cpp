@@ -431,7 +431,7 @@ Run::Run(const SceneValues& scene, SceneEntries entries, const RunOptions& optio
       derivative_keys_(options.derivatives),
       derivatives_(scene_derivatives(scene, entries_, derivative_keys_)),
       progress_(options.progress) {
-  const SceneEntries whole = entries_.is_grid() ? entries_.whole_grid() : entries_;
+  const SceneEntries whole = entries_.whole_entries();
   outcome_.plan = plan_effects(scene, whole, options.keep_all);
   outcome_.effects = list_effects(scene, whole, outcome_.plan);
   outcome_.spectral_rule_s = wall_s();

@@ -114,7 +114,8 @@ PlannedMoments::PlannedMoments(MomentsPlan plan, std::vector<Step> steps)
     : plan_(std::move(plan)), steps_(std::move(steps)), places_(plan_.bundles()) {
   for (std::size_t i = 0; i < steps_.size(); ++i) {
     const MomentsStep& step = plan_.steps()[i];
-    for (std::size_t j = 0; j < step.bundles.size(); ++j) places_[step.bundles[j]] = {step.request.bundles[j].count, i, j};
+    for (std::size_t j = 0; j < step.bundles.size(); ++j)
+      places_[step.bundles[j]] = {step.request.bundles[j].count, i, j};
   }
   std::size_t first = 0;
   for (Place& place : places_) first += std::exchange(place.first_entry, first);

@@ -26,7 +26,7 @@ namespace dolp {
 namespace {
 
 constexpr std::size_t kBetaAngles = kMostResponses;
-constexpr double kResponseC0 = 0.01;                // cosine near which abscissa() changes from linear to logarithmic
+constexpr double kResponseC0 = 0.01;  // cosine near which abscissa() changes from linear to logarithmic
 // The first quadrature has the tolerance of the table times this factor. Tuned for 64 x 16 x 16 entries at the
 // tolerance 1e-4. Million evaluations at half this value, at this value and at double: 21.0, 22.5, 24.1 with smith
 // masking; 3.24, 3.00, 2.90 with integral masking.

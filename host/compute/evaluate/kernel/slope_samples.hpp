@@ -38,7 +38,7 @@ struct SampledPiece {
 /// The slopes at which the kernel computes samples for a bundle. All its entries share them.
 struct SlopeSamples {
   std::size_t bundle = 0;  ///< position in KernelData::bundles
-  double cut = 0.0;  ///< largest slope; steeper facets are left out
+  double cut = 0.0;        ///< largest slope; steeper facets are left out
   std::vector<SampledPiece> pieces;
   std::vector<SampledSlope> slopes;
   std::size_t orders = 1;  ///< azimuthal orders: first all slopes have samples of order 0, then of order 1, ...

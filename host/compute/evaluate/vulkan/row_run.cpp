@@ -159,9 +159,9 @@ class RowRun final : public TiledRun {
     parallel_for(moments.size(), kEntriesAtOnce, [&](std::size_t i) {
       const auto& [row, place] = rows_.entries[i];
       const std::size_t at = row * std::size_t{rows_.width} + place;
-      moments[i] = moments_from_kernel(results[at], data_, rows_.entry(data_, rows_.rows[row], place),
-                                       context_.unit_roundoff,
-                                       std::span(column_results_).subspan(at * per_entry, per_entry));
+      moments[i] =
+          moments_from_kernel(results[at], data_, rows_.entry(data_, rows_.rows[row], place), context_.unit_roundoff,
+                              std::span(column_results_).subspan(at * per_entry, per_entry));
     });
     return moments;
   }

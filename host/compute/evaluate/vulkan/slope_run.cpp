@@ -44,9 +44,8 @@ class SlopeRun final : public TiledRun {
         const auto tile = slopes.subspan(done, std::min<std::size_t>(pace_.invocations(), slopes.size() - done));
         done += tile.size();
         const double batch_share = static_cast<double>(done) / static_cast<double>(slopes.size());
-        const double share =
-            (static_cast<double>(first) + batch_share * static_cast<double>(batch.samples.size())) /
-            static_cast<double>(bundles);
+        const double share = (static_cast<double>(first) + batch_share * static_cast<double>(batch.samples.size())) /
+                             static_cast<double>(bundles);
         upload_tile(batch, tile);
         submit_tile(tile.size(), result_bytes(tile.size()), data_, [&, tile, share] {
           read_tile(batch, tile, azimuths);

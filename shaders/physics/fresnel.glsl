@@ -47,7 +47,8 @@ Fresnel fresnel(IndexNode index, real cos_beta) {
 Fresnel reflectance_at(IndexNode index, real cos_beta) {
   bool is_measured = index.curve_cells < real(0.0);
   int cells = int(abs(index.curve_cells));
-  real position = sqrt(is_measured ? max(real(1.0) - cos_beta, real(0.0)) : cos_beta) * real(cells);
+  // Rounding may make cos(beta) negative at grazing incidence, or larger than 1 at normal incidence.
+  real position = sqrt(max(is_measured ? real(1.0) - cos_beta : cos_beta, real(0.0))) * real(cells);
   int cell = min(int(position), cells - 1);
   real x = position - real(cell);
   int start = DOLP_CURVE_ALIGNMENT * int(index.curve_start);

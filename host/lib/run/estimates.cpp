@@ -213,7 +213,7 @@ Influences add_influences(std::vector<Effect>& rows, const SceneValues& scene, c
 
 std::optional<ScatteringGap> scattering_gap(const SceneValues& scene, const SceneEntries& entries,
                                             const EffectPlan& plan) {
-  if (!has_gap(scene, plan)) return {};
+  if (entries.empty() || !has_gap(scene, plan)) return {};
   Sample sample = draw_sample(scene, entries, *plan.rules);
   sample.scene.emission->model = EmissionModel::kMoments;
   const std::vector<PointResult> kirchhoff = sample_results(sample);

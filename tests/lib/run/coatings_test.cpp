@@ -10,6 +10,7 @@
 
 #include "beams/scattering.hpp"
 #include "computed_scene.hpp"
+#include "evaluate/vulkan/vulkan_evaluator.hpp"
 #include "fixed_precision.hpp"
 #include "model/films.hpp"
 #include "model/smooth_surface.hpp"
@@ -204,6 +205,29 @@ TEST(Coatings, MomentsInFloat_AreWithinTheirBoundsOfTheReference) {
 
 TEST(Coatings, MomentsInDouble_AreWithinTheirBoundsOfTheReference) {
   expect_within_bounds_of_reference(Precision::kDouble, 1e-6, kSeed + 2, draws_wanted(24));
+}
+
+// At 90 degrees facets that just turn away from the viewer have cos(beta) = 0, up to the rounding of a device.
+TEST(Coatings, DirectEmissionAtTheHorizon_IsWithinItsBoundsOfDouble) {
+  FacetOptics film(2.0, 0.0);
+  film.films = {{{1.45, 0.0}, 0.0}};
+  VulkanEvaluator device(VulkanOptions{});
+  for (const Masking masking : {Masking::kVCavity, Masking::kSmith}) {
+    MomentsRequest request = request_of({Distribution::kCauchy, masking}, {}, 1e-4);
+    request.wants_direct = true;
+    request.has_lone_entries = true;
+    request.theta_deg = {89.999999};
+    request.optics = {film};
+    for (double sigma = 0.01; sigma < 1.0; sigma *= 1.17) {
+      for (double q = 1.6; q < 9.0; q += 0.673) request.shapes.push_back({sigma, q});
+    }
+    request.set_grid();
+    const std::vector<Moments> moments = device.evaluate(request, {});
+    request.precision = Precision::kDouble;
+    const std::vector<Moments> exact = device.evaluate(request, {});
+    for (std::size_t i = 0; i < moments.size(); ++i)
+      expect_within_bounds(moments[i], exact[i], "sigma " + std::to_string(request.shapes[i].sigma));
+  }
 }
 
 TEST(Coatings, MuellerMatrices_AgreeWithTheReference) {

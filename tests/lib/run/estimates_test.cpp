@@ -65,6 +65,12 @@ TEST(ScatteringGap, WhateverTheAccuracyOfTheScene_IsTheSame) {
 
 TEST(ScatteringGap, Mirror_IsZero) { EXPECT_NEAR(gap_of({"surface.sigma=0"}).value(), 0.0, 1e-15); }
 
+TEST(ScatteringGap, NoEntries_NoValue) {
+  const SceneValues scene = parse_scene(kScene, "s.toml", {});
+  const SceneEntries none;
+  EXPECT_FALSE(scattering_gap(scene, none, plan_effects(scene, none, false)).has_value());
+}
+
 TEST(ScatteringGap, WhereNothingIsLeftToSay_NoValue) {
   const std::vector<Overrides> scenes = {
       {"surface.scattering=multiple"},    {"emission=none", "source.irradiance=1"},

@@ -271,6 +271,16 @@ TEST_P(SlopeOrders, WidthsOfOneToThree_MeetTheTolerance) {
   }
 }
 
+TEST_P(SlopeOrders, EvaluationsOfTheEntries_AddUpToThoseOfTheEvaluator) {
+  MomentsRequest request = empty_request(Distribution::kGaussian, kLights[1]);
+  for (const double theta_deg : {20.0, 50.0, 70.0})
+    request.append({theta_deg, {.sigma = 0.01 * theta_deg, .q = 3.0, .sigma_cross = 0.3}, FacetOptics{1.6, 0.5}});
+  const auto evaluator = make_evaluator(GetParam());
+  double sum = 0.0;
+  for (const Moments& m : evaluator->evaluate(request, {})) sum += m.evaluations;
+  EXPECT_NEAR(sum, evaluator->report().evaluations, 1e-5 * sum);
+}
+
 TEST_P(SlopeOrders, Vacuum_ReflectsNothing) {
   for (const Light& light : kLights) {
     MomentsRequest request = empty_request(Distribution::kCauchy, light);

@@ -143,7 +143,7 @@ Moments moments_at_azimuth(const OrderSums& sums, const KernelData& data, const 
   const AtAzimuth at(sums, eccentricity(data.slopes[entry.shape]), azimuth_deg);
   kernel::MomentsNode node = moments_node(sums, at);
   node.deficit += data.thetas[entry.theta].c * sums.steeper;
-  node.evaluations = sums.evaluations / static_cast<double>(data.shapes.size());
+  node.evaluations = sums.evaluations;
   std::vector<double> columns;
   for (std::size_t i = 0; i < data.column_count(); ++i) {
     const Index first = kMembers + kNumbersOfColumn * to_index(i);

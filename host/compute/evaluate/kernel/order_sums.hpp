@@ -27,9 +27,9 @@ struct OrderWeights {
 struct OrderSums {
   Eigen::MatrixXd values;  ///< a column for each order
   Eigen::MatrixXd apart;
-  double many = 0.0;     ///< MomentsNode::many
-  double steeper = 0.0;  ///< OrderWeights::steeper
-  double evaluations = 0.0;
+  double many = 0.0;         ///< MomentsNode::many
+  double steeper = 0.0;      ///< OrderWeights::steeper
+  double evaluations = 0.0;  ///< of one entry
 };
 
 OrderSums order_sums(const SlopeSamples& samples, const OrderWeights& weights,

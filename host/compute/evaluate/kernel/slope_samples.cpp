@@ -304,13 +304,15 @@ struct SlopeSampling::Impl {
     std::vector<SlopeWeights> sector_weights;
     OrderSums sums;
     SlopeShape known;
-    std::size_t entry = data.bundles[samples.bundle].first_entry;
+    const Bundle& bundle = data.bundles[samples.bundle];
+    std::size_t entry = bundle.first_entry;
     for (const std::uint32_t shape : data.bundle_shapes(samples.bundle)) {
       SlopeShape slopes = data.slopes[shape];
       const double azimuth = slopes.azimuth_deg;
       slopes.azimuth_deg = 0.0;  // all azimuths share the sums
       if (!(slopes == known)) {
         sums = order_sums(samples, order_weights(samples, shape, sector_weights), azimuths, azimuth_columns, data);
+        sums.evaluations /= static_cast<double>(bundle.count);
         known = slopes;
       }
       moments[entry++] = moments_at_azimuth(sums, data, data.entry(samples.bundle, shape), azimuth, unit_roundoff);

@@ -118,8 +118,8 @@ class RowMaker {
 
   const KernelData& data_;
   Rows rows_;
-  BundleChunks chunks_;                 // of the last bundle
-  std::vector<std::uint32_t> numbers_;  // of these chunks
+  BundleChunks chunks_;                 // those that the last added bundle has
+  std::vector<std::uint32_t> numbers_;  // their positions in rows_.chunks
   std::unordered_map<std::vector<std::uint32_t>, std::uint32_t, boost::hash<std::vector<std::uint32_t>>> known_;
 };
 

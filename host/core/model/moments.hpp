@@ -55,7 +55,7 @@ struct Bundle {
   }
 };
 
-/// What a request asks for each of its entries.
+/// The settings that all entries of a request share.
 struct MomentsSettings {
   Distribution distribution = Distribution::kCauchy;
   Masking masking = Masking::kIntegral;

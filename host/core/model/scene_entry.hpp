@@ -108,7 +108,7 @@ class SceneEntries {
     return is_grid_ ? sigma().size() * q().size() * counts_[Axis::kSigmaCross] * counts_[Axis::kSurfaceAzimuth] : 1;
   }
   bool has_own_index() const;  ///< true if some entries have their own n or k
-  /// The n and k that entries have: all combinations of a grid's axes, or those of the points.
+  /// The n and k that entries have: the combinations of both axes of a grid, or n and k of each point that has them.
   std::vector<OpticalConstants> own_indices() const;
 
   // The functions from here to index_at() need a grid.

@@ -111,7 +111,7 @@ struct SlopeTiles {
   SlopeTiles(const MomentsRequest& request, const dolp::Device& device, const VulkanOptions& options,
              Tables tables = Tables::kComputed);
   static constexpr std::size_t kBatchBundles = 1024;  ///< each has some hundred slopes
-  SlopeBatch batch(std::size_t first) const;          ///< of bundles from number `first` on
+  SlopeBatch batch(std::size_t first) const;          ///< `first`: position of its first bundle
   DispatchCount count() const;
 
   Packing packing;

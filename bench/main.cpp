@@ -1,6 +1,8 @@
 // The command line of the benchmark: one subcommand for each study.
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cstdio>
+#include <limits>
 #include <string>
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -14,90 +16,64 @@
 namespace dolp::bench {
 namespace {
 
-void add_common(CLI::App& study, StudyOptions& options) {
-  study.add_option("--json", options.json_path, "file for the results; - is stdout, without the table");
-  study.add_flag("--quick", options.quick, "few settings and short repeats: less than a minute");
-  study.add_option("--device", options.device, "Vulkan device: its position or a part of its name");
-  study.add_flag("--quiet", options.quiet, "no progress bar");
-}
+/// A subcommand. Empty texts: it lacks the option.
+struct StudyRow {
+  const char* name;
+  const char* what;
+  void (*run)(const StudyOptions& options);
+  std::size_t entries;
+  const char* what_entries;
+  const char* what_case;
+};
 
-void add_entries(CLI::App& study, StudyOptions& options, const char* what) {
-  study.add_option("--entries", options.entries, what)->check(CLI::Range(1, 1 << 24))->capture_default_str();
-}
+constexpr std::array<StudyRow, 5> kStudies = {
+    {{"accuracy", "error against time per entry, for all methods", run_accuracy, 1024,
+      "entries of one call of dolp's evaluators; more for a GPU", "only this case (repeatable)"},
+     {"throughput", "entries a second, with all axes", run_throughput, std::size_t{256} * 64 * 64,
+      "entries of the largest grid; more for a GPU", "only this part (repeatable): grids, materials"},
+     {"scale", "time and peak memory of tables of all sizes, and of shards", run_scale, 100'000'000,
+      "entries of the largest table", ""},
+     {"fit", "synthetic measurements with a known truth, fitted", run_fit_study, 200, "sets of measurements", ""},
+     {"kernels", "registers and spilled values of the kernels, by the driver's compiler", run_kernels, 0, "",
+      "only this precision: float, double"}}};
 
-void add_accuracy(CLI::App& app, StudyOptions& options) {
-  CLI::App* study = app.add_subcommand("accuracy", "error against time per entry, for all methods");
-  add_common(*study, options);
-  study->add_option("--case", options.cases, "only this case (repeatable)")->allow_extra_args(false);
-  study->add_option("--method", options.methods, "only this method (repeatable)")->allow_extra_args(false);
-  add_entries(*study, options, "entries of one call of dolp's evaluators; more for a GPU");
-}
-
-CLI::App* add_throughput(CLI::App& app, StudyOptions& options) {
-  CLI::App* study = app.add_subcommand("throughput", "entries a second, with all axes");
-  add_common(*study, options);
-  study->add_option("--case", options.cases, "only this part (repeatable): grids, materials")->allow_extra_args(false);
-  options.entries = std::size_t{256} * 64 * 64;
-  add_entries(*study, options, "entries of the largest grid; more for a GPU");
-  return study;
-}
-
-CLI::App* add_scale(CLI::App& app, StudyOptions& options) {
-  CLI::App* study = app.add_subcommand("scale", "time and peak memory of tables of all sizes, and of shards");
-  add_common(*study, options);
-  options.entries = 100'000'000;
-  study->add_option("--entries", options.entries, "entries of the largest table")->capture_default_str();
-  return study;
-}
-
-CLI::App* add_fit(CLI::App& app, StudyOptions& options) {
-  CLI::App* study = app.add_subcommand("fit", "synthetic measurements with a known truth, fitted");
-  add_common(*study, options);
-  options.entries = 200;
-  add_entries(*study, options, "sets of measurements");
-  study->add_option("--first-set", options.first_set, "number of the first set")->capture_default_str();
-  return study;
-}
-
-CLI::App* add_kernels(CLI::App& app, StudyOptions& options) {
-  CLI::App* study =
-      app.add_subcommand("kernels", "registers and spilled values of the kernels, by the driver's compiler");
-  add_common(*study, options);
-  study->add_option("--case", options.cases, "only this precision: float, double")->allow_extra_args(false);
-  return study;
+void add_study(CLI::App& app, const StudyRow& row, StudyOptions& options) {
+  const std::string name = row.name;
+  CLI::App* const study = app.add_subcommand(name, row.what);
+  study->add_option("--json", options.json_path, "file for the results; - is stdout, without the table");
+  study->add_flag("--quick", options.quick, "few settings and short repeats: less than a minute");
+  study->add_option("--device", options.device, "Vulkan device: its position or a part of its name");
+  study->add_flag("--quiet", options.quiet, "no progress bar");
+  if (*row.what_case != '\0') study->add_option("--case", options.cases, row.what_case)->allow_extra_args(false);
+  if (*row.what_entries != '\0') {
+    options.entries = row.entries;
+    study->add_option("--entries", options.entries, row.what_entries)
+        ->check(CLI::Range(std::size_t{1}, std::numeric_limits<std::size_t>::max()))
+        ->capture_default_str();
+  }
+  if (name == "accuracy")
+    study->add_option("--method", options.methods, "only this method (repeatable)")->allow_extra_args(false);
+  if (name == "fit")
+    study->add_option("--first-set", options.first_set, "number of the first set")->capture_default_str();
 }
 
 int parse_and_run(int argc, char** argv) {
   CLI::App app("dolp-bench: dolp against other ways to compute the same moments, and against itself", "dolp-bench");
   app.set_version_flag("--version", "dolp-bench " DOLP_VERSION);
   app.require_subcommand(1);
-  StudyOptions accuracy;
-  accuracy.arguments.assign(argv, argv + argc);
-  add_accuracy(app, accuracy);
-  StudyOptions throughput = accuracy;
-  StudyOptions scale = accuracy;
-  const CLI::App* scale_study = add_scale(app, scale);
-  StudyOptions fit = accuracy;
-  const CLI::App* fit_study = add_fit(app, fit);
-  StudyOptions kernels = accuracy;
-  const CLI::App* kernels_study = add_kernels(app, kernels);
-  const CLI::App* throughput_study = add_throughput(app, throughput);
+  std::array<StudyOptions, kStudies.size()> options;
+  for (std::size_t i = 0; i < kStudies.size(); ++i) {
+    options[i].arguments.assign(argv, argv + argc);
+    add_study(app, kStudies[i], options[i]);
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
     throw InputError(std::string(error.what()) + " (see dolp-bench --help)");
   }
-  if (throughput_study->parsed()) {
-    run_throughput(throughput);
-  } else if (scale_study->parsed()) {
-    run_scale(scale);
-  } else if (fit_study->parsed()) {
-    run_fit_study(fit);
-  } else if (kernels_study->parsed()) {
-    run_kernels(kernels);
-  } else {
-    run_accuracy(accuracy);
+  for (std::size_t i = 0; i < kStudies.size(); ++i) {
+    if (app.got_subcommand(kStudies[i].name)) kStudies[i].run(options[i]);
   }
   if (std::fflush(stdout) != 0) throw IoError("standard output: cannot write the table");
   return kExitDone;

@@ -12,14 +12,14 @@ namespace {
 
 class EvaluatorSolver final : public Solver {
  public:
-  EvaluatorSolver(std::unique_ptr<ModelEvaluator> evaluator, Precision precision, bool may_interpolate = false)
-      : precision_(precision), may_interpolate_(may_interpolate), evaluator_(std::move(evaluator)) {}
+  EvaluatorSolver(std::unique_ptr<ModelEvaluator> evaluator, Precision precision)
+      : precision_(precision), evaluator_(std::move(evaluator)) {}
 
   Solution solve(const MomentsRequest& request, double setting) override {
     MomentsRequest wanted = request;
     wanted.tolerance = setting;
     wanted.precision = precision_;
-    wanted.may_interpolate = may_interpolate_;
+    wanted.may_interpolate = false;
     const EvaluationReport before = evaluator_->report();
     Work host_work;
     const PlannedMoments moments = planned_moments(MomentsPlan(wanted), *evaluator_, nullptr, host_work);
@@ -40,7 +40,6 @@ class EvaluatorSolver final : public Solver {
 
  private:
   Precision precision_;
-  bool may_interpolate_;
   std::unique_ptr<ModelEvaluator> evaluator_;
 };
 
@@ -59,10 +58,6 @@ std::unique_ptr<ModelEvaluator> vulkan_evaluator(const SolverOptions& options, P
 
 std::unique_ptr<Solver> make_vulkan(const SolverOptions& options, Precision precision) {
   return std::make_unique<EvaluatorSolver>(vulkan_evaluator(options, precision), precision);
-}
-
-std::unique_ptr<Solver> make_vulkan_table(const SolverOptions& options) {
-  return std::make_unique<EvaluatorSolver>(vulkan_evaluator(options, Precision::kFloat), Precision::kFloat, true);
 }
 
 std::unique_ptr<Solver> make_cpu(Precision precision) {

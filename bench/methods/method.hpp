@@ -67,8 +67,7 @@ struct Method {
   std::vector<double> quick_settings;  ///< the subset that --quick runs
   /// True if one call computes many entries. The time per entry is then the mean over the entries of the call.
   bool is_batched = false;
-  bool needs_grid = false;  ///< true if the method is fast only for entries that form a dense grid
-  bool is_random = false;   ///< answers differ from call to call; the error is the rms over the calls
+  bool is_random = false;  ///< answers differ from call to call; the error is the rms over the calls
   /// Creates the solver. Errors: Unavailable.
   std::function<std::unique_ptr<Solver>(const SolverOptions&)> make;
 };
@@ -89,9 +88,6 @@ std::unique_ptr<Solver> make_pcubature();
 std::unique_ptr<Solver> make_dblquad(const SolverOptions& options);
 /// Errors: Unavailable if no device supports `precision`.
 std::unique_ptr<Solver> make_vulkan(const SolverOptions& options, Precision precision);
-/// The Vulkan method in float. On a grid with many slope distributions it computes some and interpolates the others.
-std::unique_ptr<Solver> make_vulkan_table(const SolverOptions& options);
 std::unique_ptr<Solver> make_cpu(Precision precision);
-std::unique_ptr<Solver> make_native();
 
 }  // namespace dolp::bench

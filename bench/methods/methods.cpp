@@ -110,30 +110,9 @@ std::vector<Method> all() {
     list.push_back(evaluator("vulkan", precision,
                              [precision](const SolverOptions& options) { return make_vulkan(options, precision); }));
   }
-  list.push_back({.name = "vulkan-table",
-                  .label = "dolp Vulkan table",
-                  .what = "the kernel of dolp in float at the nodes of a dense grid, the rest interpolated to the same "
-                          "tolerance, as `dolp table` does",
-                  .cores = "all",
-                  .setting_name = "tolerance",
-                  .settings = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6},
-                  .quick_settings = {1e-3, 1e-5},
-                  .is_batched = true,
-                  .needs_grid = true,
-                  .make = make_vulkan_table});
   for (const Precision precision : {Precision::kFloat, Precision::kDouble}) {
     list.push_back(evaluator("cpu", precision, [precision](const SolverOptions&) { return make_cpu(precision); }));
   }
-  list.push_back(
-      {.name = "native-float",
-       .label = "native C++ float",
-       .what = "the same source in the same groups and pieces, compiled for this processor, all cores, float",
-       .cores = "all",
-       .setting_name = "tolerance",
-       .settings = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6},
-       .quick_settings = {1e-3, 1e-5},
-       .is_batched = true,
-       .make = [](const SolverOptions&) { return make_native(); }});
   return list;
 }
 

@@ -13,11 +13,9 @@ STYLES = {
     "pcubature": ("pcubature", "#CC79A7", "^", "--"),
     "dblquad": ("SciPy", "#555555", "X", "-"),
     "vulkan-float": ("Vulkan float", "#0072B2", "o", "-"),
-    "vulkan-table": ("Vulkan table", "#0072B2", "*", "-"),
     "vulkan-double": ("Vulkan double", "#0072B2", "o", "--"),
     "cpu-float": ("CPU float", "#D55E00", "p", "-"),
     "cpu-double": ("CPU double", "#D55E00", "p", "--"),
-    "native-float": ("native float", "#000000", "h", "-"),
 }
 OTHER_STYLE = ("#000000", "*", ":")
 MASKINGS = {"none": "#009E73", "v-cavity": "#E69F00", "integral": "#0072B2", "smith": "#CC79A7"}

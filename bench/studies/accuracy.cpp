@@ -24,7 +24,7 @@ const TimingPolicy kQuickTiming{
     .min_repeats = 3, .max_repeats = 5, .random_repeats = 16, .enough_s = 0.1, .most_s = 1.0};
 constexpr double kFullLimit = 20.0;  // seconds; methods that might not end are stopped after this time
 constexpr double kQuickLimit = 1.5;
-constexpr std::size_t kQuickEntries = 512;
+constexpr std::size_t kQuickAccuracyEntries = 512;
 
 double rms_error(const std::vector<Answer>& answers, const Truth& truth) {
   double sum = 0.0;
@@ -57,9 +57,9 @@ ordered_json measured_row(const Method& method, const Case& which, double settin
 }
 
 /// Measures the requested methods, cases and settings.
-class Study {
+class AccuracyStudy {
  public:
-  explicit Study(StudyRun& run);
+  explicit AccuracyStudy(StudyRun& run);
   void measure_all();
 
  private:
@@ -77,15 +77,14 @@ class Study {
   std::vector<Truth> truths_;
 };
 
-Study::Study(StudyRun& run)
+AccuracyStudy::AccuracyStudy(StudyRun& run)
     : run_(run),
       methods_(chosen(methods(), run.options().methods, "--method")),
       cases_(chosen(cases(), run.options().cases, "--case")) {
-  std::erase_if(methods_, [](const Method& method) { return method.needs_grid; });
   for (const Method& method : methods_) run_.expect(cases_.size() * settings(method).size());
 }
 
-void Study::describe() {
+void AccuracyStudy::describe() {
   run_.describe("accuracy", "max(|d r_i|, |d r_q|)/r_i against the reference; random methods: rms over the repeats",
                 "seconds an entry, median over raw_times_s of a whole call over its entries; tables and nodes of the "
                 "call included, creation of devices and interpreters not");
@@ -110,12 +109,12 @@ void Study::describe() {
   }
 }
 
-void Study::measure_all() {
+void AccuracyStudy::measure_all() {
   describe();
   for (const Method& method : methods_) run_method(method);
 }
 
-void Study::run_method(const Method& method) {
+void AccuracyStudy::run_method(const Method& method) {
   std::unique_ptr<Solver> solver;
   std::string reason;
   try {
@@ -134,9 +133,9 @@ void Study::run_method(const Method& method) {
   if (solver) note_where(run_.json(), method, *solver);
 }
 
-void Study::run_settings(const Method& method, Solver& solver, const Case& which, const Truth& truth) {
+void AccuracyStudy::run_settings(const Method& method, Solver& solver, const Case& which, const Truth& truth) {
   const StudyOptions& options = run_.options();
-  const std::size_t batch = options.quick ? std::min(options.entries, kQuickEntries) : options.entries;
+  const std::size_t batch = options.quick ? std::min(options.entries, kQuickAccuracyEntries) : options.entries;
   const MomentsRequest request = neighbourhood(which, method.is_batched ? batch : 1);
   std::string too_long;
   for (const double setting : settings(method)) {
@@ -157,7 +156,7 @@ void Study::run_settings(const Method& method, Solver& solver, const Case& which
   }
 }
 
-void Study::not_run(const Method& method, const Case& which, double setting, const std::string& reason) {
+void AccuracyStudy::not_run(const Method& method, const Case& which, double setting, const std::string& reason) {
   ordered_json row = row_start(method, which, setting);
   row["not_run"] = reason;
   run_.finish(row);
@@ -174,7 +173,7 @@ std::string row_text(const ordered_json& row) {
 }
 
 /// The results as tables for the terminal.
-std::string table_text(const ordered_json& result) {
+std::string accuracy_table(const ordered_json& result) {
   std::string text;
   for (const ordered_json& one : result["cases"]) {
     text +=
@@ -198,9 +197,9 @@ void run_accuracy(const StudyOptions& options) {
   run_study(options, {.measure =
                           [](StudyRun& run) {
                             check_device(run.options());
-                            Study(run).measure_all();
+                            AccuracyStudy(run).measure_all();
                           },
-                      .table_text = table_text});
+                      .table_text = accuracy_table});
 }
 
 }  // namespace dolp::bench

@@ -10,7 +10,7 @@ constexpr double kSpread = 1e-3;
 
 /// Element i of a sequence that fills the interval (-1, 1) evenly and never repeats. The element is 2 x - 1, where x is
 /// the fractional part of i * irrational.
-double spread(std::size_t i, double irrational) {
+double even_offset(std::size_t i, double irrational) {
   const double x = irrational * static_cast<double>(i);
   return 2.0 * (x - std::floor(x)) - 1.0;
 }
@@ -32,10 +32,10 @@ MomentsRequest neighbourhood(const Case& which, std::size_t count) {
   MomentsRequest request;
   request.masking = which.masking;
   for (std::size_t i = 0; i < count; ++i) {
-    const double theta_deg = which.theta_deg * (1.0 + kSpread * (i > 0 ? spread(i, std::numbers::phi) : 0.0));
+    const double theta_deg = which.theta_deg * (1.0 + kSpread * (i > 0 ? even_offset(i, std::numbers::phi) : 0.0));
     SlopeShape shape = which.shape;
-    shape.sigma *= 1.0 + kSpread * (i > 0 ? spread(i, std::numbers::sqrt2) : 0.0);
-    shape.q *= 1.0 + kSpread * (i > 0 ? spread(i, std::numbers::sqrt3) : 0.0);
+    shape.sigma *= 1.0 + kSpread * (i > 0 ? even_offset(i, std::numbers::sqrt2) : 0.0);
+    shape.q *= 1.0 + kSpread * (i > 0 ? even_offset(i, std::numbers::sqrt3) : 0.0);
     request.append({theta_deg, shape, which.index});
   }
   return request;

@@ -213,7 +213,7 @@ void measure_sets(StudyRun& run) {
   run.json()["bracket"]["share_of_n"] = median_share_of_n(run.rows());
 }
 
-std::string table_text(const ordered_json& result) {
+std::string fits_table(const ordered_json& result) {
   const ordered_json& coverage = result["coverage"];
   std::string text = fmt::format(
       "{} synthetic sets, {} intervals\n  68 % intervals hold the truth {:.1f} %\n  95 % intervals {:.1f} %\n"
@@ -264,7 +264,7 @@ void warn(ordered_json& result) {
 }  // namespace
 
 void run_fit_study(const StudyOptions& options) {
-  run_study(options, {.measure = measure_sets, .table_text = table_text, .warn = warn});
+  run_study(options, {.measure = measure_sets, .table_text = fits_table, .warn = warn});
 }
 
 }  // namespace dolp::bench

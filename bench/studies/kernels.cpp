@@ -31,14 +31,14 @@ struct NamedKernel {
 std::vector<NamedKernel> named_kernels() {
   using enum Masking;
   constexpr EntryPoint kSlopes = EntryPoint::kSlopes;
-  constexpr std::uint32_t kSky = DOLP_SKY_FUNCTIONS;
+  constexpr std::uint32_t kSkyColumns = DOLP_SKY_FUNCTIONS;
   constexpr std::uint32_t kResponses = DOLP_COLUMNS;
   constexpr std::uint32_t kResponseKind = DOLP_COLUMNS_RESPONSE;
   return {{"integral", {.masking = kIntegral}},
           {"integral, total reflection", {.masking = kIntegral, .has_total_reflection = true}},
           {"integral, films", {.masking = kIntegral, .has_curves = true}},
           {"integral, direct emission", {.masking = kIntegral, .has_direct = true}},
-          {"integral, sky", {.masking = kIntegral, .columns = kSky}},
+          {"integral, sky", {.masking = kIntegral, .columns = kSkyColumns}},
           {"integral, responses", {.masking = kIntegral, .columns = kResponses, .column_kind = kResponseKind}},
           {"integral, responses, total reflection",
            {.masking = kIntegral, .has_total_reflection = true, .columns = kResponses, .column_kind = kResponseKind}},
@@ -46,21 +46,21 @@ std::vector<NamedKernel> named_kernels() {
           {"smith, responses", {.masking = kSmith, .columns = kResponses, .column_kind = kResponseKind}},
           {"rows of four, integral", {.masking = kIntegral, .width = kRowWidth}},
           {"rows of four, smith", {.masking = kSmith, .width = kRowWidth}},
-          {"rows of four, integral, sky", {.masking = kIntegral, .columns = kSky, .width = kRowWidth}},
+          {"rows of four, integral, sky", {.masking = kIntegral, .columns = kSkyColumns, .width = kRowWidth}},
           {"rows of four, integral, responses",
            {.masking = kIntegral, .columns = kResponses, .column_kind = kResponseKind, .width = kRowWidth}},
           {"masking table", {.entry = EntryPoint::kMaskingTable, .masking = kIntegral}},
           {"none", {.entry = kSlopes}},
           {"v-cavity", {.entry = kSlopes, .masking = kVCavity}},
           {"v-cavity, total reflection", {.entry = kSlopes, .masking = kVCavity, .has_total_reflection = true}},
-          {"v-cavity, sky", {.entry = kSlopes, .masking = kVCavity, .columns = kSky}},
+          {"v-cavity, sky", {.entry = kSlopes, .masking = kVCavity, .columns = kSkyColumns}},
           {"v-cavity, responses",
            {.entry = kSlopes, .masking = kVCavity, .columns = kResponses, .column_kind = kResponseKind}},
           {"v-cavity, orders", {.entry = kSlopes, .masking = kVCavity, .has_orders = true}},
           {"all bounces", {.entry = kSlopes, .masking = kVCavity, .is_multiple = true}},
           {"all bounces, orders", {.entry = kSlopes, .masking = kVCavity, .is_multiple = true, .has_orders = true}},
           {"all bounces, orders, sky",
-           {.entry = kSlopes, .masking = kVCavity, .is_multiple = true, .columns = kSky, .has_orders = true}}};
+           {.entry = kSlopes, .masking = kVCavity, .is_multiple = true, .columns = kSkyColumns, .has_orders = true}}};
 }
 
 struct NamedPrecision {
@@ -128,7 +128,7 @@ void measure_kernels(StudyRun& run) {
   }
 }
 
-std::string table_text(const ordered_json& result) {
+std::string kernels_table(const ordered_json& result) {
   std::string text;
   for (const ordered_json& row : result["results"]) {
     text += fmt::format("{:<40} {:<7}", row["case"].get<std::string>(), row["setting"].get<std::string>());
@@ -142,7 +142,7 @@ std::string table_text(const ordered_json& result) {
 }  // namespace
 
 void run_kernels(const StudyOptions& options) {
-  run_study(options, {.measure = measure_kernels, .table_text = table_text});
+  run_study(options, {.measure = measure_kernels, .table_text = kernels_table});
 }
 
 }  // namespace dolp::bench

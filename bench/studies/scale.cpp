@@ -25,7 +25,7 @@ namespace {
 using nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-constexpr std::size_t kQuickEntries = 1'000'000;
+constexpr std::size_t kQuickListEntries = 1'000'000;
 constexpr std::size_t kShardedEntries = 10'000'000;
 constexpr std::array<std::size_t, 4> kShards = {1, 2, 4, 8};
 constexpr std::size_t kBytesOfKilobyte = 1024;
@@ -86,12 +86,18 @@ pid_t start(const std::vector<std::string>& arguments) {
   return process;
 }
 
-/// Waits for the end of a program and returns its peak memory. Errors: Unavailable if the program failed.
-std::size_t peak_bytes(pid_t process) {
-  int status = 0;
-  rusage used{};
-  if (::wait4(process, &status, 0, &used) < 0 || status != 0) throw Unavailable("dolp failed");
-  return static_cast<std::size_t>(used.ru_maxrss) * kBytesOfKilobyte;
+/// Waits for the end of all programs and returns the largest peak memory. Errors: Unavailable if a program failed.
+std::size_t peak_bytes(const std::vector<pid_t>& processes) {
+  std::size_t peak = 0;
+  bool is_done = true;
+  for (const pid_t process : processes) {
+    int status = 0;
+    rusage used{};
+    is_done = ::wait4(process, &status, 0, &used) >= 0 && status == 0 && is_done;
+    peak = std::max(peak, static_cast<std::size_t>(used.ru_maxrss) * kBytesOfKilobyte);
+  }
+  if (!is_done) throw Unavailable("dolp failed");
+  return peak;
 }
 
 std::vector<std::string> table_command(const StudyOptions& options, const Folder& folder, const Size& size) {
@@ -108,10 +114,10 @@ std::vector<std::string> table_command(const StudyOptions& options, const Folder
 ordered_json size_row(const StudyOptions& options, const Size& size) {
   const Folder folder;
   const auto begin = std::chrono::steady_clock::now();
-  const std::size_t peak = peak_bytes(start(table_command(options, folder, size)));
+  const std::size_t peak = peak_bytes({start(table_command(options, folder, size))});
   const double time_s = seconds_since(begin);
   const auto copy = std::chrono::steady_clock::now();
-  peak_bytes(start({"/bin/cp", folder.at("t.nc"), folder.at("copy.nc")}));
+  peak_bytes({start({"/bin/cp", folder.at("t.nc"), folder.at("copy.nc")})});
   return {{"method", "dolp table"},
           {"case", "entries"},
           {"setting", fmt::format("{} x {} x {} x 50 x 50 x 4", size.wavelengths, size.n, size.k)},
@@ -136,12 +142,11 @@ ordered_json shards_row(const StudyOptions& options, const Size& size, std::size
     processes.push_back(start(command));
     merge.push_back(folder.at(fmt::format("t.{}-of-{}.nc", i, count)));
   }
-  std::size_t peak = 0;
-  for (const pid_t process : processes) peak = std::max(peak, peak_bytes(process));
+  const std::size_t peak = peak_bytes(processes);
   const double time_s = seconds_since(begin);
   const auto join = std::chrono::steady_clock::now();
   merge.insert(merge.end(), {"-o", folder.at("t.nc"), "--quiet"});
-  if (count > 1) peak_bytes(start(merge));
+  if (count > 1) peak_bytes({start(merge)});
   return {
       {"method", "dolp table"},    {"case", "shards"},       {"setting", std::to_string(count)},
       {"entries", size.entries()}, {"time_s", time_s},       {"merge_time_s", count > 1 ? seconds_since(join) : 0.0},
@@ -150,7 +155,7 @@ ordered_json shards_row(const StudyOptions& options, const Size& size, std::size
 
 void measure_tables(StudyRun& run) {
   const StudyOptions& options = run.options();
-  const std::size_t most = options.quick ? std::min(options.entries, kQuickEntries) : options.entries;
+  const std::size_t most = options.quick ? std::min(options.entries, kQuickListEntries) : options.entries;
   std::vector<Size> sizes;
   for (const Size& size : kSizes) {
     if (size.entries() <= most) sizes.push_back(size);
@@ -166,7 +171,7 @@ void measure_tables(StudyRun& run) {
   for (const std::size_t count : kShards) run.finish(shards_row(options, sharded, count));
 }
 
-std::string text_of(const ordered_json& result) {
+std::string scale_table(const ordered_json& result) {
   std::string text = fmt::format("{:<8} {:>28} {:>12} {:>10} {:>10}\n", "case", "setting", "entries", "time", "peak");
   for (const ordered_json& row : result["results"]) {
     text += fmt::format("{:<8} {:>28} {:>12} {:>10} {:>7.0f} MB\n", row["case"].get<std::string>(),
@@ -178,6 +183,8 @@ std::string text_of(const ordered_json& result) {
 
 }  // namespace
 
-void run_scale(const StudyOptions& options) { run_study(options, {.measure = measure_tables, .table_text = text_of}); }
+void run_scale(const StudyOptions& options) {
+  run_study(options, {.measure = measure_tables, .table_text = scale_table});
+}
 
 }  // namespace dolp::bench

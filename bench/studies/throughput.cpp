@@ -39,10 +39,10 @@ constexpr std::array<GridSize, 8> kGrids = {{{32, 32, 32},
 // Position of the main grid in kGrids. The part `grids` also runs the other grids, and `materials` runs kMaterialGrids.
 // All other parts run only the main grid.
 constexpr std::size_t kMainGrid = 1;
-constexpr std::size_t kQuickEntries = std::size_t{24} * 24 * 24;
+constexpr std::size_t kQuickGridEntries = std::size_t{24} * 24 * 24;
 constexpr std::size_t kFullRepeats = 5;
 constexpr std::size_t kQuickRepeats = 2;
-constexpr double kLongTime = 1.0;  // seconds; a grid that takes longer runs only kQuickRepeats times
+constexpr double kLongGridTime = 1.0;  // seconds; a grid that takes longer runs only kQuickRepeats times
 /// A part of the study, with its name for the option --case.
 struct Part {
   std::string name;
@@ -191,9 +191,9 @@ ordered_json grid_row(Masking masking, const GridRun& run) {
   return row;
 }
 
-class Study {
+class ThroughputStudy {
  public:
-  explicit Study(StudyRun& run);
+  explicit ThroughputStudy(StudyRun& run);
   void measure_all();
 
  private:
@@ -209,15 +209,15 @@ class Study {
   std::vector<GridSize> grids_;
 };
 
-Study::Study(StudyRun& run)
+ThroughputStudy::ThroughputStudy(StudyRun& run)
     : run_(run),
       parts_(chosen(kParts, run.options().cases, "--case")),
-      grids_(grids_up_to(quick() ? std::min(run.options().entries, kQuickEntries) : run.options().entries)) {
+      grids_(grids_up_to(quick() ? std::min(run.options().entries, kQuickGridEntries) : run.options().entries)) {
   if (runs("grids")) run_.expect(kMaskings.size() * (grids_.size() + 2 * kTolerances.size() - 1));
   if (runs("materials")) run_.expect(kMaskingsByRows.size() * material_axes().size());
 }
 
-void Study::describe() {
+void ThroughputStudy::describe() {
   run_.describe(
       "throughput", "stated_error: largest rho_error_estimate of the entries without a status",
       "seconds an entry, median: plan, evaluation and radiometry as `dolp table` runs them, warm, files and device "
@@ -226,7 +226,7 @@ void Study::describe() {
   run_.json()["scene"] = "stainless steel, precision auto";
 }
 
-void Study::measure_all() {
+void ThroughputStudy::measure_all() {
   describe();
   if (runs("grids")) {
     for (const Masking masking : kMaskings) run_grids(masking);
@@ -236,7 +236,7 @@ void Study::measure_all() {
   }
 }
 
-void Study::run_grids(Masking masking) {
+void ThroughputStudy::run_grids(Masking masking) {
   VulkanEvaluator evaluator(VulkanOptions{.device = run_.options().device});
   std::vector<GridRun> runs;
   for (const GridSize& size : grids_) runs.push_back({size});
@@ -254,7 +254,7 @@ void Study::run_grids(Masking masking) {
   for (std::size_t i = 0; i < (quick() ? kQuickRepeats : kFullRepeats); ++i) {
     for (const GridRun& run : runs) {
       const std::vector<double> times_s = run.timed->times_s();
-      const bool is_long = !times_s.empty() && times_s.back() * static_cast<double>(run.size.entries()) > kLongTime;
+      const bool is_long = !times_s.empty() && times_s.back() * static_cast<double>(run.size.entries()) > kLongGridTime;
       if (i < kQuickRepeats || !is_long) run.timed->repeat();
     }
   }
@@ -269,7 +269,7 @@ void Study::run_grids(Masking masking) {
   }
 }
 
-void Study::run_materials(Masking masking) {
+void ThroughputStudy::run_materials(Masking masking) {
   VulkanEvaluator evaluator(VulkanOptions{.device = run_.options().device});
   const GridSize size = kMaterialGrids[quick() ? 1 : 0];
   std::vector<std::unique_ptr<TimedScene>> all;
@@ -323,12 +323,9 @@ void Study::run_materials(Masking masking) {
 }
 
 std::string table_line(const ordered_json& row) {
-  const std::string start =
-      fmt::format("  {:<12} {:<10} {:<24}", row["part"].get<std::string>(), row["case"].get<std::string>(),
-                  row["setting"].is_string() ? row["setting"].get<std::string>()
-                                             : fmt::format("{:g}", row["setting"].get<double>()));
-  if (row.contains("not_run")) return start + "not run: " + row["not_run"].get<std::string>() + "\n";
-  std::string line = start + fmt::format("{:>9}", time_text(row["time_s"].get<double>()));
+  std::string line =
+      fmt::format("  {:<12} {:<10} {:<24}{:>9}", row["part"].get<std::string>(), row["case"].get<std::string>(),
+                  row["setting"].get<std::string>(), time_text(row["time_s"].get<double>()));
   if (row.contains("kernel_time_s")) {
     line += fmt::format(" {:>9} in kernels, {:.3g} entries/s, {:.3g} evaluations/s, run {}",
                         time_text(row["kernel_time_s"].get<double>()), row["entries_per_s"].get<double>(),
@@ -340,7 +337,7 @@ std::string table_line(const ordered_json& row) {
   return line + "\n";
 }
 
-std::string table_text(const ordered_json& result) {
+std::string throughput_table(const ordered_json& result) {
   std::string text = fmt::format("{}; time per entry on {}\n", result["scene"].get<std::string>(),
                                  result["context"]["device"].value("name", std::string("no device")));
   for (const ordered_json& row : result["results"]) text += table_line(row);
@@ -350,7 +347,8 @@ std::string table_text(const ordered_json& result) {
 }  // namespace
 
 void run_throughput(const StudyOptions& options) {
-  run_study(options, {.measure = [](StudyRun& run) { Study(run).measure_all(); }, .table_text = table_text});
+  run_study(options,
+            {.measure = [](StudyRun& run) { ThroughputStudy(run).measure_all(); }, .table_text = throughput_table});
 }
 
 }  // namespace dolp::bench

@@ -49,7 +49,8 @@ def record_line(name, content):
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
-    version, files = build(pathlib.Path((config_settings or {}).get("build-dir", ROOT / "build/release")).resolve())
+    build_dir = pathlib.Path((config_settings or {}).get("build-dir", ROOT / "build/release")).resolve()
+    version, files = build(build_dir)
     if not any(name.endswith(sysconfig.get_config_var("EXT_SUFFIX")) for name in files):
         raise SystemExit(f"dolp: {sysconfig.get_path('stdlib')} is not the Python for which {build_dir} was configured; "
                          "use the system's, /usr/bin/python3 -m pip")

@@ -463,11 +463,11 @@ PYBIND11_MODULE(_native, module) {
     return py::make_tuple(to_str(plan.text), to_str(plan.json));
   });
   module.def("devices", [] { return to_list(dolp::devices(), description); });
-  module.def("materials", [] {
-    return to_list(dolp::materials(), [](const dolp::BuiltInMaterial& material) {
-      return py::make_tuple(material.name, material.from_um, material.to_um, material.source, material.kind);
-    });
-  });
+  const auto material_facts = [](const dolp::BuiltInMaterial& material) {
+    return py::make_tuple(material.name, material.from_um, material.to_um, material.source, material.kind);
+  };
+  module.def("materials", [=] { return to_list(dolp::materials(), material_facts); });
+  module.def("material", [=](const py::str& name) { return material_facts(dolp::material(to_utf8(name))); });
   module.def("keys", [] {
     const auto is_first = [](const dolp::Key& key) { return key.layer <= 1; };  // each further film has the same keys
     return to_list(dolp::keys() | std::views::filter(is_first), [](const dolp::Key& key) {

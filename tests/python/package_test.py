@@ -145,6 +145,7 @@ class Package(PackageCase):
         self.assertEqual(iron.n([[8, 9, 10]]).shape, (1, 3))
         self.assertIn("iron", repr(iron))
         self.assertEqual(dolp.material("WATER").name, "water 25C")
+        self.assertEqual(dolp.material("germanium").name, "Ge germanium")
         axes = iron.plot()
         self.assertEqual(([line.get_label() for line in axes.lines], axes.get_title()), (["n", "k"], "iron"))
         for call in (lambda: dolp.material("irn"), lambda: iron.n(1000)):

@@ -203,15 +203,18 @@ Effect source_row(const SceneValues& scene, const EffectPlan& plan) {
 
 Effect surroundings_row(const SceneValues& scene, const EffectPlan& plan) {
   if (!scene.surroundings) return absent("surroundings", "no [surroundings]");
-  const std::string reason = has_profile(scene)
-                                 ? scene.names.profile + ", reflected into the view"
-                                 : fmt::format("{:g} K, reflected into the view", scene.surroundings->temperature_K);
-  return part_row(scene, plan, Part::kSurroundings,
-                  {"surroundings", EffectState::kKept, reason, needs_of_moments(scene, plan)});
+  const Surroundings& sky = *scene.surroundings;
+  const std::string light =
+      !scene.names.profile.empty() ? scene.names.profile
+      : sky.profile ? fmt::format("{:g} K in the zenith, {:g} K at the horizon", *sky.zenith_K, *sky.horizon_K)
+                    : fmt::format("{:g} K", sky.temperature_K);
+  return part_row(
+      scene, plan, Part::kSurroundings,
+      {"surroundings", EffectState::kKept, light + ", reflected into the view", needs_of_moments(scene, plan)});
 }
 
 Effect profile_row(const SceneValues& scene, const EffectPlan& plan) {
-  if (!has_profile(scene)) return absent("profile", "no surroundings.profile");
+  if (!has_profile(scene)) return absent("profile", "the same in all directions");
   Effect row{"profile", EffectState::kKept, "the sky over the zenith, beyond its mean", {}};
   const std::size_t functions = plan.sky ? plan.sky->size() : 0;
   row.needs = functions == 0   ? std::string("closed form")

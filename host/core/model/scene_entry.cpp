@@ -221,6 +221,9 @@ bool SceneEntries::has_values(Axis axis) const {
         return (axis == Axis::kViewZenith ? point.view_zenith_deg : point.relative_azimuth_deg).has_value();
       });
     case Axis::kSigmaCross:
+      return is_grid_
+                 ? !axes_[axis].empty()
+                 : std::ranges::any_of(points_, [](const SceneEntry& point) { return point.shape.sigma_cross > 0.0; });
     case Axis::kSurfaceAzimuth:
       return !is_grid_ || !axes_[axis].empty();
     case Axis::kWavelength:

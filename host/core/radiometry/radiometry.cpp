@@ -36,7 +36,7 @@ void set_dolp(PointResult& result, const Stokes& sum) {
   const double margin = i - sum.i_error;
   if (std::isnan(result[kDolp])) {
     result[kErrorEstimate] = kNan;
-  } else if (margin > 0.0) {
+  } else if (margin > 0.0 && !std::isnan(sum.q_error) && !std::isnan(sum.u_error)) {
     result[kErrorEstimate] = (std::hypot(sum.q_error, sum.u_error) + std::abs(result[kDolp]) * sum.i_error) / margin;
   } else {
     result[kErrorEstimate] = kInfinity;
@@ -98,8 +98,18 @@ PointResult outside_domain() {
   return result;
 }
 
-bool is_known(const Moments& moments) {
-  return !std::isnan(moments.r_i) && !std::isnan(moments.r_q) && !std::isnan(moments.deficit);
+/// The result if an evaluator found no number. Its status makes the run compute the entry again with more accuracy.
+PointResult not_computed() {
+  PointResult result;
+  result[kErrorEstimate] = result[kRhoErrorEstimate] = kInfinity;
+  result.status = kToleranceNotMet | kRhoToleranceNotMet;
+  return result;
+}
+
+bool is_known(const Moments& moments, bool with_direct) {
+  const double sum = moments.r_i + moments.r_q + moments.deficit + moments.r_u;
+  if (std::isnan(with_direct ? sum + moments.direct_i + moments.direct_q + moments.direct_u : sum)) return false;
+  return std::ranges::none_of(moments.columns, [](const ColumnMoments& c) { return std::isnan(c.i + c.q + c.u); });
 }
 
 bool reflectance_diverges(const Surface& surface, const Direction& direction, std::span<const Moments> moments) {
@@ -198,6 +208,8 @@ Radiometry::Radiometry(const SceneModel& scene, SpectralRule rule, const Radiome
     scene_.emission->model = EmissionModel::kMoments;  // the moments lack the direct emission
     knows_emissivity_ = false;
   }
+  uses_direct_ = scene_.surface.specular > 0.0 && scene_.emission &&
+                 (scene_.emission->has_bracket || emission_model(scene_) == EmissionModel::kDirect);
   if (kept.surroundings && kept.profile)
     basis_ = settings.sky ? settings.sky : sky_basis(scene, std::array<const SpectralRule*, 1>{&rule_});
   sky_ = sky_weights(kept_rule_, basis_.get());
@@ -243,7 +255,8 @@ PointResult Radiometry::point(const Direction& direction, std::span<const Moment
                               double cos_theta_i, std::span<const Scattered> scattered) const {
   const bool bistatic = scene_.geometry.mode == Mode::kBistatic;
   assert(moments.size() == rule_.samples.size() && optics.facets.size() == moments.size());
-  if (!std::ranges::all_of(moments, is_known)) return outside_domain();
+  if (!std::ranges::all_of(moments, [&](const Moments& m) { return is_known(m, uses_direct_); }))
+    return direction.treatment == Treatment::kDivergentLimit ? outside_domain() : not_computed();
   if (!reflectance_diverges(scene_.surface, direction, moments)) {
     const double cos_source = bistatic ? cos_theta_i : direction.cos_theta;
     return finished(assemble(moments, direction.cos_theta, optics, cos_source, scattered));

@@ -47,9 +47,11 @@ class Radiometry {
   /// The spectral samples of the scene. `point` needs Moments for each sample's refractive index, in this order.
   const SpectralRule& rule() const { return rule_; }
 
-  /// If moments are NaN, the status is 4 (outside the model's domain), and every quantity is NaN. If rho diverges at 90
-  /// degrees, the status is 1 | 4 (1: rho outside [0, 1]). Then rho and the Stokes parameters are NaN, and dolp is its
-  /// limit for theta -> 90 degrees.
+  /// If rho diverges at 90 degrees, the status is 1 | 4 (1: rho outside [0, 1], 4: outside the model's domain). Then
+  /// rho and the Stokes parameters are NaN, and dolp is its limit for theta -> 90 degrees. If the limit is unknown,
+  /// because moments are NaN, the status is 4, and every quantity is NaN. If moments are NaN elsewhere, the evaluator
+  /// failed: the status is 2 | 16 (a tolerance is not met), both error estimates are infinite, and the other quantities
+  /// are NaN.
   PointResult point(const Direction& direction, std::span<const Moments> moments) const;
 
   /// For each spectral sample: the optics of the facets, and the diffuse reflection of a surface with these optics.
@@ -92,6 +94,7 @@ class Radiometry {
   RadiometrySettings settings_;
   bool knows_rho_;
   bool knows_emissivity_;
+  bool uses_direct_;  ///< results need the moments of the direct emission
   SpectralRule rule_;
   SpectralRule kept_rule_;                 ///< rule_, with 0 for the radiation of dropped effects
   std::shared_ptr<const SkyBasis> basis_;  ///< functions of the sky; null if the scene has no sky profile or drops it

@@ -103,6 +103,7 @@ struct Source {
 
 struct Surroundings {
   double temperature_K = 0.0;                           ///< used if there is no profile
+  std::optional<double> zenith_K, horizon_K;            ///< ends of a profile that is a straight line
   SkyAir air = {};                                      ///< air of a built-in sky
   std::shared_ptr<const SkyProfile> profile = nullptr;  ///< null for a uniform sky
   void set_sky(SkyProfile sky);

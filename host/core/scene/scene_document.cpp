@@ -129,7 +129,8 @@ std::string toml_text(const toml::node& node, bool is_escaped) {
     return "{ " + join(parts) + " }";
   }
   std::ostringstream stream;
-  node.visit([&](const auto& value) { stream << toml::toml_formatter{value}; });
+  const auto flags = toml::toml_formatter::default_flags & ~toml::format_flags::allow_multi_line_strings;
+  node.visit([&](const auto& value) { stream << toml::toml_formatter{value, flags}; });
   return stream.str();
 }
 

@@ -162,6 +162,19 @@ SceneKey air_number(const char* key, const char* unit, const NumberRange& range,
                   set);
 }
 
+/// Makes a key for an end of a sky whose temperature is a straight line in the zenith.
+SceneKey sky_end(const char* key, const char* meaning, std::optional<double> Surroundings::*end_K) {
+  const auto set = [=](SceneValues& s, const KeyValue& v) {
+    Surroundings& sky = *s.surroundings;
+    sky.*end_K = v.number;
+    if (sky.zenith_K && sky.horizon_K)
+      sky.set_sky({.zenith_deg = {0.0, 90.0}, .values = {*sky.zenith_K, *sky.horizon_K}});
+  };
+  return with_set(number(key, "K", kBackgroundTemperatureRange, "", meaning,
+                         [=](auto& s) { return s.surroundings ? &((*s.surroundings).*end_K) : nullptr; }),
+                  set);
+}
+
 SceneKey wind_axis() {
   const auto set = [](SceneValues& s, const KeyValue& v) {
     s.wind_m_s = v.numbers;
@@ -321,9 +334,18 @@ std::vector<SceneKey> radiation_keys() {
              [](auto& s) { return s.source ? &s.source->scale : nullptr; }),
       number(
           "surroundings.temperature_K", "K", kBackgroundTemperatureRange, "",
-          "temperature T_surr of the black surroundings that the surface reflects (instead of it: profile)",
+          "temperature T_surr of the black surroundings that the surface reflects (instead of it: profile, or "
+          "zenith_temperature_K and horizon_temperature_K)",
           [](auto& s) { return s.surroundings ? &s.surroundings->temperature_K : nullptr; },
-          [](const SceneValues& s) { return s.names.profile.empty(); }),
+          [](const SceneValues& s) {
+            return s.names.profile.empty() && !(s.surroundings && s.surroundings->zenith_K);
+          }),
+      sky_end("surroundings.zenith_temperature_K",
+              "brightness temperature of the sky in the zenith; between zenith and horizon it is a straight line in "
+              "the zenith angle",
+              &Surroundings::zenith_K),
+      sky_end("surroundings.horizon_temperature_K", "brightness temperature of the sky at the horizon",
+              &Surroundings::horizon_K),
       text("surroundings.profile",
            "sky that changes with the zenith, instead of temperature_K: clear-sky, overcast, or your own CSV file "
            "(columns zenith_deg, temperature_K or radiance; wavelength_um if the sky depends on the wavelength)",
@@ -470,6 +492,7 @@ const std::vector<KeyChoice>& key_choices() {
         {"source", {{{"source.irradiance"}}, {{"source.relative_irradiance"}}, {{"source.preset"}}, {{"source.file"}}}},
         {"surroundings",
          {{{"surroundings.temperature_K"}},
+          {{"surroundings.zenith_temperature_K", "surroundings.horizon_temperature_K"}},
           {{"surroundings.profile"}, {"surroundings.vapour_cm", "surroundings.air_temperature_K"}}}},
         {"path", {{{"path.temperature_K"}}, {{"path.radiance"}}}, false},
         {"surface", {{{"surface.diffuse"}}, {{"surface.diffuse_file"}}}, false},
@@ -495,28 +518,26 @@ std::vector<std::string> KeyAlternative::keys() const {
   return all;
 }
 
-std::vector<std::string> keys_replaced_by(std::string_view key) {
-  std::vector<std::string> replaced;
-  for (const KeyChoice& choice : key_choices()) {
-    const auto has_key = [key](const KeyAlternative& alternative) {
-      return std::ranges::count(alternative.keys(), key) > 0;
-    };
-    if (std::ranges::none_of(choice.alternatives, has_key)) continue;
-    for (const KeyAlternative& other : choice.alternatives) {
-      if (!has_key(other)) append(replaced, other.keys());
-    }
-  }
-  return replaced;
-}
-
 const std::vector<Key>& keys() {
   static const std::vector<Key> descriptions = [] {
     std::vector<Key> all;
     for (const SceneKey& key : scene_key_table()) all.push_back(key.description);
-    for (Key& key : all) key.rivals = keys_replaced_by(key.key);
+    for (const KeyChoice& choice : key_choices()) {
+      for (const KeyAlternative& own : choice.alternatives) {
+        for (const std::string& key : own.keys()) {
+          for (const KeyAlternative& other : choice.alternatives)
+            if (&other != &own) append(std::ranges::find(all, key, &Key::key)->rivals, other.keys());
+        }
+      }
+    }
     return all;
   }();
   return descriptions;
+}
+
+std::vector<std::string> keys_replaced_by(std::string_view key) {
+  const auto known = std::ranges::find(dolp::keys(), key, &Key::key);
+  return known == dolp::keys().end() ? std::vector<std::string>{} : known->rivals;
 }
 
 const SceneKey* find_scene_key(std::string_view key) {

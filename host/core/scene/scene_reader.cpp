@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <dolp/errors.hpp>
 #include <iterator>
@@ -281,6 +282,11 @@ void check_radiation(const SceneValues& scene, const SceneDocument& document) {
     const std::string needs = "needs surroundings.profile = \"clear-sky\" or \"overcast\"";
     if (document.is_set(key) || !document.is_set("surroundings.profile")) document.fail(key, needs);
     document.fail("surroundings.profile", fmt::format("{0} in the scene {1}; {0} = none removes it", key, needs));
+  }
+  const std::array<std::string, 2> ends = {"surroundings.zenith_temperature_K", "surroundings.horizon_temperature_K"};
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    if (document.find(ends[i]) && !document.find(ends[1 - i]))
+      document.fail(ends[i], "needs " + ends[1 - i] + " beside it");
   }
   if (!scene.emission && !scene.source && !scene.surroundings) {
     document.fail("emission", "missing; nothing radiates without one of the tables emission, source, surroundings");

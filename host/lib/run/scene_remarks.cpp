@@ -151,7 +151,7 @@ class Remarks {
     if (!scene_.surroundings) return;
     const SkyProfile* profile = scene_.surroundings->profile.get();
     if (profile && profile->kind == SkyProfile::Kind::kTemperature)
-      check("surroundings.profile", std::ranges::min(profile->values));
+      check(surroundings_key(), std::ranges::min(profile->values));
     if (!profile) check(surroundings_key(), scene_.surroundings->temperature_K);
     add_hot_sky(profile);
     add_sky_beyond_data(profile);
@@ -215,7 +215,10 @@ class Remarks {
   }
 
   const char* surroundings_key() const {
-    return scene_.names.profile.empty() ? "surroundings.temperature_K" : "surroundings.profile";
+    if (!scene_.names.profile.empty()) return "surroundings.profile";
+    const Surroundings& sky = *scene_.surroundings;
+    if (!sky.zenith_K) return "surroundings.temperature_K";
+    return *sky.zenith_K < *sky.horizon_K ? "surroundings.zenith_temperature_K" : "surroundings.horizon_temperature_K";
   }
 
   void add_material(const std::string& key, const Material& used) {

@@ -15,6 +15,7 @@
 #include "base/text.hpp"
 #include "scene/csv.hpp"
 #include "scene/material_data.hpp"
+#include "scene/scene_document.hpp"
 #include "scene/scene_reader.hpp"
 #include "scene/spectral_data.hpp"
 #include "table/table_file.hpp"
@@ -34,6 +35,15 @@ bool begins_setting(std::string_view line) {
   return std::ranges::any_of(dolp::keys(), [key](const Key& known) {
     return known.key == key || known.key.starts_with(std::string(key) + '.') || key.starts_with(known.key + '.');
   });
+}
+
+/// KEY=VALUE in one line.
+std::string one_line_text(const Setting& setting) {
+  const std::string text = setting.text();
+  if (text.find('\n') == std::string::npos) return text;
+  SceneDocument document("", "");
+  document.apply(setting);
+  return setting.key + '=' + toml_text(*document.find(setting.key));
 }
 
 SpectralTable checked_table(const Curve& curve, const NamedValue& value, const std::string& where) {
@@ -192,7 +202,7 @@ std::string reflectance_text(const Surface& surface) {
 
 std::string settings_text(const std::vector<Setting>& settings) {
   std::string text;
-  for (const Setting& setting : settings) text += (text.empty() ? "" : "\n") + setting.text();
+  for (const Setting& setting : settings) text += (text.empty() ? "" : "\n") + one_line_text(setting);
   return text;
 }
 

@@ -7,8 +7,8 @@
 
 namespace dolp::explore {
 
-void BackgroundTask::start(const Work& work) {
-  if (is_running()) return;
+bool BackgroundTask::start(const Work& work) {
+  if (is_running()) return false;
   is_cancelled_ = false;
   message_.clear();
   set_phase("");
@@ -21,6 +21,7 @@ void BackgroundTask::start(const Work& work) {
     });
   };
   thread_ = run_in_background(with_progress, result_, on_change_);
+  return true;
 }
 
 void BackgroundTask::finish() {

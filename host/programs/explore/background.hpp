@@ -44,7 +44,7 @@ class BackgroundTask {
   explicit BackgroundTask(std::function<void()> on_change) : on_change_(std::move(on_change)) {}
   ~BackgroundTask() { cancel(); }  ///< waits for the end of the work
 
-  void start(const Work& work);  ///< does nothing while work is running
+  [[nodiscard]] bool start(const Work& work);  ///< returns false and does nothing while other work is running
   void cancel() { is_cancelled_ = true; }
   void finish();  ///< if the work has ended, calls its Ending, and sets state() and message()
 

@@ -39,6 +39,7 @@ const std::vector<Removal>& removals() {
       {"source", true, "source.scale", {{"source", {}}}},
       {"surroundings", true, "surroundings.temperature_K", {{"surroundings", {}}}},
       {"surroundings", true, "surroundings.profile", {{"surroundings", {}}}},
+      {"surroundings", true, kZenithSky, {{"surroundings", {}}}},
       {"path", false, "path.transmittance", {{"path", {}}}},
       {"diffuse", false, "surface.diffuse", {{"surface.diffuse", 0.0}}},
       {"specular", false, "surface.specular", {{"surface.specular", 0.0}}},

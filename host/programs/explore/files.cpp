@@ -80,28 +80,14 @@ FitMarks marks_in(const std::vector<std::string>& texts, const std::string& loca
   return marks;
 }
 
-/// The settings as texts for the file `session`. If a setting names a temporary sky file, one of `skies`, this function
-/// copies the sky file to the folder of `session`. The text of the setting then names the copy.
-toml::array lasting_texts(std::vector<Setting> settings, const SkyFiles& skies, const fs::path& scene,
-                          const fs::path& session) {
-  for (Setting& setting : settings) {
-    if (setting.key != "surroundings.profile" || !skies.hold(plain_text(setting.value))) continue;
-    const fs::path sky = plain_text(setting.value);
-    const fs::path copy = session.parent_path() / (session.stem().string() + "_" + sky.filename().string());
-    write_text_atomically(copy, read_named_file(sky.string(), sky.string() + ": "));
-    setting.value = copy.lexically_relative(fs::absolute(scene).parent_path().lexically_normal()).string();
-  }
-  return toml_array(settings, [](const Setting& setting) { return setting.text(); });
-}
-
-toml::table state_table(const SceneEdits& edits, const std::string& name, const SkyFiles& skies,
-                        const fs::path& session) {
+toml::table state_table(const SceneEdits& edits, const std::string& name, const fs::path& session) {
+  const auto text = [](const Setting& setting) { return setting.text(); };
   const Scene& opened = edits.opened();
   return toml::table{{"name", name},
                      {"file", fs::proximate(opened.name(), session.parent_path()).string()},
                      {"text", opened.text()},
-                     {"opened_with", lasting_texts(opened.settings(), skies, opened.name(), session)},
-                     {"changes", lasting_texts(edits.changes(), skies, opened.name(), session)}};
+                     {"opened_with", toml_array(opened.settings(), text)},
+                     {"changes", toml_array(edits.changes(), text)}};
 }
 
 toml::table ranges_table(const View& view) {
@@ -231,9 +217,7 @@ std::optional<MeasuredData> measured_in(const std::string& path, const toml::tab
 
 void save_session(const Session& session, const std::string& path) {
   const fs::path target = fs::absolute(path).lexically_normal();
-  const auto state = [&](const SceneEdits& edits, const std::string& name) {
-    return state_table(edits, name, session.skies(), target);
-  };
+  const auto state = [&](const SceneEdits& edits, const std::string& name) { return state_table(edits, name, target); };
   toml::table file{{kVersionKey, kVersion},
                    {"scene", state(session.edits(), "")},
                    {"view", view_table(session)},
@@ -254,12 +238,6 @@ void save_session(const Session& session, const std::string& path) {
 }
 
 void save_scene(Session& session, const std::string& path) {
-  if (session.has_unsaved_sky()) {
-    const fs::path sky = fs::absolute(path).replace_filename(fs::path(path).stem().string() + "_sky.csv");
-    write_text_atomically(sky, read_sky_pair(sky_file(session.scene())).value().csv());
-    const fs::path folder = fs::absolute(session.scene().name()).parent_path();
-    session.set("surroundings.profile", sky.lexically_normal().lexically_relative(folder.lexically_normal()).string());
-  }
   const fs::path folder = fs::path(path).parent_path();
   write_text_atomically(path, session.scene().toml(folder.empty() ? "." : folder));
   session.note_saved();
@@ -285,7 +263,7 @@ bool is_session_file(const std::string& path) {
 }
 
 void open_file(Session& session, const std::string& path) {
-  if (fs::path(path).extension() == ".csv") return session.load_measured(path);
+  if (lower_case(fs::path(path).extension().string()) == ".csv") return session.load_measured(path);
   const toml::table table = read_toml(path);
   if (table.contains(kVersionKey)) {
     session.restore(session_in(path, table), measured_in(path, table));

@@ -7,12 +7,9 @@
 
 namespace dolp::explore {
 
-/// Writes the session to `path` = NAME.toml. Copies each temporary sky file (Session::skies()) into the same folder, as
-/// NAME_sky_ZENITH_HORIZON.csv, where ZENITH and HORIZON are the two temperatures of the sky in K. Errors: IoError.
-void save_session(const Session& session, const std::string& path);
+void save_session(const Session& session, const std::string& path);  ///< Errors: IoError
 
-/// Writes the scene to `path` = NAME.toml and calls Session::note_saved(). If the scene uses a temporary sky file,
-/// saves this sky as NAME_sky.csv in the same folder, and the scene then uses that file. Errors: IoError.
+/// Writes the scene as a file and calls Session::note_saved(). Errors: IoError.
 void save_scene(Session& session, const std::string& path);
 
 /// Writes the curve, or the curve of the view (Session::sweep()), as CSV with the columns of `dolp eval`. Errors:

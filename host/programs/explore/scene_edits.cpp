@@ -28,6 +28,7 @@ bool has_air(const Scene& s) {
   const auto sky = s.word("surroundings.profile");
   return sky == "clear-sky" || sky == "overcast";
 }
+bool has_sky_ends(const Scene& s) { return s.number(kZenithSky).has_value(); }
 bool has_response(const Scene& s) { return s.word("spectrum.response_file").has_value(); }
 bool has_index(const Scene& s) { return !s.word("surface.reflectance_file"); }
 
@@ -84,6 +85,8 @@ std::vector<Control> controls_without_films() {
   constexpr const char* kNeedsDiffuse = "a diffuse part, k_d > 0";
   constexpr const char* kNeedsIndex = "n and k instead of measured reflectances";
   constexpr const char* kNeedsAir = "the sky clear-sky or overcast";
+  constexpr const char* kSkyEnds = "brightness temperature; a straight line in the zenith angle between both ends";
+  constexpr const char* kNeedsSkyEnds = "the sky zenith and horizon";
   constexpr const char* kNeedsBistatic = "the mode bistatic";
   constexpr const char* kXAxis = "from the viewer's direction to the surface's x axis (upwind, or along the brush)";
   constexpr const char* kAir = "Idso (1981): radiance of the sky from vapour and temperature of the air at the ground";
@@ -121,6 +124,8 @@ std::vector<Control> controls_without_films() {
       {key("source.relative_irradiance"), "e", "e = E0/(π B(T)), eq. (18)", {0.001, 10.0, true}},
       {key("source.scale"), "scale", "E0 → scale · E0", {0.01, 100.0, true}},
       {key("surroundings.temperature_K"), "T_surr", "reflects B(λ, T_surr) ρ", {0.0, 400.0}},
+      {key(kZenithSky), "T_zenith", kSkyEnds, {150.0, 350.0}, has_sky_ends, kNeedsSkyEnds},
+      {key(kHorizonSky), "T_horizon", kSkyEnds, {150.0, 350.0}, has_sky_ends, kNeedsSkyEnds},
       {key("surroundings.vapour_cm"), "water", kAir, {0.0, 2.7}, has_air, kNeedsAir, "1.27"},
       {key("surroundings.air_temperature_K"), "T_air", kAir, {230.0, 320.0}, has_air, kNeedsAir, "288.15"},
       {key("path.transmittance"), "τ", "I → τ I + L_path", {0.0, 1.0}},
@@ -192,8 +197,6 @@ std::vector<std::vector<Setting>> ways_to_one_width(const Scene& scene) {
   if (!has_wind(scene)) return {{{kSigmaCross, Value()}, {"grid.sigma_cross", Value()}}};
   return {{{"surface.wind_model", "isotropic"}}, {{"surface.sigma", scene.number("surface.sigma").value()}}};
 }
-
-constexpr const char* kSkyHeader = "zenith_deg,temperature_K";
 
 }  // namespace
 
@@ -348,7 +351,17 @@ void SceneEdits::set(const std::vector<Setting>& changes) {
 }
 
 void SceneEdits::reset(const std::string& key) {
-  const auto is_of_key = [&](const Setting& change) { return change.key == key || parent_table(change.key) == key; };
+  // If the scene as opened has a rival, such as a material instead of n and k, then both n and k go.
+  const auto known = std::ranges::find(dolp::keys(), key, &Key::key);
+  const bool has_rival =
+      known != dolp::keys().end() && std::ranges::any_of(known->rivals, [&](const std::string& rival) {
+        return has_value(opened_, described(rival));
+      });
+  const auto is_of_key = [&](const Setting& change) {
+    if (change.key == key || parent_table(change.key) == key) return true;
+    const auto other = std::ranges::find(dolp::keys(), change.key, &Key::key);
+    return has_rival && other != dolp::keys().end() && other->rivals == known->rivals;
+  };
   std::vector<Setting> all = changes();
   std::erase_if(all, is_of_key);
   std::ranges::copy_if(opened_.settings(), std::back_inserter(all), is_of_key);
@@ -404,6 +417,8 @@ std::vector<Setting> medium_change(const Scene& scene, const std::string& table,
   return {coating_setting(films)};
 }
 
+bool has_sky_profile(const Scene& scene) { return scene.word("surroundings.profile") || has_sky_ends(scene); }
+
 std::vector<BuiltInMaterial> sorted_materials() {
   std::vector<BuiltInMaterial> all = materials();
   std::vector<std::string> kinds;  // in the order of the list
@@ -457,40 +472,6 @@ std::vector<Setting> change_with_needed(SceneEdits& edits, const std::function<v
   }
   edits = *changed;
   return needed;
-}
-
-std::string SkyPair::csv() const {
-  return std::string(kSkyHeader) + "\n0," + format_number(zenith_K) + "\n90," + format_number(horizon_K) + '\n';
-}
-
-std::optional<SkyPair> read_sky_pair(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  std::string header, zenith, horizon, more;
-  std::getline(file, header) && std::getline(file, zenith) && std::getline(file, horizon);
-  if (header != kSkyHeader || !zenith.starts_with("0,") || !horizon.starts_with("90,") || std::getline(file, more))
-    return std::nullopt;
-  const std::optional<double> zenith_K = parse_number(zenith.substr(2));
-  const std::optional<double> horizon_K = parse_number(horizon.substr(3));
-  return zenith_K && horizon_K ? std::optional(SkyPair{*zenith_K, *horizon_K}) : std::nullopt;
-}
-
-std::filesystem::path sky_file(const Scene& scene) {
-  const std::string name = scene.word("surroundings.profile").value_or("");
-  if (name.empty() || has_air(scene)) return {};
-  return std::filesystem::path(scene.name()).parent_path() / name;
-}
-
-std::string SkyFiles::path(const SkyPair& sky) {
-  constexpr const char* kName = "dolp-skies";
-  try {
-    if (!folder_) folder_.emplace(kName);
-  } catch (const IoError&) {
-    return kName;
-  }
-  const std::filesystem::path file =
-      folder_->path() / ("sky_" + format_number(sky.zenith_K) + "_" + format_number(sky.horizon_K) + ".csv");
-  if (!std::filesystem::exists(file)) std::ofstream(file) << sky.csv();
-  return file.string();
 }
 
 }  // namespace dolp::explore

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "base/temporary_folder.hpp"
 #include "explore/scale.hpp"
 
 namespace dolp::explore {
@@ -117,6 +116,9 @@ Setting coating_setting(const std::vector<Film>& films);  ///< setting that give
 /// The settings that give the surface, or the film whose keys are in `table`, another medium, such as {{"material",
 /// "iron"}}.
 std::vector<Setting> medium_change(const Scene& scene, const std::string& table, const std::vector<Setting>& medium);
+inline constexpr const char* kZenithSky = "surroundings.zenith_temperature_K";
+inline constexpr const char* kHorizonSky = "surroundings.horizon_temperature_K";
+bool has_sky_profile(const Scene& scene);         ///< the radiance of the surroundings depends on the zenith
 std::vector<BuiltInMaterial> sorted_materials();  ///< the materials of one kind after the other, each kind by name
 /// True if `text` contains each word of `search`. Ignores case.
 bool has_words(const std::string& text, const std::string& search);
@@ -125,30 +127,5 @@ std::string plain_text(const Value& value);  ///< text of a value, without quote
 /// Applies `change`. If it conflicts with earlier choices in the scene, also replaces those that must be replaced, and
 /// returns their new values. Errors: InputError if the scene refuses `change` all the same; `edits` is then unchanged.
 std::vector<Setting> change_with_needed(SceneEdits& edits, const std::function<void(SceneEdits&)>& change);
-
-/// A sky whose brightness temperature is a linear function of the zenith angle.
-struct SkyPair {
-  double zenith_K = 220.0;
-  double horizon_K = 285.0;
-
-  std::string csv() const;  ///< text of a file for surroundings.profile: rows for zenith and horizon
-  friend bool operator==(const SkyPair&, const SkyPair&) = default;
-};
-
-/// Reads a file that SkyPair::csv() made. Empty if the file has another text or cannot be read.
-std::optional<SkyPair> read_sky_pair(const std::filesystem::path& file);
-
-std::filesystem::path sky_file(const Scene& scene);  ///< empty if the scene's sky is not from a file
-
-/// Temporary files for skies that the user edits, because a scene reads a sky from a file. The destructor removes them.
-class SkyFiles {
- public:
-  /// Writes `sky` to a file and returns its path. If the writing fails, returns a path that the scene will refuse.
-  std::string path(const SkyPair& sky);
-  bool hold(const std::filesystem::path& file) const { return folder_ && file.parent_path() == folder_->path(); }
-
- private:
-  std::optional<TemporaryFolder> folder_;
-};
 
 }  // namespace dolp::explore

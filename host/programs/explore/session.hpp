@@ -147,9 +147,6 @@ class Session {
   bool is_foreign(const Scene& other) const { return other.name() != scene().name() || other.text() != scene().text(); }
   const FitMarks& marked() const { return state_.marked; }
   bool varies(const std::string& key) const { return state_.marked.contains(key); }
-  SkyFiles& skies() { return skies_; }
-  const SkyFiles& skies() const { return skies_; }
-  bool has_unsaved_sky() const { return skies_.hold(sky_file(scene())); }
   std::optional<FitJob> fit_job() const;  ///< empty without measured points, or if no number may vary
   const std::optional<Fit>& last_fit() const { return fit_; }
   /// Position in Fit::minima of the minimum at which the sliders are. Empty after a change of the scene.
@@ -198,7 +195,6 @@ class Session {
   bool shows_sweep() const { return *swept_name(state_.view.panel) != '\0'; }
   void estimate_influences();
 
-  SkyFiles skies_;
   SessionState state_;
   std::vector<SceneEdits> done_, undone_;  ///< states that undo() and redo() restore, the last element first
   bool is_held_ = false;

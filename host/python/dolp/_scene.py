@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from . import _native
-from ._arguments import Array, Path, check_key, check_mapping, check_names, floats, input_path, native_values, short, word
+from ._arguments import Array, Path, check_key, check_mapping, floats, input_path, native_values, short, word
 from ._datasets import scene_of_dataset
 from ._native import InputError
 
@@ -127,13 +127,8 @@ class Material:
     """A built-in material. `n(wavelength_um)` and `k(wavelength_um)` take numbers and arrays. `kind`: as in `materials()`."""
 
     def __init__(self, name: str) -> None:
-        known = materials()
-        wanted = word("material", name).casefold()
-        same = [one for one in known if one.casefold() == wanted]
-        near = same or [one for one in known if one.casefold().startswith(f"{wanted} ")]
-        self.name: str = near[0] if len(near) == 1 else name
-        check_names("material", [self.name], list(known))
-        self.from_um, self.to_um, self.source, self.kind = known[self.name].values()
+        self.name: str
+        self.name, self.from_um, self.to_um, self.source, self.kind = _native.material(word("material", name))
         self._native = _native.Scene.from_text("surface.sigma = 0\nemission.temperature_K = 300\n", [
             ("surface.material", self.name), ("spectrum.wavelength_um", self.from_um)], "material")
 

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <limits>
 
+#include <dolp/quantity.hpp>
 #include <dolp/status.hpp>
 #include "radiometry_support.hpp"
 
@@ -14,6 +15,7 @@ namespace {
 using namespace radiometry_support;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // ---- Error estimates and status -------------------------------------------------------------------------------------
 
@@ -134,17 +136,30 @@ TEST(Radiometry, EmissionOfZero_LeavesTheSourceAndTheEmissivity) {
   }
 }
 
-TEST(Radiometry, MomentsThatAreNotNumbers_AreOutsideTheDomainEverywhere) {
-  Moments moments;
-  moments.r_i = std::numeric_limits<double>::quiet_NaN();
-  const PointResult result = evaluate(night_scene(), direction_of(30.0), moments);
-  for (const double value :
-       {result[Quantity::kDolp], result[Quantity::kStokesI], result[Quantity::kStokesQ], result[Quantity::kStokesU],
-        result[Quantity::kStokesV], result[Quantity::kRhoI], result[Quantity::kRhoQ], result[Quantity::kAlbedo],
-        result[Quantity::kErrorEstimate], result[Quantity::kRhoErrorEstimate]}) {
-    EXPECT_TRUE(std::isnan(value));
+TEST(Radiometry, MomentsThatAreNotNumbers_MissTheToleranceSoThatTheyAreComputedAgain) {
+  for (double Moments::*const member : {&Moments::r_i, &Moments::r_q, &Moments::deficit, &Moments::direct_q}) {
+    SceneValues scene = night_scene();
+    scene.emission->has_bracket = true;
+    Moments moments = moments_of({0.3, 0.1}, 0.5);
+    moments.direct_i = moments.direct_q = 0.1;
+    EXPECT_EQ(evaluate(scene, direction_of(60.0), moments).status & kAnyToleranceNotMet, 0U);
+    moments.*member = kNan;
+    const PointResult result = evaluate(scene, direction_of(60.0), moments);
+    for (const Quantity quantity : {Quantity::kDolp, Quantity::kStokesI, Quantity::kStokesQ, Quantity::kStokesU,
+                                    Quantity::kStokesV, Quantity::kRhoI, Quantity::kRhoQ, Quantity::kAlbedo})
+      EXPECT_TRUE(std::isnan(result[quantity])) << describe(quantity).name;
+    EXPECT_EQ(result[Quantity::kErrorEstimate], kInfinity);
+    EXPECT_EQ(result[Quantity::kRhoErrorEstimate], kInfinity);
+    EXPECT_EQ(result.status, kToleranceNotMet | kRhoToleranceNotMet);
   }
-  EXPECT_EQ(result.status, kOutsideModelDomain);
+}
+
+TEST(Radiometry, UnknownBoundOfQ_IsInfinite) {
+  Moments moments = moments_of({0.3, 0.1}, 0.5);
+  moments.r_q_error = kNan;
+  const PointResult result = evaluate(night_scene(), direction_of(60.0), moments);
+  EXPECT_EQ(result[Quantity::kErrorEstimate], kInfinity);
+  EXPECT_NE(result.status & kToleranceNotMet, 0U);
 }
 
 TEST(Radiometry, MatchedIndex_ReflectsNothingWithNoError) {

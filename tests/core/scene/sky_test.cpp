@@ -9,6 +9,7 @@
 #include <string>
 
 #include "error_text.hpp"
+#include "scene/scene_keys.hpp"
 #include "scene/sky_profile.hpp"
 #include "scene_support.hpp"
 #include "spectrum/planck.hpp"
@@ -151,6 +152,22 @@ TEST(SceneReader, Profile_TakesThePlaceOfATemperature) {
   EXPECT_TRUE(contains(error_of(sky + "profile = \"overcast\"\ntemperature_K = 250\n"), "cannot be combined with"));
   EXPECT_TRUE(contains(error_of(sky), "missing"));
   EXPECT_TRUE(contains(error_of(sky + "profile = \"cloudy\"\n"), "s.toml:9: surroundings.profile = \"cloudy\""));
+}
+
+TEST(SceneReader, TemperaturesOfZenithAndHorizon_AreTheProfileOfTwoRows) {
+  const std::string sky = kMinimal + "[surroundings]\n";
+  const std::string ends = sky + "zenith_temperature_K = 220\nhorizon_temperature_K = 285\n";
+  const SceneValues scene = parse(ends);
+  ASSERT_TRUE(scene.surroundings->profile);
+  EXPECT_EQ(scene.surroundings->profile->text(), "zenith_deg,temperature_K\n0,220\n90,285\n");
+  EXPECT_EQ(find_scene_key("surroundings.temperature_K")->value(scene), std::nullopt);
+  const SceneValues uniform = parse(ends, {"surroundings.zenith_temperature_K=285"});
+  EXPECT_FALSE(uniform.surroundings->profile);
+  EXPECT_EQ(uniform.surroundings->temperature_K, 285.0);
+  EXPECT_TRUE(contains(error_of(sky + "zenith_temperature_K = 220\n"), "needs surroundings.horizon_temperature_K"));
+  EXPECT_TRUE(contains(error_of(sky + "horizon_temperature_K = 220\n"), "needs surroundings.zenith_temperature_K"));
+  EXPECT_TRUE(contains(error_of(ends + "temperature_K = 250\n"), "cannot be combined with"));
+  EXPECT_TRUE(contains(error_of(ends + "profile = \"overcast\"\n"), "cannot be combined with"));
 }
 
 // The profile lacks the scene's 10.6 um. It must be refused even if it has one temperature (250 K) everywhere.

@@ -190,6 +190,11 @@ TEST(Derivatives, ByWhatIsNoNumberOfTheScene_AreRefused) {
     EXPECT_NE(error.find(std::string("derivatives: ") + key + ": is no number of this scene"), std::string::npos)
         << error;
   }
+  // A list of points without its own slopes across, like a grid without such an axis.
+  const SceneEntries points =
+      point_entries(scene, parse_points("theta_deg,sigma\n20,0.2\n", "p.csv", PointsKind::kDirections, {}));
+  CpuEvaluator evaluator;
+  EXPECT_THROW(derivatives_with(scene, points, {"surface.sigma_cross"}, evaluator), InputError);
   EXPECT_NE(error_text([&] {
               derivatives_with(scene, {"surface.n", "surface.n"});
             }).find("appears twice"),

@@ -103,28 +103,6 @@ TEST_F(ExploreFiles, Session_SavedAndOpened_IsTheSame) {
   EXPECT_EQ(content("again.toml"), text);
 }
 
-TEST_F(ExploreFiles, Session_WithSkiesOfTheWindow_ReadsBackWhenTheWindowIsGone) {
-  constexpr SkyPair kDusk{231.5, 279.0}, kNoon{250.0, 300.0};
-  std::filesystem::create_directories(at("scenes"));
-  {
-    Session saved{SceneEdits(Scene::from_text(kPaint, {}, at("scenes/paint.toml")))};
-    saved.set("surroundings.profile", saved.skies().path(kDusk));
-    saved.pin();
-    saved.take_snapshot();
-    saved.set("surroundings.profile", saved.skies().path(kNoon));
-    save_session(saved, at("all.toml"));
-    EXPECT_TRUE(saved.has_unsaved_sky());
-  }
-  Session opened(paint());
-  open_file(opened, at("all.toml"));
-  ASSERT_FALSE(opened.message().is_error) << opened.message().text;
-  EXPECT_EQ(read_sky_pair(sky_file(opened.scene())), kNoon);
-  EXPECT_EQ(read_sky_pair(sky_file(opened.pins().at(0).curve.scene())), kDusk);
-  EXPECT_EQ(read_sky_pair(sky_file(opened.snapshots().at(0).edits.scene())), kDusk);
-  EXPECT_EQ(content("all_sky_231.5_279.csv"), kDusk.csv());
-  EXPECT_FALSE(contains(content("all.toml"), at("")));
-}
-
 TEST_F(ExploreFiles, BadFile_IsRefusedInOneLine_AndChangesNothing) {
   for (const auto& [text, part] :
        {std::pair{"dolp_session = 1\nscene = [", "a.toml:2: "},

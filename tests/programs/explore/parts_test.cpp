@@ -194,6 +194,13 @@ const std::vector<EditCase> kEditCases = {
      {"surface.coating.1.n=-", "surface.n=1.5"}},
     {{}, {"surface.coating=[{n=1.4,thickness_um=-2}]"}, {"surface.coating.1.n=-"}, "thickness_um", true},
     {{}, {"surroundings.profile=clear-sky"}, {"surroundings.temperature_K=-", "surroundings.profile=clear-sky"}},
+    {{},
+     {"surroundings.zenith_temperature_K=220;surroundings.horizon_temperature_K=280",
+      "reset surroundings.zenith_temperature_K"},
+     {"surroundings.temperature_K=240", "surroundings.horizon_temperature_K=-"}},
+    {{"surface.material=gold (Ordal)"},
+     {"surface.n=1.6;surface.k=0.2", "reset surface.n"},
+     {"surface.material=gold (Ordal)", "surface.n=-"}},
     {{"emission.bracket=true"}, {"surroundings.profile=overcast"}, {"emission.bracket=true"}},
     {{"surroundings.profile=overcast"}, {"surroundings.temperature_K=250"}, {"surroundings.profile=-"}},
     {{"surroundings.profile=clear-sky", "surroundings.vapour_cm=0.3"},
@@ -443,12 +450,14 @@ TEST(Measured, Residuals_AreMeasuredMinusModelAtTheMeasuredPoints) {
 TEST(BackgroundTask, Phase_HasANameAndAProgressFromZero_AndCancellingIsSaid) {
   std::atomic<int> changes = 0;
   BackgroundTask task([&] { ++changes; });
-  task.start([&task](const Progress& progress) -> BackgroundTask::Ending {
+  const auto work = [&task](const Progress& progress) -> BackgroundTask::Ending {
     static_cast<void>(progress(3, 4));
     task.set_phase("intervals");
     while (progress(1, 4)) std::this_thread::sleep_for(kMoment);
     throw Cancelled();
-  });
+  };
+  EXPECT_TRUE(task.start(work));
+  EXPECT_FALSE(task.start(work));
   while (changes < 2) std::this_thread::sleep_for(kMoment);
   EXPECT_EQ(task.phase(), "intervals");
   EXPECT_EQ(task.progress(), 0.25);

@@ -1,40 +1,13 @@
-// Skies that a user makes in the window from two temperatures: their files and their editor.
-#include <fmt/format.h>
+// The list of skies in the window, and the sliders of a sky between two temperatures.
 #include <gtest/gtest.h>
 
 #include "explore/scene_edits.hpp"
-#include "explore_support.hpp"
-#include "temporary_file.hpp"
 #include "window_support.hpp"
 
 namespace dolp::explore {
 namespace {
 
 using namespace explore_test;
-
-constexpr SkyPair kDusk{231.5, 279.0};
-
-TEST(SkyPair, OnlyFilesOfTwoRows_AreRead) {
-  const std::optional<SkyPair> none;
-  for (const auto& [csv, sky] : {std::pair{kDusk.csv(), std::optional(kDusk)},
-                                 {"zenith_deg,temperature_K\n0,220\n45,250\n90,285\n", none},
-                                 {"zenith_deg,temperature_K\n0,220\n80,285\n", none},
-                                 {"zenith_deg,radiance\n0,2\n90,8\n", none},
-                                 {"wavelength_um,zenith_deg,temperature_K\n8,0,220\n8,90,285\n", none}}) {
-    EXPECT_EQ(read_sky_pair(TemporaryFile("sky.csv", csv).path()), sky) << csv;
-  }
-}
-
-TEST(SkyPair, SceneOfTheWindow_HasTheResultsOfItsCsv) {
-  Driver driver(paint());
-  driver.session.set("surroundings.profile", driver.session.skies().path(kDusk));
-  driver.settle();
-  const TemporaryFile file("sky.csv", "zenith_deg,temperature_K\n0,231.5\n90,279\n");
-  const Scene scene = paint({"surroundings.profile=" + file.path()}).scene();
-  expect_same(driver.session.curve().points(), truth(scene, driver.session.curve().points()));
-  driver.session.undo();
-  EXPECT_EQ(driver.session.scene().number("surroundings.temperature_K"), 240.0);
-}
 
 class Skies : public Window {
  protected:
@@ -44,30 +17,25 @@ class Skies : public Window {
     click(app_->control_area("sky").at(0.5F, entry));
     settle();
   }
-  std::optional<SkyPair> sky() const { return read_sky_pair(sky_file(session().scene())); }
 };
 
-TEST_F(Skies, Editor_MakesASkyBetweenTwoTemperatures_WhichTheSavedSceneKeeps) {
+TEST_F(Skies, TwoTemperatures_HaveSliders_UntilACtrlClickRestoresTheSkyAsOpened) {
   choose(4.3F);  // the fourth entry
-  ASSERT_EQ(sky(), SkyPair());
-  drag_slider("sky zenith", kPartOfSlider);
+  EXPECT_EQ(number(kZenithSky), 220.0);
+  EXPECT_EQ(number(kHorizonSky), 285.0);
   frames();
-  ASSERT_TRUE(sky());
-  EXPECT_NEAR(sky()->zenith_K, 150.0 + 200.0 * static_cast<double>(kPartOfSlider), 200.0 * kGrab);
-  const double zenith_K = sky()->zenith_K;
+  drag_slider(kZenithSky, kPartOfSlider);
+  const double zenith_K = number(kZenithSky).value();
+  EXPECT_NEAR(zenith_K, 150.0 + 200.0 * static_cast<double>(kPartOfSlider), 200.0 * kGrab);
   for (const auto& [typed, is_good] : {std::pair{"-3", false}, {"288.5", true}}) {
-    enter("field sky horizon", typed);
-    EXPECT_EQ(is_marked("field sky horizon"), !is_good);
-    EXPECT_EQ(*sky(), (SkyPair{zenith_K, is_good ? 288.5 : SkyPair().horizon_K}));
+    enter(std::string("field ") + kHorizonSky, typed);
+    EXPECT_EQ(is_marked(std::string("field ") + kHorizonSky), !is_good);
+    EXPECT_EQ(number(kHorizonSky), is_good ? 288.5 : 285.0);
   }
-  keys("ctrl+shift+c");
-  EXPECT_TRUE(session().message().text.starts_with("save the scene first")) << session().message().text;
   answer("ctrl+s");
-  EXPECT_EQ(content("scene_scene_sky.csv"), fmt::format("zenith_deg,temperature_K\n0,{}\n90,288.5\n", zenith_K));
+  EXPECT_TRUE(contains(content("scene_scene.toml"), "horizon_temperature_K = 288.5"));
   succeeded(dolp("plan scene_scene.toml"));
-  keys("ctrl+shift+c");
-  EXPECT_TRUE(session().message().text.starts_with("copied")) << session().message().text;
-  ctrl_click("sky zenith");
+  ctrl_click(kZenithSky);
   EXPECT_EQ(number("surroundings.temperature_K"), 240.0);
 }
 

@@ -67,28 +67,28 @@ void Actions::save_picture(const std::string& path) {
 }
 
 void Actions::save_plot(const std::string& path, const Scale& x, const Scale& y) {
-  session_.tell("drawing " + path);
-  plot_task_.start([path, json = plot_json(session_, x, y)](const Progress&) -> BackgroundTask::Ending {
+  const auto work = [path, json = plot_json(session_, x, y)](const Progress&) -> BackgroundTask::Ending {
     check_writable(path);
     draw_with_python(embedded_plot_view_py().data(), json, path);
     return [text = "saved " + path] { return text; };
-  });
+  };
+  if (start(plot_task_, "the last figure", work)) session_.tell("drawing " + path);
 }
 
 void Actions::export_table(const std::string& path) {
-  table_task.start([this, path, scene = session_.scene()](const Progress& progress) -> BackgroundTask::Ending {
-    const Clock::time_point start = Clock::now();
+  start(table_task, "the last table", [this, path, scene = session_.scene()](const Progress& progress) {
+    const Clock::time_point begin = Clock::now();
     table_evaluator_.write_table(scene, path, {.progress = progress, .history = command_line_});
-    return [text = fmt::format("{}: written in {:.2f} s", path, seconds_since(start))] { return text; };
+    return [text = fmt::format("{}: written in {:.2f} s", path, seconds_since(begin))] { return text; };
   });
 }
 
 void Actions::find_true_error() {
   if (!session_.curve().is_finished()) return;
-  true_error_key_ = session_.curve().key();
-  true_error_task.start([curve = session_.curve()](const Progress& progress) -> BackgroundTask::Ending {
+  const auto work = [curve = session_.curve()](const Progress& progress) -> BackgroundTask::Ending {
     return [text = true_error(curve, progress)] { return text; };
-  });
+  };
+  if (start(true_error_task, "the last true error", work)) true_error_key_ = session_.curve().key();
 }
 
 bool Actions::is_true_error_old() const {
@@ -100,13 +100,19 @@ void Actions::fit() {
   if (!job) {
     return session_.tell("a fit needs measured points, and parameters that are marked to vary", true);
   }
-  if (!fit_task.is_running()) session_.tell("");
-  fit_task.start([this, job = *job](const Progress& progress) -> BackgroundTask::Ending {
+  const auto work = [this, job = *job](const Progress& progress) -> BackgroundTask::Ending {
     const auto phase = [this](const std::string& name) { fit_task.set_phase(name); };
     return [this, job, fit = run_fit(job, fit_evaluator_, progress, phase)] {
       return fit_text(fit, session_.take_fit(fit, job));
     };
-  });
+  };
+  if (start(fit_task, "the last fit", work)) session_.tell("");
+}
+
+bool Actions::start(BackgroundTask& task, const std::string& name, const BackgroundTask::Work& work) {
+  const bool is_started = task.start(work);
+  if (!is_started) session_.tell(name + " is not finished yet; nothing was started", true);
+  return is_started;
 }
 
 void Actions::finish() {
@@ -197,8 +203,6 @@ void ask_what_to_open(Ui& ui) {
 }
 
 void copy_command(Ui& ui) {
-  if (ui.session.has_unsaved_sky())
-    return ui.session.tell("save the scene first: the command names its sky, which has no file yet", true);
   const std::string command = table_command(ui.session.edits());
   ImGui::SetClipboardText(command.c_str());
   ui.session.tell("copied: " + command);

@@ -14,8 +14,7 @@ namespace {
 
 constexpr const char* kSkyProfile = "surroundings.profile";
 constexpr const char* kUniformSky = "surroundings.temperature_K";
-constexpr double kUniformSky_K = 250.0;    // temperature of a new uniform sky
-constexpr Scale kSkySlider{150.0, 350.0};  // range in K; the user can type other values
+constexpr double kUniformSky_K = 250.0;  // temperature of a new uniform sky
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
@@ -55,7 +54,7 @@ std::string note_on(const Control& control, const Session& session) {
 bool has_effect(const Scene& scene, const std::string& table) {
   if (table == "source") return scene.number("source.scale").has_value();
   if (table == "path") return scene.number("path.transmittance").has_value();
-  if (table == "surroundings" && scene.word("surroundings.profile")) return true;
+  if (table == "surroundings" && has_sky_profile(scene)) return true;
   return scene.number(table + ".temperature_K").has_value();
 }
 
@@ -79,14 +78,6 @@ struct Controls {
   ControlState& state;
   NumberFields& fields = state.fields;
   ControlRows& rows = state.rows;
-
-  struct Slider {  // with a text field beside it
-    std::string id, label;
-    std::string note;
-    std::string reset_key;  ///< key that a Ctrl-click resets
-    Scale scale;
-    std::function<Setting(const std::string& text)> change;
-  };
 
   std::string set(const Setting& change) {  // returns the reason if the change is refused
     session.set({change});
@@ -112,39 +103,39 @@ struct Controls {
     for (const std::string& field : ids) fields.draw_reason(field);
   }
 
-  void draw_slider(const Slider& slider, double value, const Control* control = nullptr) {
-    row_label(slider.label);
-    const bool can_vary = control && session.residuals().data() && !slider.id.starts_with("accuracy.");
-    if (bool varies = session.varies(slider.id); can_vary) {
-      if (ImGui::Checkbox(("##vary " + slider.id).c_str(), &varies)) session.mark(slider.id, varies);
-      name_item("vary " + slider.id);
+  /// Draws a slider with a text field beside it.
+  void draw_slider(const Control& control, double value) {
+    const std::string& key = control.key->key;
+    const Scale scale = range_in(session.scene(), control);
+    row_label(control.label_with_unit());
+    if (bool varies = session.varies(key); session.residuals().data() && !key.starts_with("accuracy.")) {
+      if (ImGui::Checkbox(("##vary " + key).c_str(), &varies)) session.mark(key, varies);
+      name_item("vary " + key);
       tooltip("varies in a fit to the measured points, over the range below its slider");
       ImGui::SameLine();
     }
     ImGui::SetNextItemWidth(-5.2F * ImGui::GetFontSize() - ImGui::GetStyle().ItemSpacing.x);
-    auto position = static_cast<float>(slider.scale.position(slider.scale.clamp(value)));
-    const std::string id = "##slider " + slider.id;
+    auto position = static_cast<float>(scale.position(scale.clamp(value)));
+    const std::string id = "##slider " + key;
     const bool is_moved = ImGui::SliderFloat(id.c_str(), &position, 0.0F, 1.0F, "", ImGuiSliderFlags_NoInput);
-    name_item(slider.id);
-    if (const FitParameter* found = session.fitted(slider.id)) draw_interval(slider.scale, found->interval_68);
+    name_item(key);
+    if (const FitParameter* found = session.fitted(key)) draw_interval(scale, found->interval_68);
     const bool is_ctrl = ImGui::GetIO().KeyCtrl;
-    if (ImGui::IsItemClicked() && is_ctrl) session.reset(slider.reset_key);
+    if (ImGui::IsItemClicked() && is_ctrl) session.reset(key);
     if (is_moved && !is_ctrl)
-      session.set({slider.change(format_number(slider.scale.rounded(static_cast<double>(position))))});
-    if (!ImGui::IsItemActive()) tooltip(slider.note);
+      session.set(key, parse_value(format_number(scale.rounded(static_cast<double>(position)))));
+    if (!ImGui::IsItemActive()) tooltip(note_on(control, session));
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-1.0F);
-    draw_fields(slider.id, [&] {
-      fields.draw(slider.id, value, [&](const std::string& text) { return set(slider.change(text)); });
+    draw_fields(key, [&] {
+      fields.draw(key, value, [&](const std::string& text) { return set({key, parse_value(text)}); });
     });
-    fields.draw_reason(slider.id);
+    fields.draw_reason(key);
   }
 
   void draw_number(const Control& control, double value) {
     const std::string& key = control.key->key;
-    const auto change = [&](const std::string& text) { return Setting{key, parse_value(text)}; };
-    const Scale slider = range_in(session.scene(), control);
-    draw_slider({key, control.label_with_unit(), note_on(control, session), key, slider, change}, value, &control);
+    draw_slider(control, value);
     if (!session.residuals().data()) return;
     const std::string fit_row = "fit " + key;
     if (session.varies(key)) rows.note(fit_row);
@@ -305,29 +296,15 @@ struct Controls {
   }
 
   void draw_sky() {
-    constexpr const char* kPair = "sky of two temperatures";
-    draw_sky_list();
-    if (read_sky_pair(sky_file(session.scene()))) rows.note(kPair);
-    if (!rows.has(kPair)) return;
-    for (const auto& [name, temperature_K] :
-         {std::pair{"zenith", &SkyPair::zenith_K}, {"horizon", &SkyPair::horizon_K}}) {
-      const auto sky = read_sky_pair(sky_file(session.scene()));
-      ImGui::BeginDisabled(!sky);
-      draw_sky_temperature(name, sky.value_or(SkyPair()), temperature_K);
-      ImGui::EndDisabled();
-    }
-  }
-
-  void draw_sky_list() {
-    const std::string current = session.scene().word(kSkyProfile).value_or("");
     const std::string opened = session.edits().opened().word(kSkyProfile).value_or("");
     std::vector<ListEntry> skies = {{"uniform"}, {"clear-sky"}, {"overcast"}, {"zenith and horizon"}};
-    if (!sky_file(session.edits().opened()).empty()) skies.push_back({file_name(opened)});
-    const std::string name = current.empty()                            ? "uniform"
-                             : read_sky_pair(sky_file(session.scene())) ? "zenith and horizon"
-                                                                        : file_name(current);
-    const auto now = std::ranges::find(skies, name, &ListEntry::text);
-    const auto position = static_cast<std::size_t>(now - skies.begin());
+    if (!opened.empty() && std::ranges::count(skies, opened, &ListEntry::text) == 0)
+      skies.push_back({file_name(opened)});
+    const std::string current = session.scene().word(kSkyProfile).value_or("");
+    const std::string name = !current.empty()                   ? file_name(current)
+                             : has_sky_profile(session.scene()) ? "zenith and horizon"
+                                                                : "uniform";
+    const auto position = static_cast<std::size_t>(std::ranges::find(skies, name, &ListEntry::text) - skies.begin());
     row_label("sky");
     const auto clicked =
         draw_list({"sky", -1.0F, name, fmt::format("{} {}: {}", kSkyProfile, current, described(kSkyProfile).meaning),
@@ -336,27 +313,10 @@ struct Controls {
     if (*clicked == 0) {
       session.set(kUniformSky, session.edits().opened().number(kUniformSky).value_or(kUniformSky_K));
     } else if (*clicked == 3) {
-      session.set(kSkyProfile, session.skies().path({}));
+      session.set({{kZenithSky, 220.0}, {kHorizonSky, 285.0}});
     } else {
       session.set(kSkyProfile, *clicked < 3 ? skies[*clicked].text : opened);
     }
-  }
-
-  void draw_sky_temperature(const std::string& name, SkyPair sky, double SkyPair::*temperature_K) {
-    const auto change = [&](const std::string& text) {
-      const std::optional<double> typed = parse_number(text);
-      // If the text is no temperature, returns a setting that the scene will refuse with an error message.
-      if (!typed || !described(kUniformSky).range.contains(*typed)) return Setting{kUniformSky, TomlText{text}};
-      sky.*temperature_K = *typed;
-      return Setting{kSkyProfile, session.skies().path(sky)};
-    };
-    draw_slider({.id = "sky " + name,
-                 .label = fmt::format("T_{} [K]", name.substr(0, 3)),
-                 .note = fmt::format("brightness temperature at the {}; a straight line in zenith between both", name),
-                 .reset_key = kSkyProfile,
-                 .scale = kSkySlider,
-                 .change = change},
-                sky.*temperature_K);
   }
 
   void draw_spectrum() {

@@ -240,7 +240,7 @@ void ShapeView::draw(Session& session, ImVec2 size) {
   const float line = ImGui::GetTextLineHeight(), top = ImGui::GetCursorPosY();
   coloured_text(kTextColour, fmt::format("sphere, and a plate tilted by {:.1f}° (drag){}", session.theta_deg(),
                                          remark(session, session.curve())));
-  if (session.scene().word("surroundings.profile")) {
+  if (has_sky_profile(session.scene())) {
     coloured_text(kDimColour,
                   "The sky turns with each element: its zenith is the element's normal, not that of the world. So the "
                   "colours are right only for horizontal surfaces.");

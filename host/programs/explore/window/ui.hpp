@@ -20,7 +20,8 @@ class Actions {
   void open(const std::string& path);  ///< opens a scene, a session or measured points
   /// Saves a picture of the window to `path` when the dialog that asked for `path` has disappeared. Errors: IoError.
   void save_picture(const std::string& path);
-  // The next four functions start work in the background. save_plot() makes an .svg, .pdf or .png of curves and map.
+  // The next four functions start work in the background, or tell that the last work of their kind is not finished yet.
+  // save_plot() makes an .svg, .pdf or .png of curves and map.
   void save_plot(const std::string& path, const Scale& x, const Scale& y);
   void export_table(const std::string& path);
   void find_true_error();  ///< compares DOLP of the curve with the evaluator `reference`
@@ -38,6 +39,9 @@ class Actions {
   BackgroundTask table_task, true_error_task, fit_task;
 
  private:
+  /// Starts a task. If it is still running, tells so with the name of its last work, and returns false.
+  bool start(BackgroundTask& task, const std::string& name, const BackgroundTask::Work& work);
+
   Session& session_;
   std::string command_line_;
   Preferences preferences_;

@@ -203,7 +203,7 @@ void PathDialog::enter(const fs::path& folder) {
     if (name.starts_with('.')) continue;
     if (entry->is_directory(unknown)) {
       listed_.push_back(name + '/');
-    } else if (std::ranges::count(request_.suffixes, entry->path().extension().string()) > 0) {
+    } else if (std::ranges::count(request_.suffixes, lower_case(entry->path().extension().string())) > 0) {
       files.push_back(name);
     }
   }

@@ -138,12 +138,20 @@ real2 corner_line(ThetaNode theta, Slope slope, int corner) {
   return line_at(level, max(theta.s * t, real(1e-30)));
 }
 
+// The azimuth at which the local angle of incidence reaches a kink of measured reflectances.
+real2 kink_line(ThetaNode theta, IndexNode index, Slope slope, int kink) {
+  real t = slope.t;
+  return line_at(cos_of_kink(index, kink) * sqrt(real(1.0) + t * t) - theta.c, max(theta.s * t, real(1e-30)));
+}
+
 // Sums over the azimuths from 0 to pi. Split lines divide the azimuths into zones. The line at which total reflection
-// begins divides a zone into two arcs, and corners (kinks) of a sky divide the arcs further.
+// begins divides a zone into two arcs. Corners (kinks) of a sky and kinks of measured reflectances divide the arcs
+// further; both are in ascending order of the azimuth.
 AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode index, Slope slope, SplitLines lines,
                          Columns columns[DOLP_WIDTH]) {
   AzimuthSums sums = no_azimuths(columns);
   bool is_critical = kTotalReflection && index.critical_cos > real(0.0);
+  int kinks = row_kinks(index);
   real2 last = real2(real(1.0), real(0.0));
   int halves = is_critical ? 1 : 0;
   for (int part = 0; part < (lines.arcs << halves); ++part) {
@@ -160,9 +168,17 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
       to = is_first_half ? middle : to;
     }
     real2 start = from;
-    for (int corner = 0; corner <= slope.sky.corners; ++corner) {
+    int corner = 0;
+    for (int split = 0; split <= slope.sky.corners + kinks; ++split) {
+      int kink = split - corner;
       real2 stop = to;
-      if (corner < slope.sky.corners) stop = clamp_half_angle(corner_line(theta, slope, corner), start, to);
+      if (kink < kinks) stop = clamp_half_angle(kink_line(theta, index, slope, kink), start, to);
+      if (corner < slope.sky.corners) {
+        real2 at_corner = clamp_half_angle(corner_line(theta, slope, corner), start, to);
+        bool is_next = kink >= kinks || is_before(at_corner, stop);
+        stop = is_next ? at_corner : stop;
+        corner += is_next ? 1 : 0;
+      }
       // A loop of one turn is faster than an `if`: in lockstep, devices run both branches of an `if`, but skip a loop.
       for (bool run_once = is_before(start, stop); run_once; run_once = false) {
         bool is_first = !is_before(from, start);

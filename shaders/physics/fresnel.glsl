@@ -40,6 +40,17 @@ Fresnel fresnel(IndexNode index, real cos_beta) {
   return f;
 }
 
+// Measured reflectances have kinks at the measured angles. The azimuths are split at the sharpest kinks: their number
+// and the cosines of their angles, in ascending order of the angle, precede the table, from back to front.
+int curve_start(IndexNode index) { return DOLP_CURVE_ALIGNMENT * int(index.curve_start); }
+
+int row_kinks(IndexNode index) {
+  if (!kHasCurves || index.curve_cells >= real(0.0)) return 0;
+  return int(table_node(curve_start(index) - 1).x);
+}
+
+real cos_of_kink(IndexNode index, int i) { return table_node(curve_start(index) - 2 - i).x; }
+
 // Reads R_s, 1 - R_s and (R_s - R_p) / sin^2(beta) of films or of measured reflectances from a table
 // (host/compute/plan/reflectance_curve.cpp). Each cell of the table has cubics in sqrt(cos(beta)) (films) or in
 // sqrt(1 - cos(beta)) (measured). Measured reflectances have a kink at each measured angle. So beyond the angle in a
@@ -51,7 +62,7 @@ Fresnel reflectance_at(IndexNode index, real cos_beta) {
   real position = sqrt(max(is_measured ? real(1.0) - cos_beta : cos_beta, real(0.0))) * real(cells);
   int cell = min(int(position), cells - 1);
   real x = position - real(cell);
-  int start = DOLP_CURVE_ALIGNMENT * int(index.curve_start);
+  int start = curve_start(index);
   int first = start + DOLP_CURVE_NODES * cell;
   if (is_measured) {
     real2 kink = table_node(start + DOLP_CURVE_NODES * cells + cell);

@@ -121,6 +121,11 @@ TEST_F(FitProgram, CompareOfModelsAlike_SaysSoAndGivesTheRangesOverAll) {
   EXPECT_TRUE(contains(fit(options).out, "alike      the data cannot tell the first 3 models apart"));
 }
 
+TEST_F(FitProgram, KeyThatTakesThePlaceOfAnother_IsSaid) {
+  const Words options = "--data data.csv --vary surface.n=1.1:3 --set surface.material=iron";
+  EXPECT_TRUE(contains(fit(options).err, "fit: surface.n takes the place of the scene's surface.material"));
+}
+
 TEST_F(FitProgram, Quality_IsOneOfThreeWords) {
   const Words options = "--data data.csv --vary surface.sigma=0.02:1";
   for (const auto& [n, word] : {std::pair("1.5", "good"), {"1.8", "doubtful"}, {"2", "bad"}}) {

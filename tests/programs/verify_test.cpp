@@ -116,6 +116,13 @@ class Verify : public CommandLine {
   }
 };
 
+// Where the error of DOLP exceeds DOLP, as at normal incidence, the angle of polarisation has no meaning.
+TEST_F(Verify, AngleOfUnpolarisedLight_IsNotAFailure) {
+  succeeded(dolp("table " DOLP_HOST_DIR "/scenes/night_paint.toml -o t.nc --quiet --set grid.theta_deg=[0,0.001,0.01] "
+                 "--set grid.sigma=[0.1,0.3,1] --tolerance 1e-3"));
+  EXPECT_EQ(verify_json(kDone)["passed"], true);
+}
+
 TEST_F(Verify, GoodTable_Exit0AndEveryQuantityIsCompared) {
   make_table();
   const nlohmann::json json = verify_json(kDone);

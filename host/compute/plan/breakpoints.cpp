@@ -4,14 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <numbers>
-#include <utility>
 #include <vector>
 
 #include "model/angles.hpp"
 #include "plan/constants.hpp"
 #include "plan/kernel_data.hpp"
+#include "plan/reflectance_curve.hpp"
 
 namespace dolp {
 namespace {
@@ -23,11 +22,6 @@ constexpr double kNoEnd = 1e30;       // stands for an infinite slope; larger th
 constexpr double kCoincident = 1e-9;  // breakpoints within this relative distance differ only by rounding
 
 constexpr std::size_t kMostBreakpoints = 60;  // a sky or measured reflectances add them until a direction has this many
-
-// A row of measured reflectances is a breakpoint if the lines beside it differ from a smooth curve by more than this,
-// relative to the tolerance of the scene. Of 720 entries with random rows, 17 err by more than their bounds without
-// such breakpoints, 0 with this value, 1 with three times this value.
-constexpr double kLeastKink = 3.0;
 
 // Long ranges of slopes, as in grazing directions, are also divided at these slopes.
 constexpr std::array kPlainBreakpoints = {30.0, 3e5};
@@ -147,31 +141,9 @@ void add_sky_breakpoints(std::vector<Breakpoint>& points, double theta_deg, cons
   }
 }
 
-// How far the lines beside a row differ from a smooth curve: about a jump of dR/dbeta times an eighth of an interval.
-double kink_at(const MeasuredReflectance& measured, std::size_t row) {
-  const double before = measured.beta_deg[row] - measured.beta_deg[row - 1];
-  const double after = measured.beta_deg[row + 1] - measured.beta_deg[row];
-  double largest = 0.0;
-  for (const std::vector<double>* r : {&measured.r_s, &measured.r_p}) {
-    const double jump = ((*r)[row + 1] - (*r)[row]) / after - ((*r)[row] - (*r)[row - 1]) / before;
-    largest = std::max(largest, 0.125 * std::min(before, after) * std::abs(jump));
-  }
-  return largest;
-}
-
-// Slopes at which a ray in the plane of incidence meets a kink of measured reflectances; the sharpest kinks first.
-void add_row_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const MomentsRequest& request) {
-  if (request.optics.empty() || !request.optics.front().measured) return;
-  const std::vector<double>& beta_deg = request.optics.front().measured->beta_deg;  // equal at all wavelengths
-  std::vector<std::pair<double, double>> kinks;
-  for (std::size_t row = 1; row + 1 < beta_deg.size(); ++row) {
-    double sharpest = 0.0;
-    for (const FacetOptics& optics : request.optics) sharpest = std::max(sharpest, kink_at(*optics.measured, row));
-    if (sharpest > kLeastKink * std::max(request.tolerance, request.scene_tolerance))
-      kinks.emplace_back(sharpest, beta_deg[row]);
-  }
-  std::ranges::sort(kinks, std::ranges::greater());
-  for (const auto& [sharpness, angle_deg] : kinks) {
+// Slopes at which a ray in the plane of incidence meets a kink of measured reflectances.
+void add_row_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const RowKinks& kinks) {
+  for (const double angle_deg : kinks.split_deg) {
     if (points.size() + 2 > kMostBreakpoints) return;
     points.push_back({tan_deg(std::abs(theta_deg - angle_deg)), kRoots});
     if (theta_deg + angle_deg < 90.0) points.push_back({tan_deg(theta_deg + angle_deg), kRoots});
@@ -218,7 +190,7 @@ std::vector<Breakpoint> breakpoints(double theta_deg, const MomentsRequest& requ
     add_critical_breakpoints(points, theta_deg, a, masking, variant.critical_cos);
     if (is_multiple) add_critical_bounces(points, theta_deg, variant.critical_cos);
   }
-  add_row_breakpoints(points, theta_deg, request);
+  add_row_breakpoints(points, theta_deg, row_kinks(request));
   add_sky_breakpoints(points, theta_deg, sky);
   std::erase_if(points, [&](const Breakpoint& point) { return point.slope <= 0.0 || point.slope > last; });
   // The cusp of smith masking lies at tan(theta/2), so at slope 0 if theta is 0.

@@ -81,6 +81,13 @@ inline constexpr double kUnsplitBends = 1e-4;  // 658, 690, 747; 450, 465, 587
 inline constexpr double kSkyCosineRoundings = 8.0;
 inline constexpr double kSkyRoundings = 4.0;
 
+// ---- Measured reflectances (reflectance_curve.cpp)
+
+/// A kink splits slopes and azimuths if its size exceeds this share of the tolerance, relative to reflectance_level().
+inline constexpr double kLeastKink = 1.0;
+/// The other kinks cause an error of the reflectance of at most kUnsplitKinks times their sizes, added in quadrature.
+inline constexpr double kUnsplitKinks = 5e-3;
+
 // ---- Bounds (error_bounds.cpp)
 
 /// Interpolation error of the masking G in its table, relative to the albedo.
@@ -110,7 +117,7 @@ inline constexpr double kLineRoundings = 30.0;
 inline constexpr double kPairFactor = 4.0;
 inline constexpr double kTablePairFactor = 8.0;    // with a masking table
 inline constexpr double kGroovePairFactor = 10.0;  // in grooves
-inline constexpr double kCriticalFactor = 2.0;     // total reflection: an additional factor
+inline constexpr double kCriticalFactor = 2.0;     // total reflection, measured reflectances: an additional factor
 /// The error bound of a sum is at least this share of the tolerance for which its rules were chosen.
 inline constexpr double kLeastShareOfTolerance = 0.1;
 /// Upper bound of the rounding error of moments in grooves, divided by the unit roundoff and by cos(theta).

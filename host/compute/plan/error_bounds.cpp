@@ -142,7 +142,7 @@ double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta
 double pair_factor(const KernelData& data, const kernel::IndexNode& index) {
   const bool is_multiple = data.scattering == Scattering::kMultiple;
   const double smooth = is_multiple ? kGroovePairFactor : data.needs_masking_table() ? kTablePairFactor : kPairFactor;
-  return index.critical_cos > 0.0 ? kCriticalFactor * smooth : smooth;
+  return index.critical_cos > 0.0 || data.row_kinks > 0 ? kCriticalFactor * smooth : smooth;
 }
 
 // Error of a function of a sky. It comes from the table of the function, from corners (kinks) at which the azimuths are

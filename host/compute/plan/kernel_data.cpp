@@ -36,7 +36,7 @@ constexpr double kSmallestPole = 1e-6;  // least modulus of N^2 + 1 and N^2 - 1;
 struct Loops {
   double arcs = 1.0;     ///< arcs into which the azimuths are divided at one slope
   double turns = 0.0;    ///< in runs with scattering = multiple: iterations for the bounces of one ray
-  double corners = 0.0;  ///< corners (kinks) of a sky, at which arcs are divided further
+  double corners = 0.0;  ///< kinks of a sky and of measured reflectances, at which arcs are divided further
 };
 
 // Loop iterations for a ray: one for each bounce or group of bounces (next_bounces in groove.glsl).
@@ -76,7 +76,7 @@ Loops slope_loops(const KernelData& data, double critical, double start, double 
     if (data.has_direct) loops.arcs += data.masking == Masking::kVCavity ? 2.0 : 1.0;
   }
   if (critical > 0.0) loops.arcs *= 2.0;
-  loops.corners = data.sky.corners;
+  loops.corners = data.sky.corners + static_cast<double>(data.row_kinks);
   return loops;
 }
 
@@ -87,8 +87,8 @@ constexpr double kTurnsOfSlope = DOLP_MOST_SPLITS + 1.0;  // iterations that spl
 // Upper bound of the loop iterations of one invocation, with at most `most_nodes` nodes on an arc.
 double iterations(const KernelData& data, const Loops& loops, double most_nodes) {
   const double arcs = loops.arcs + loops.corners;
-  // Iterations that integrate nothing: each arc also loops over the corners of the sky that lie outside the arc.
-  const double idle = data.sky.count == 0 ? 0.0 : 2.0 * loops.arcs * (1.0 + loops.corners);
+  // Iterations that integrate nothing: each arc also loops over the kinks that lie outside the arc.
+  const double idle = data.sky.count == 0 && data.row_kinks == 0 ? 0.0 : 2.0 * loops.arcs * (1.0 + loops.corners);
   if (!data.needs_masking_table()) return kTurnsOfSlope + idle + arcs * (2.0 + most_nodes * (1.0 + loops.turns));
   const auto rule_iterations = [&](double share) {
     return 1.0 + share * data.rule_order * (1.0 + idle + arcs * (2.0 + share * most_nodes));
@@ -201,10 +201,16 @@ void add_curves(KernelData& data, const MomentsRequest& request, Tables tables) 
   const double tolerance = tables_tolerance(request);
   parallel_for(curves.size(), 1, [&](std::size_t i) { curves[i] = reflectance_curve(*different[i], tolerance); });
   std::vector<double> starts;
+  RowKinks kinks = row_kinks(request);
+  std::ranges::sort(kinks.split_deg, std::ranges::greater());
+  data.row_kinks = kinks.split_deg.size();
   for (const ReflectanceCurve& curve : curves) {
-    const std::size_t aligned = (data.rule_nodes.size() + DOLP_CURVE_ALIGNMENT - 1) / DOLP_CURVE_ALIGNMENT;
+    const std::size_t before = data.rule_nodes.size() + kinks.split_deg.size() + 1;
+    const std::size_t aligned = (before + DOLP_CURVE_ALIGNMENT - 1) / DOLP_CURVE_ALIGNMENT;
     starts.push_back(static_cast<double>(aligned));
-    data.rule_nodes.resize(aligned * DOLP_CURVE_ALIGNMENT);
+    data.rule_nodes.resize(aligned * DOLP_CURVE_ALIGNMENT - kinks.split_deg.size() - 1);
+    for (const double angle_deg : kinks.split_deg) data.rule_nodes.push_back({cos_sin_deg(angle_deg).cos, 0.0});
+    data.rule_nodes.push_back({static_cast<double>(kinks.split_deg.size()), 0.0});
     data.rule_nodes.insert(data.rule_nodes.end(), curve.nodes.begin(), curve.nodes.end());
   }
   if (is_counted) data.left_out_nodes = (numbers.size() - 1) * (curves.front().nodes.size() + DOLP_CURVE_ALIGNMENT);
@@ -215,7 +221,7 @@ void add_curves(KernelData& data, const MomentsRequest& request, Tables tables) 
     data.indices[i].curve_cells = (request.optics[i].measured ? -1.0 : 1.0) * static_cast<double>(curve.cells);
     data.indices[i].pole_re = curve.pole.real();
     data.indices[i].pole_im = curve.pole.imag();
-    data.curve_errors.push_back({curve.error, curve.steepness});
+    data.curve_errors.push_back({curve.error + kUnsplitKinks * kinks.unsplit, curve.steepness});
   }
   data.rule.t_nodes += kNodesOfFringe * fringes;
   data.rule.phi_nodes += kNodesOfFringe * fringes;

@@ -74,6 +74,7 @@ struct KernelData {
   int rule_order = 1;
   bool has_total_reflection = false;     ///< true if total reflection begins at some angle for an index
   bool has_curves = false;               ///< the kernel reads reflectances from tables
+  std::size_t row_kinks = 0;             ///< kinks of measured reflectances that split the azimuths
   std::vector<CurveError> curve_errors;  ///< per index; empty without reflectance tables
   double curves_s = 0.0;                 ///< time that the reflectance tables took
   std::vector<Bundle> bundles;

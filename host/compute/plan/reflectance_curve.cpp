@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <ranges>
 #include <utility>
 
 #include "model/smooth_surface.hpp"
+#include "plan/constants.hpp"
 #include "plan/kernel_data.hpp"
 
 namespace dolp {
@@ -191,7 +193,45 @@ std::complex<double> steepest_pole(const Sixths& sixths) {
   return pole;
 }
 
+/// How far the lines beside a row differ from a smooth curve: about a jump of dR/dbeta times an eighth of an interval.
+/// Around normal incidence the reflectances go on as in a mirror, so the first row has a kink, too.
+double kink_at(const MeasuredReflectance& measured, std::size_t row) {
+  const double after = measured.beta_deg[row + 1] - measured.beta_deg[row];
+  const double before = row == 0 ? after : measured.beta_deg[row] - measured.beta_deg[row - 1];
+  double largest = 0.0;
+  for (const std::vector<double>* r : {&measured.r_s, &measured.r_p}) {
+    const double previous = row == 0 ? (*r)[1] : (*r)[row - 1];
+    const double jump = ((*r)[row + 1] - (*r)[row]) / after - ((*r)[row] - previous) / before;
+    largest = std::max(largest, 0.125 * std::min(before, after) * std::abs(jump));
+  }
+  return largest;
+}
+
 }  // namespace
+
+RowKinks row_kinks(const MomentsRequest& request) {
+  RowKinks kinks;
+  if (request.optics.empty() || !request.optics.front().measured) return kinks;
+  const std::vector<double>& beta_deg = request.optics.front().measured->beta_deg;  // equal at all wavelengths
+  double level = 1.0;
+  std::vector<std::pair<double, std::size_t>> sizes(beta_deg.size() - 1);
+  for (std::size_t row = 0; row < sizes.size(); ++row) sizes[row].second = row;
+  for (const FacetOptics& optics : request.optics) {
+    level = std::min(level, std::max(reflectance_level(optics), kLeastLevel));
+    for (auto& [size, row] : sizes) size = std::max(size, kink_at(*optics.measured, row));
+  }
+  std::ranges::sort(sizes, std::ranges::greater());
+  for (const auto& [size, row] : sizes) {
+    std::vector<double> splits = {beta_deg[row]};
+    // At normal incidence the reflectances have the tip of a cone. Arcs that shrink toward it resolve it.
+    if (row == 0) splits = {0.0, 0.25 * beta_deg[1], 0.0625 * beta_deg[1]};
+    const bool is_split =
+        size > kLeastKink * level * request.tolerance && kinks.split_deg.size() + splits.size() <= DOLP_MOST_ROW_KINKS;
+    if (is_split) kinks.split_deg.insert(kinks.split_deg.end(), splits.begin(), splits.end());
+    if (!is_split) kinks.unsplit = std::hypot(kinks.unsplit, size);
+  }
+  return kinks;
+}
 
 ReflectanceCurve reflectance_curve(const FacetOptics& optics, double tolerance) {
   const double wanted = kShareOfTolerance * tolerance * std::max(reflectance_level(optics), kLeastLevel);
@@ -202,7 +242,7 @@ ReflectanceCurve reflectance_curve(const FacetOptics& optics, double tolerance) 
     if (curve.error <= wanted || curve.cells == kMostCells) break;
     sixths.divide();
   }
-  curve.pole = steepest_pole(sixths);
+  curve.pole = optics.measured ? std::complex<double>(0.0, 1.0) : steepest_pole(sixths);  // between kinks it is smooth
   return curve;
 }
 

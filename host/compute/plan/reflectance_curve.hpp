@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "model/facet_optics.hpp"
+#include "model/moments.hpp"
 
 namespace dolp {
 
@@ -21,6 +22,16 @@ struct ReflectanceCurve {
   double steepness = 0.0;  ///< largest 2 |df/dln(cos(beta))| of the three functions f; for the third, times sin^2(beta)
   std::complex<double> pole;  ///< complex cos(beta) of a pole; sets the numbers of nodes, see steepest_pole()
 };
+
+/// Kinks of measured reflectances, which are straight lines between rows. The size of a kink is how far the lines
+/// beside a row differ from a smooth curve.
+struct RowKinks {
+  std::vector<double> split_deg;  ///< angles at which slopes and azimuths are split, the sharpest first
+  double unsplit = 0.0;           ///< sizes of the other kinks, added in quadrature
+};
+
+/// The kinks of all optics of the request, which have the same angles. Without measured reflectances, there are none.
+RowKinks row_kinks(const MomentsRequest& request);
 
 /// Doubles the number of cells until the error is at most a share of the tolerance, or the number reaches its limit.
 /// The tolerance is relative to reflectance_level(). Domain: optics that are not bare.

@@ -19,7 +19,10 @@ double order_fall(double eccentricity) { return eccentricity * (0.55 + 0.3 * ecc
 constexpr double kOrdersShare = 0.5;  // the neglected orders may take this share of the tolerance
 constexpr double kMostOrders = 24.0;
 constexpr double kSectorShare = 1e-3;  // error of the mean over the sectors, as a share of the tolerance
-constexpr double kTailFactor = 3.0;    // safety factor of neglected_orders()
+// Safety factor of neglected_orders(): kTailFactor or, if larger, kWideTailFactor / (1 - eccentricity). At grazing
+// angles the orders of very unequal widths fall more slowly than order_fall().
+constexpr double kTailFactor = 3.0;
+constexpr double kWideTailFactor = 1.5;
 
 double wanted_order(double eccentricity, double tolerance) {
   const double fall = order_fall(eccentricity);
@@ -60,7 +63,7 @@ int nodes_of_orders(const SlopeOrders& orders) {
 double neglected_orders(double eccentricity, double before_last, double last) {
   const double fall = order_fall(eccentricity);
   const double largest = std::max(std::abs(last), fall * std::abs(before_last));
-  return kTailFactor * largest * fall / (1.0 - fall);
+  return std::max(kTailFactor, kWideTailFactor / (1.0 - eccentricity)) * largest * fall / (1.0 - fall);
 }
 
 }  // namespace dolp

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <dolp/errors.hpp>
 #include <iterator>
 #include <utility>
@@ -115,7 +116,9 @@ CsvHeader examine(std::vector<std::string> names, const std::vector<CsvColumn>& 
     if (first != header.cells.end()) {
       const bool is_other_unit = unit && header.units[static_cast<std::size_t>(first - header.cells.begin())] != *unit;
       const std::string& more = known[*column].if_twice;
-      if (!is_other_unit)
+      if (is_other_unit)
+        header.again.push_back(header.cells.size());
+      else
         add_fault(fmt::format("column \"{}\" appears twice{}", known[*column].name, more.empty() ? "" : "; " + more));
       column.reset();
     }
@@ -252,7 +255,7 @@ std::optional<std::size_t> CsvColumns::find_cell(std::string_view name) const {
 }
 
 std::optional<double> CsvColumns::number(const CsvReader& row, std::string_view name) const {
-  check_width(row);
+  check_row(row);
   const std::optional<std::size_t> cell = find_cell(name);
   return cell ? std::optional(number_at(row, *cell)) : std::nullopt;
 }
@@ -279,14 +282,25 @@ bool CsvColumns::is_nan(const CsvReader& row, std::string_view name) const {
   return cell && *cell < row.cells().size() && is_nan_text(row.cells()[*cell]);
 }
 
-void CsvColumns::check_width(const CsvReader& row) const {
+void CsvColumns::check_row(const CsvReader& row) const {
   const std::size_t width = row.cells().size();
-  if (width == header_.cells.size()) return;
-  check_separators(row);
-  if (width < header_.cells.size()) return;  // number() will report the first column without a value
-  row.fail(fmt::format("{}: one value too many after column {}; there are {} columns{}",
-                       one_line(row.cells()[header_.cells.size()]), header_.names.back(), header_.cells.size(),
-                       width == 2 * header_.cells.size() ? "; numbers must have a decimal point" : ""));
+  if (width > header_.cells.size()) {
+    check_separators(row);
+    row.fail(fmt::format("{}: one value too many after column {}; there are {} columns{}",
+                         one_line(row.cells()[header_.cells.size()]), header_.names.back(), header_.cells.size(),
+                         width == 2 * header_.cells.size() ? "; numbers must have a decimal point" : ""));
+  }
+  if (width < header_.cells.size()) return check_separators(row);  // number() reports the first column without a value
+  constexpr double kRounded = 0.01;  // relative difference of wavelengths that rounding in a file may cause
+  for (const std::size_t cell : header_.again) {
+    const std::size_t first = *find_cell(kSpectralColumn);
+    const std::optional<double> value = parse_number(row.cells()[cell]);
+    if (!value) continue;
+    const double um = in_micrometres(*value, header_.units[cell]);
+    if (std::abs(um - number_at(row, first)) > kRounded * um)
+      row.fail(fmt::format("{} = {}: is {:.6g} um, but {} is another wavelength; leave out one of both columns",
+                           header_.names[cell], *value, um, header_.names[first]));
+  }
 }
 
 std::string unknown_column(std::string_view name, const std::vector<CsvColumn>& known) {

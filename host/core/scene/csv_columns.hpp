@@ -31,6 +31,7 @@ struct CsvHeader {
   std::vector<std::string> names;
   std::vector<std::optional<std::size_t>> cells;  ///< for each name the position in the list of known columns
   std::vector<SpectralUnit> units;
+  std::vector<std::size_t> again;  ///< cells that give the wavelength again, in another unit
   std::size_t known = 0;  ///< number of names that are known
   std::string fault;      ///< why the line cannot name the columns; empty if it can
 };
@@ -41,8 +42,8 @@ struct CsvHeader {
 class CsvColumns {
  public:
   /// Reads the header at the reader's line. The names may also be in two lines: names, and units below them. They may
-  /// also be in a comment above numbers. Then next() stays at these numbers. Ignores the columns in `ignored`, and all
-  /// spectral columns but the first. Errors: InputError for a repeated, missing or unknown name, and for numbers
+  /// also be in a comment above numbers. Then next() stays at these numbers. Ignores the columns in `ignored`. Of several
+  /// spectral columns the first counts. Errors: InputError for a repeated, missing or unknown name, and for numbers
   /// without names.
   static CsvColumns header_at(CsvReader& reader, const std::vector<CsvColumn>& known,
                               const std::vector<std::string>& ignored = {});
@@ -68,8 +69,8 @@ class CsvColumns {
   /// True if `row` has the text nan in the column `name`.
   bool is_nan(const CsvReader& row, std::string_view name) const;
 
-  /// Refuses a row with another separator than the header, or with more cells.
-  void check_width(const CsvReader& row) const;
+  /// Refuses a row with another separator than the header, with more cells, or with two different wavelengths.
+  void check_row(const CsvReader& row) const;
 
  private:
   CsvColumns(std::vector<CsvColumn> known, CsvHeader header);

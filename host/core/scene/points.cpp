@@ -141,7 +141,7 @@ void add_columns(const CsvColumns& columns, const std::vector<ColumnRule>& rules
 }
 
 void parse_row(const CsvReader& row, const CsvColumns& columns, const std::vector<ColumnRule>& rules, Points& points) {
-  columns.check_width(row);
+  columns.check_row(row);
   std::vector<std::string_view> kept;
   for (std::size_t cell = 0; cell < columns.cells().size(); ++cell) {
     if (!columns.cells()[cell]) continue;

@@ -128,8 +128,11 @@ SpectralTable parse_response(std::string_view text, const std::string& name) {
                                      "wavelengths, and each wavelength in one row",
                                      rows[i].wavelength_um, rows[i - 1].wavelength_um));
   }
-  if (std::ranges::all_of(rows, [](const SpectralRow& row) { return row.value == 0.0; }))
-    fail(rows.front().line, "response = 0 in all rows: must be greater than 0 in one row");
+  constexpr double kLeast = 1e-100;  // far smaller numbers lose their digits in products
+  const double largest = std::ranges::max(rows, {}, &SpectralRow::value).value;
+  if (largest < kLeast)
+    fail(rows.front().line, fmt::format("response = {}{}: must be at least {} in one row", largest,
+                                        largest == 0.0 ? " in all rows" : " in the largest row", kLeast));
   SpectralTable table;
   append_rows(table, std::move(rows), {"response", 0.0, kResponseRange}, name);
   return table;

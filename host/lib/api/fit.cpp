@@ -337,6 +337,12 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
     if (!options.output.empty()) report.row("written", "{}", key("output", options.output.string()));
     const bool is_good = (best.result->status & kAnyToleranceNotMet) == 0;
     Fit found{*best.result, public_report(report, is_good, options.output), true, fitted};
+    for (const FitRange& range : options.vary) {
+      for (const std::string& rival : keys_replaced_by(range.key)) {
+        if (best.scene.document->find(rival))
+          found.report.remarks.push_back(fmt::format("fit: {} takes the place of the scene's {}", range.key, rival));
+      }
+    }
     if (gap.is_ignored) {
       found.report.remarks.push_back(
           fmt::format("fit: light of further bounces can move the model by {:.2g} uncertainties of a point, which the "

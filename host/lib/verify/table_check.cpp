@@ -137,11 +137,11 @@ double error_bound(Bound bound, const Estimates& estimates, const PointResult& r
   switch (bound) {
     case Bound::kDolp:
       return estimates.dolp;
-    case Bound::kAngle:  // an error d of (Q, U) turns it by at most asin(d / p)
-      return kRightAngle_deg / std::numbers::pi *
-                 std::asin(std::min(
-                     1.0, dolp_bound / std::hypot(reference[Quantity::kStokesQ], reference[Quantity::kStokesU]))) +
-             terms.rounding;
+    case Bound::kAngle: {  // an error d of (Q, U) turns it by at most asin(d / p), and by any angle if d >= p
+      const double share = dolp_bound / std::hypot(reference[Quantity::kStokesQ], reference[Quantity::kStokesU]);
+      const double angle_deg = share < 1.0 ? kRightAngle_deg / std::numbers::pi * std::asin(share) : kRightAngle_deg;
+      return angle_deg + terms.rounding;
+    }
     case Bound::kReflectance:
       return rho_bound;
     case Bound::kPolarisedRadiation:

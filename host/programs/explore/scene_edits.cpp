@@ -352,15 +352,18 @@ void SceneEdits::set(const std::vector<Setting>& changes) {
 
 void SceneEdits::reset(const std::string& key) {
   // If the scene as opened has a rival, such as a material instead of n and k, then both n and k go.
-  const auto known = std::ranges::find(dolp::keys(), key, &Key::key);
-  const bool has_rival =
-      known != dolp::keys().end() && std::ranges::any_of(known->rivals, [&](const std::string& rival) {
-        return has_value(opened_, described(rival));
-      });
+  const std::vector<Key>& keys = dolp::keys();
+  const auto known = std::ranges::find(keys, key, &Key::key);
+  const std::vector<std::string> rivals = known == keys.end() ? std::vector<std::string>{} : known->rivals;
+  const auto was_there = [&](const std::string& rival) { return has_value(opened_, described(rival)); };
+  const bool is_replaced = std::ranges::any_of(rivals, was_there);
+  const auto is_alternative = [&](const Setting& change) {
+    const auto other = std::ranges::find(keys, change.key, &Key::key);
+    return is_replaced && other != keys.end() &&
+           (other->rivals == rivals || std::ranges::count(rivals, change.key) > 0);
+  };
   const auto is_of_key = [&](const Setting& change) {
-    if (change.key == key || parent_table(change.key) == key) return true;
-    const auto other = std::ranges::find(dolp::keys(), change.key, &Key::key);
-    return has_rival && other != dolp::keys().end() && other->rivals == known->rivals;
+    return change.key == key || parent_table(change.key) == key || is_alternative(change);
   };
   std::vector<Setting> all = changes();
   std::erase_if(all, is_of_key);

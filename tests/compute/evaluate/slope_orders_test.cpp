@@ -9,6 +9,7 @@
 #include <memory>
 #include <numbers>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "calibrate/random_entries.hpp"
@@ -126,6 +127,23 @@ MomentsRequest random_entries(Distribution distribution, const Light& light, std
     request.append(entry);
   }
   return request;
+}
+
+// Close to the largest quotient of the widths that a tolerance allows, at grazing incidence, many orders matter.
+TEST_P(SlopeOrders, VeryUnequalWidths_AreWithinTheBoundsOfTheReference) {
+  ReferenceEvaluator reference;
+  for (const auto& [distribution, tolerance, sigma_cross] : {std::tuple{Distribution::kGaussian, 1e-2, 6.6},
+                                                             {Distribution::kGaussian, 1e-3, 3.9},
+                                                             {Distribution::kCauchy, 1e-2, 6.6}}) {
+    MomentsRequest request = empty_request(distribution, kLights[1]);
+    request.tolerance = tolerance;
+    for (const double theta_deg : {88.0, 89.5, 89.95})
+      request.append({theta_deg, {0.3, 1.8, sigma_cross, 0.0}, FacetOptics{3.0, 2.0}});
+    const std::vector<Moments> own = make_evaluator(GetParam())->evaluate(request, {});
+    const std::vector<Moments> exact = reference.evaluate(request, {});
+    for (std::size_t i = 0; i < own.size(); ++i)
+      expect_all_within_bounds(own[i], exact[i], std::to_string(sigma_cross) + ' ' + std::to_string(i));
+  }
 }
 
 TEST_P(SlopeOrders, RandomEntries_AreWithinTheBoundsOfTheReference) {

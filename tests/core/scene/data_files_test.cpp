@@ -111,6 +111,9 @@ TEST(IndexFile_Wrong, NamesFileAndLine) {
                    "e.csv:2: k = -0.1: out of range; must be a number in [-1e-05, 1e6], or negative in all rows"),
         {"e.csv", "wavelength_nm,n\n-8,1\n",
          "e.csv:2: wavelength_nm = -8: is -0.008 um, and must be a number in (0, inf)"},
+        {"e.csv", "wavelength_um,wavelength_nm,n\n8,8020,1\n9,10000,1\n",
+         "e.csv:3: wavelength_nm = 10000: is 10 um, but wavelength_um is another wavelength; leave out one of both "
+         "columns"},
         {"e.csv", "wavelength,n\n8,1\n",
          "e.csv:1: column \"wavelength\" is unknown; the nearest known is wavelength_um"},
         {"e.csv", "wavelength_um,eps_1\n8,1\n", "e.csv:1: eps_1 and eps_2 must be given together"},
@@ -170,7 +173,7 @@ TEST(ResponseFile_WithAFault, IsRefusedWithFileLineAndValue) {
             "r.csv:3: response = nan: not a number; must be a number in [0, 1e100]");
   EXPECT_EQ(response_error(header + "8,1\n"), "r.csv:1: 1 rows; a response has at least 2 rows");
   EXPECT_EQ(response_error(header + "8,0\n9,0\n"),
-            "r.csv:2: response = 0 in all rows: must be greater than 0 in one row");
+            "r.csv:2: response = 0 in all rows: must be at least 1e-100 in one row");
   for (const char* rows : {"8,1\n10,1\n9,1\n", "8,1\n10,1\n10,0\n", "14,1\n10,1\n12,1\n"})
     EXPECT_TRUE(contains(response_error(header + rows), "r.csv:4: wavelength_um = ")) << rows;
 }

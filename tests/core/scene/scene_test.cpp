@@ -15,6 +15,8 @@ namespace dolp {
 namespace {
 
 const std::string kHostDir = DOLP_HOST_DIR;
+constexpr const char* kZenithSky = "surroundings.zenith_temperature_K";
+constexpr const char* kHorizonSky = "surroundings.horizon_temperature_K";
 
 // ---- Values --------------------------------------------------------------------------------------------------------
 
@@ -26,6 +28,8 @@ std::vector<std::string> companions_of(const std::string& key) {
   if (key == "source.scale") return {"source.irradiance=1"};
   if (key == "spectrum.response_per") return {"spectrum.response_file=" + kHostDir + "/scenes/microbolometer.csv"};
   if (key == "surroundings.air_temperature_K") return {"surroundings.profile=clear-sky"};
+  if (key == kZenithSky) return {std::string(kHorizonSky) + "=285"};
+  if (key == kHorizonSky) return {std::string(kZenithSky) + "=285.5"};
   if (key == "surroundings.vapour_cm") return {"surroundings.profile=clear-sky", "surroundings.air_temperature_K=330"};
   if (is_wind(key)) return {"surface.distribution=gaussian"};
   if (key == "surface.wind_model")
@@ -155,6 +159,8 @@ const std::vector<KeyCase>& key_cases() {
       {"source.scale", "0.75", [](At s) { return s.source->scale == 0.75; }},
       {"surroundings.temperature_K", "0", [](At s) { return s.surroundings->temperature_K == 0.0; }},
       {"surroundings.profile", "\"overcast\"", [](At s) { return s.surroundings->profile != nullptr; }},
+      {kZenithSky, "220", [](At s) { return s.surroundings->zenith_K == 220.0 && s.surroundings->profile; }},
+      {kHorizonSky, "285", [](At s) { return s.surroundings->horizon_K == 285.0 && s.surroundings->profile; }},
       {"surroundings.vapour_cm", "1", [](At s) { return *s.surroundings->air.vapour_cm == 1.0; }},
       {"surroundings.air_temperature_K", "280", [](At s) { return s.surroundings->profile->air_K == 280.0; }},
       {"path.transmittance", "0.5", [](At s) { return s.path->transmittance == 0.5; }},

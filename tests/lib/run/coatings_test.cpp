@@ -498,6 +498,40 @@ TEST(MeasuredReflectances, JaggedRows_MeetTheToleranceAndTheReference) {
   }
 }
 
+// Rows of 5 degrees with jumps of up to a half, and rows of 10 degrees of a dielectric. The zeniths are those of rows
+// and close to the normal, where all facets of a slope meet a row.
+TEST(MeasuredReflectances, CoarseRows_AreWithinTheirBoundsOfTheReference) {
+  const std::array<const char*, 2> files = {
+      {"0,0.3,0.3\n5,0.05,0.05\n10,0.05,0.05\n15,0.446,0.409\n20,0.105,0.077\n25,0.5,0.429\n30,0.94,0.122\n"
+       "35,0.596,0.562\n40,0.95,0.95\n45,0.55,0.95\n50,0.208,0.95\n55,0.593,0.95\n60,0.95,0.95\n"
+       "65,0.95,0.95\n70,0.95,0.565\n75,0.585,0.95\n80,0.103,0.95\n85,0.05,0.536\n90,1,1\n",
+       "0,0.04,0.04\n10,0.041,0.039\n20,0.046,0.035\n30,0.056,0.028\n40,0.075,0.019\n50,0.11,0.006\n"
+       "60,0.18,0.002\n70,0.31,0.04\n80,0.54,0.24\n85,0.73,0.5\n90,1,1\n"}};
+  for (const char* rows : files) {
+    const TemporaryFile file("coarse.csv", std::string("beta_deg,r_s,r_p\n") + rows);
+    for (const char* masking : {"none", "smith"}) {
+      for (const char* tolerance : {"1e-4", "1e-6"}) {
+        const SceneValues scene = scene_with(
+            {std::string("surface.masking=") + masking, "surface.q=3", "grid.sigma=[9e-4, 0.01, 0.05, 1]",
+             "surface.coating=none", "surface.n={}", "surface.k={}", "grid.theta_deg=[0, 0.03, 10, 20, 50, 80]",
+             "surface.reflectance_file=" + file.path(), std::string("accuracy.tolerance=") + tolerance});
+        const std::vector<PointResult> results = results_of(scene);
+        ReferenceEvaluator reference({.relative_tolerance = 1e-8});
+        const std::vector<PointResult> right = evaluate_scene(scene, grid_entries(scene), reference, {});
+        for (std::size_t i = 0; i < results.size(); ++i) {
+          const std::string where = fmt::format("{} {} {}", masking, tolerance, i);
+          const double rho_error =
+              (results[i][kRhoErrorEstimate] + right[i][kRhoErrorEstimate]) * std::abs(right[i][kRhoI]);
+          for (const Quantity quantity : {kRhoI, kRhoQ})
+            EXPECT_NEAR(results[i][quantity], right[i][quantity], rho_error) << where;
+          EXPECT_NEAR(results[i][kQOverI], right[i][kQOverI], results[i][kErrorEstimate] + right[i][kErrorEstimate])
+              << where;
+        }
+      }
+    }
+  }
+}
+
 TEST(MeasuredReflectances, BadFiles_AreRefusedWithTheirLine) {
   const std::pair<const char*, const char*> cases[] = {
       {"beta_deg,r_s,r_p\n0,0.1,0.1\n80,0.5,0.2\n", ":3: beta_deg = 80: must be 90 in one row"},

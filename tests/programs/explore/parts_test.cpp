@@ -25,7 +25,9 @@ std::string needed_by(const Key& key) {
                                        {"surface.wind_m_s", "surface.distribution=gaussian"},
                                        {"surface.sigma_cross", "surface.masking=none"},
                                        {"surroundings.vapour_cm", "surroundings.profile=clear-sky"},
-                                       {"surroundings.air_temperature_K", "surroundings.profile=overcast"}}) {
+                                       {"surroundings.air_temperature_K", "surroundings.profile=overcast"},
+                                       {kZenithSky, "surroundings.horizon_temperature_K=250"},
+                                       {kHorizonSky, "surroundings.zenith_temperature_K=250"}}) {
     if (key.key == begin) return setting;
   }
   return key.layer > 0 ? sixteen_films() : "title=paint";

@@ -168,16 +168,16 @@ AzimuthSums azimuth_sums(RuleNode rule, ThetaNode theta, Row row, IndexNode inde
       to = is_first_half ? middle : to;
     }
     real2 start = from;
-    int corner = 0;
+    int passed = 0;  // kinks before `start`
     for (int split = 0; split <= slope.sky.corners + kinks; ++split) {
-      int kink = split - corner;
+      int corner = split - passed;
       real2 stop = to;
-      if (kink < kinks) stop = clamp_half_angle(kink_line(theta, index, slope, kink), start, to);
-      if (corner < slope.sky.corners) {
-        real2 at_corner = clamp_half_angle(corner_line(theta, slope, corner), start, to);
-        bool is_next = kink >= kinks || is_before(at_corner, stop);
-        stop = is_next ? at_corner : stop;
-        corner += is_next ? 1 : 0;
+      if (corner < slope.sky.corners) stop = clamp_half_angle(corner_line(theta, slope, corner), start, to);
+      if (kHasCurves && passed < kinks) {
+        real2 at_kink = clamp_half_angle(kink_line(theta, index, slope, passed), start, to);
+        bool is_next = corner >= slope.sky.corners || is_before(at_kink, stop);
+        stop = is_next ? at_kink : stop;
+        passed += is_next ? 1 : 0;
       }
       // A loop of one turn is faster than an `if`: in lockstep, devices run both branches of an `if`, but skip a loop.
       for (bool run_once = is_before(start, stop); run_once; run_once = false) {

@@ -32,8 +32,8 @@ struct CsvHeader {
   std::vector<std::optional<std::size_t>> cells;  ///< for each name the position in the list of known columns
   std::vector<SpectralUnit> units;
   std::vector<std::size_t> again;  ///< cells that give the wavelength again, in another unit
-  std::size_t known = 0;  ///< number of names that are known
-  std::string fault;      ///< why the line cannot name the columns; empty if it can
+  std::size_t known = 0;           ///< number of names that are known
+  std::string fault;               ///< why the line cannot name the columns; empty if it can
 };
 
 /// The columns of a file. The header may name them in any order, in upper or lower case. The column "wavelength_um" may
@@ -42,9 +42,9 @@ struct CsvHeader {
 class CsvColumns {
  public:
   /// Reads the header at the reader's line. The names may also be in two lines: names, and units below them. They may
-  /// also be in a comment above numbers. Then next() stays at these numbers. Ignores the columns in `ignored`. Of several
-  /// spectral columns the first counts. Errors: InputError for a repeated, missing or unknown name, and for numbers
-  /// without names.
+  /// also be in a comment above numbers. Then next() stays at these numbers. Ignores the columns in `ignored`. The
+  /// first of several spectral columns counts. Errors: InputError for a repeated, missing or unknown name, and for
+  /// numbers without names.
   static CsvColumns header_at(CsvReader& reader, const std::vector<CsvColumn>& known,
                               const std::vector<std::string>& ignored = {});
   /// Goes to the next line, and reads the header there. Errors: also InputError for a text without lines.

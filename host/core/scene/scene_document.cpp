@@ -129,7 +129,11 @@ std::string toml_text(const toml::node& node, bool is_escaped) {
     return "{ " + join(parts) + " }";
   }
   std::ostringstream stream;
-  const auto flags = toml::toml_formatter::default_flags & ~toml::format_flags::allow_multi_line_strings;
+  const toml::value<std::string>* const string = node.as_string();
+  const bool has_lines = string && string->get().find('\n') != std::string::npos;
+  const auto in_lines = toml::format_flags::allow_multi_line_strings | toml::format_flags::allow_literal_strings;
+  const auto all = toml::toml_formatter::default_flags;
+  const auto flags = has_lines ? all & ~in_lines : all;
   node.visit([&](const auto& value) { stream << toml::toml_formatter{value, flags}; });
   return stream.str();
 }

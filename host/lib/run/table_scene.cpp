@@ -37,10 +37,11 @@ bool begins_setting(std::string_view line) {
   });
 }
 
-/// KEY=VALUE in one line.
-std::string one_line_text(const Setting& setting) {
+/// KEY=VALUE, in one line if override_settings() would take a line of the value for another setting.
+std::string stored_text(const Setting& setting) {
   const std::string text = setting.text();
-  if (text.find('\n') == std::string::npos) return text;
+  const std::vector<std::string_view> lines = split(text, '\n');
+  if (std::none_of(lines.begin() + 1, lines.end(), begins_setting)) return text;
   SceneDocument document("", "");
   document.apply(setting);
   return setting.key + '=' + toml_text(*document.find(setting.key));
@@ -202,7 +203,7 @@ std::string reflectance_text(const Surface& surface) {
 
 std::string settings_text(const std::vector<Setting>& settings) {
   std::string text;
-  for (const Setting& setting : settings) text += (text.empty() ? "" : "\n") + one_line_text(setting);
+  for (const Setting& setting : settings) text += (text.empty() ? "" : "\n") + stored_text(setting);
   return text;
 }
 
@@ -221,7 +222,7 @@ std::vector<Setting> override_settings(const std::string& text) {
 
 std::uint64_t scene_seed(const SceneValues& scene) {
   std::uint64_t hash = hashed(kHashStart, scene.text);
-  for (const Setting& setting : scene.settings) hash = hashed(hash, "\n" + setting.text());
+  for (const Setting& setting : scene.settings) hash = hashed(hash, "\n" + stored_text(setting));
   return hash;
 }
 

@@ -93,6 +93,8 @@ TEST_F(FitTest, NoUncertainties_TheResidualsGiveTheScale) {
 TEST_F(FitTest, EachNumberOfAScene_VariesAsASettingOfItWould) {
   using Settings = std::vector<std::string>;
   const Settings sky = {"surroundings.temperature_K=none", "surroundings.profile=clear-sky"};
+  const Settings ends = {"surroundings.temperature_K=none", "surroundings.zenith_temperature_K=220",
+                         "surroundings.horizon_temperature_K=280"};
   const Settings film = {"surface.coating=[{n=1.5,k=0.2,thickness_um=2}]"};
   const Settings bistatic = {"geometry.mode=bistatic", "source.irradiance=9"};
   const Settings paint = {"surface.diffuse=0.3"};
@@ -122,6 +124,8 @@ TEST_F(FitTest, EachNumberOfAScene_VariesAsASettingOfItWould) {
       {"geometry.relative_azimuth_deg", {170, bistatic}},
       {"geometry.surface_azimuth_deg", {40, {"surface.masking=none", "surface.sigma_cross=0.4"}}},
       {"surroundings.temperature_K", {210}},
+      {"surroundings.zenith_temperature_K", {200, ends}},
+      {"surroundings.horizon_temperature_K", {290, ends}},
       {"surroundings.vapour_cm", {0.5, sky}},
       {"surroundings.air_temperature_K", {280, sky}},
       {"path.transmittance", {0.8, {"path.temperature_K=280"}}},

@@ -75,7 +75,7 @@
 #define DOLP_MOST_SKY_CORNERS 24 // largest number of corners of a sky that split the azimuths
 #define DOLP_COLUMN_PARTS 4      // numbers per column: r_i and r_q by the coarser rule, r_i and r_q by the finer rule
 #define DOLP_MAX_PIECES 63       // largest number of pieces of the slope axis for one direction
-#define DOLP_MAX_ARCS 13         // largest number of azimuth arcs; total reflection and skies split these arcs further
+#define DOLP_MAX_ARCS 13         // largest number of azimuth arcs; total reflection and kinks split these arcs further
 // V-grooves, see physics/groove.glsl
 #define DOLP_STEEPEST_SPLIT 20.0  // for slopes below this, azimuths are split where the number of bounces changes
 #define DOLP_MOST_SPLITS 8       // largest RuleNode::split_bounces
@@ -83,7 +83,7 @@
 #define DOLP_GROUPS_PER_DISTANCE 6 // a group of n > 1 bounces has at least 6 n bounces before it and 5 n after it
 #define DOLP_MOST_DOUBLINGS 12    // a group has at most 2^12 bounces
 #define DOLP_LAST_BOUNCES (DOLP_MOST_BOUNCES << DOLP_MOST_DOUBLINGS)  // a ray with more bounces is absorbed
-#define DOLP_MOST_ROW_KINKS 24   // largest number of kinks of measured reflectances that split the azimuths
+#define DOLP_MOST_ROW_KINKS 24   // largest number of kinks of measured reflectances and corners of a sky together
 #define DOLP_CURVE_ALIGNMENT 64  // tables of reflectances begin at multiples of this; so curve_start is exact in float
 #define DOLP_CURVE_NODES 6       // pairs of numbers per cell of a reflectance table: 3 cubics with 4 coefficients each
 // Azimuth nodes per radian that resolve cos(2 k phi), divided by k. Gauss rules on an arc without a map need more than

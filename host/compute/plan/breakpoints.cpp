@@ -10,7 +10,6 @@
 #include "model/angles.hpp"
 #include "plan/constants.hpp"
 #include "plan/kernel_data.hpp"
-#include "plan/reflectance_curve.hpp"
 
 namespace dolp {
 namespace {
@@ -142,8 +141,8 @@ void add_sky_breakpoints(std::vector<Breakpoint>& points, double theta_deg, cons
 }
 
 // Slopes at which a ray in the plane of incidence meets a kink of measured reflectances.
-void add_row_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const RowKinks& kinks) {
-  for (const double angle_deg : kinks.split_deg) {
+void add_row_breakpoints(std::vector<Breakpoint>& points, double theta_deg, std::span<const double> kinks_deg) {
+  for (const double angle_deg : kinks_deg) {
     if (points.size() + 2 > kMostBreakpoints) return;
     points.push_back({tan_deg(std::abs(theta_deg - angle_deg)), kRoots});
     if (theta_deg + angle_deg < 90.0) points.push_back({tan_deg(theta_deg + angle_deg), kRoots});
@@ -190,7 +189,7 @@ std::vector<Breakpoint> breakpoints(double theta_deg, const MomentsRequest& requ
     add_critical_breakpoints(points, theta_deg, a, masking, variant.critical_cos);
     if (is_multiple) add_critical_bounces(points, theta_deg, variant.critical_cos);
   }
-  add_row_breakpoints(points, theta_deg, row_kinks(request));
+  add_row_breakpoints(points, theta_deg, variant.kinks_deg);
   add_sky_breakpoints(points, theta_deg, sky);
   std::erase_if(points, [&](const Breakpoint& point) { return point.slope <= 0.0 || point.slope > last; });
   // The cusp of smith masking lies at tan(theta/2), so at slope 0 if theta is 0.

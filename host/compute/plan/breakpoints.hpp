@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "model/moments.hpp"
@@ -17,8 +18,9 @@ struct Breakpoint {
 
 /// Properties of an index and of a slope distribution that add breakpoints to a direction.
 struct DirectionVariant {
-  double critical_cos = 0.0;  ///< cos(beta) at which total reflection begins; 0 without it
-  bool has_line = false;      ///< true if slopes are split at a kink of the masking, see needs_line()
+  double critical_cos = 0.0;               ///< cos(beta) at which total reflection begins; 0 without it
+  bool has_line = false;                   ///< true if slopes are split at a kink of the masking, see needs_line()
+  std::span<const double> kinks_deg = {};  ///< RowKinks::split_deg
 };
 
 /// Ascending slopes, starting with 0, that divide the slope axis into pieces with a smooth integrand. In grooves, up to

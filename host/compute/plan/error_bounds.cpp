@@ -142,7 +142,7 @@ double many_bounces_bound(const KernelData& data, const kernel::ThetaNode& theta
 double pair_factor(const KernelData& data, const kernel::IndexNode& index) {
   const bool is_multiple = data.scattering == Scattering::kMultiple;
   const double smooth = is_multiple ? kGroovePairFactor : data.needs_masking_table() ? kTablePairFactor : kPairFactor;
-  return index.critical_cos > 0.0 || data.row_kinks > 0 ? kCriticalFactor * smooth : smooth;
+  return index.critical_cos > 0.0 || index.curve_cells < 0.0 ? kCriticalFactor * smooth : smooth;
 }
 
 // Error of a function of a sky. It comes from the table of the function, from corners (kinks) at which the azimuths are
@@ -219,6 +219,7 @@ void add_curve_errors(Moments& moments, const kernel::MomentsNode& node, double 
   for (double* const bound : {&moments.r_i_error, &moments.r_q_error, &moments.deficit_error})
     *bound += facet_error * std::abs(node.albedo);
   for (double* const bound : {&moments.direct_i_error, &moments.direct_q_error}) *bound += facet_error * emitted;
+  for (ColumnMoments& column : moments.columns) column.error += facet_error * std::abs(node.albedo);
 }
 
 /// `sums` has the four numbers of column k that add_columns() gives.
@@ -285,11 +286,11 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
     moments.direct_i_error = shares.pair * node.direct_difference + shares.masked_error() * emitted + shares.cut;
     moments.direct_q_error = moments.direct_i_error;
   }
-  if (data.has_curves) add_curve_errors(moments, node, emitted, data.curve_errors[entry.index], unit_roundoff);
   for (std::size_t k = 0; k < data.column_count(); ++k) {
     const auto sums = columns.subspan(DOLP_COLUMN_PARTS * k, DOLP_COLUMN_PARTS);
     moments.columns.push_back(column_moments(sums, k, node, data, theta, shares, unit_roundoff));
   }
+  if (data.has_curves) add_curve_errors(moments, node, emitted, data.curve_errors[entry.index], unit_roundoff);
   // In grooves an inaccurate r_i may exceed cos(theta). Then it must not replace the deficit, which would be negative.
   if (!is_multiple || moments.r_i < theta.c || moments.deficit_error <= moments.r_i_error)
     take_complement(moments, theta.c);

@@ -67,7 +67,7 @@ Loops groove_loops(const KernelData& data, double start, double end) {
   return loops;
 }
 
-Loops slope_loops(const KernelData& data, double critical, double start, double end) {
+Loops slope_loops(const KernelData& data, const DirectionVariant& variant, double start, double end) {
   Loops loops;
   if (data.scattering == Scattering::kMultiple) {
     loops = groove_loops(data, start, end);
@@ -75,8 +75,8 @@ Loops slope_loops(const KernelData& data, double critical, double start, double 
     if (data.masking == Masking::kIntegral || data.masking == Masking::kVCavity) loops.arcs = 3.0;
     if (data.has_direct) loops.arcs += data.masking == Masking::kVCavity ? 2.0 : 1.0;
   }
-  if (critical > 0.0) loops.arcs *= 2.0;
-  loops.corners = data.sky.corners + static_cast<double>(data.row_kinks);
+  if (variant.critical_cos > 0.0) loops.arcs *= 2.0;
+  loops.corners = data.sky.corners + static_cast<double>(variant.kinks_deg.size());
   return loops;
 }
 
@@ -88,7 +88,7 @@ constexpr double kTurnsOfSlope = DOLP_MOST_SPLITS + 1.0;  // iterations that spl
 double iterations(const KernelData& data, const Loops& loops, double most_nodes) {
   const double arcs = loops.arcs + loops.corners;
   // Iterations that integrate nothing: each arc also loops over the kinks that lie outside the arc.
-  const double idle = data.sky.count == 0 && data.row_kinks == 0 ? 0.0 : 2.0 * loops.arcs * (1.0 + loops.corners);
+  const double idle = data.sky.count == 0 && loops.corners == 0.0 ? 0.0 : 2.0 * loops.arcs * (1.0 + loops.corners);
   if (!data.needs_masking_table()) return kTurnsOfSlope + idle + arcs * (2.0 + most_nodes * (1.0 + loops.turns));
   const auto rule_iterations = [&](double share) {
     return 1.0 + share * data.rule_order * (1.0 + idle + arcs * (2.0 + share * most_nodes));
@@ -125,7 +125,7 @@ DirectionNode direction_node(const KernelData& data, const MomentsRequest& reque
   pieces.count = static_cast<std::uint32_t>(points.size() - 1);
   pieces.has_split_line = variant.has_line;
   for (std::size_t i = 0; i < pieces.count; ++i) {
-    const Loops loops = slope_loops(data, variant.critical_cos, node.end[i], node.end[i + 1]);
+    const Loops loops = slope_loops(data, variant, node.end[i], node.end[i + 1]);
     pieces.most_nodes[i] = most_nodes(data, loops);
     pieces.lockstep[i] = static_cast<std::uint16_t>(kMostArcs * loops.turns + loops.arcs);
   }
@@ -195,25 +195,34 @@ void add_curves(KernelData& data, const MomentsRequest& request, Tables tables) 
   }
   double fringes = 0.0;
   for (const FacetOptics* optics : different) fringes = std::max(fringes, fringe_count(*optics));
+  std::vector<RowKinks> kinks;
+  std::vector<std::uint32_t> kinks_numbers;
+  for (const FacetOptics* optics : different) {
+    kinks.push_back(row_kinks(*optics, request.tolerance, DOLP_MOST_ROW_KINKS - data.sky.corners));
+    const auto known = std::ranges::find(data.kinks_deg, kinks.back().split_deg);
+    kinks_numbers.push_back(static_cast<std::uint32_t>(known - data.kinks_deg.begin()));
+    if (known == data.kinks_deg.end()) data.kinks_deg.push_back(kinks.back().split_deg);
+  }
+  for (const FacetOptics& optics : request.optics) data.index_kinks.push_back(kinks_numbers[numbers.at(optics)]);
   const bool is_counted = tables == Tables::kCounted;
   if (is_counted) different = {different[different.size() / 2]};  // a film may need many megabytes for each wavelength
   std::vector<ReflectanceCurve> curves(different.size());
   const double tolerance = tables_tolerance(request);
   parallel_for(curves.size(), 1, [&](std::size_t i) { curves[i] = reflectance_curve(*different[i], tolerance); });
   std::vector<double> starts;
-  RowKinks kinks = row_kinks(request);
-  std::ranges::sort(kinks.split_deg, std::ranges::greater());
-  data.row_kinks = kinks.split_deg.size();
-  for (const ReflectanceCurve& curve : curves) {
-    const std::size_t before = data.rule_nodes.size() + kinks.split_deg.size() + 1;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    std::vector<double> split_deg = kinks[numbers.at(*different[i])].split_deg;
+    std::ranges::sort(split_deg, std::ranges::greater());
+    const std::size_t before = data.rule_nodes.size() + split_deg.size() + 1;
     const std::size_t aligned = (before + DOLP_CURVE_ALIGNMENT - 1) / DOLP_CURVE_ALIGNMENT;
     starts.push_back(static_cast<double>(aligned));
-    data.rule_nodes.resize(aligned * DOLP_CURVE_ALIGNMENT - kinks.split_deg.size() - 1);
-    for (const double angle_deg : kinks.split_deg) data.rule_nodes.push_back({cos_sin_deg(angle_deg).cos, 0.0});
-    data.rule_nodes.push_back({static_cast<double>(kinks.split_deg.size()), 0.0});
-    data.rule_nodes.insert(data.rule_nodes.end(), curve.nodes.begin(), curve.nodes.end());
+    data.rule_nodes.resize(aligned * DOLP_CURVE_ALIGNMENT - split_deg.size() - 1);
+    for (const double angle_deg : split_deg) data.rule_nodes.push_back({cos_sin_deg(angle_deg).cos, 0.0});
+    data.rule_nodes.push_back({static_cast<double>(split_deg.size()), 0.0});
+    data.rule_nodes.insert(data.rule_nodes.end(), curves[i].nodes.begin(), curves[i].nodes.end());
   }
-  if (is_counted) data.left_out_nodes = (numbers.size() - 1) * (curves.front().nodes.size() + DOLP_CURVE_ALIGNMENT);
+  constexpr std::size_t kAround = DOLP_CURVE_ALIGNMENT + DOLP_MOST_ROW_KINKS + 1;
+  if (is_counted) data.left_out_nodes = (numbers.size() - 1) * (curves.front().nodes.size() + kAround);
   for (std::size_t i = 0; i < request.optics.size(); ++i) {
     const std::size_t number = is_counted ? 0 : numbers.at(request.optics[i]);
     const ReflectanceCurve& curve = curves[number];
@@ -221,18 +230,25 @@ void add_curves(KernelData& data, const MomentsRequest& request, Tables tables) 
     data.indices[i].curve_cells = (request.optics[i].measured ? -1.0 : 1.0) * static_cast<double>(curve.cells);
     data.indices[i].pole_re = curve.pole.real();
     data.indices[i].pole_im = curve.pole.imag();
-    data.curve_errors.push_back({curve.error + kUnsplitKinks * kinks.unsplit, curve.steepness});
+    const double unsplit = kinks[numbers.at(request.optics[i])].unsplit;
+    data.curve_errors.push_back({curve.error + kUnsplitKinks * unsplit, curve.steepness});
   }
   data.rule.t_nodes += kNodesOfFringe * fringes;
   data.rule.phi_nodes += kNodesOfFringe * fringes;
   data.curves_s = seconds_since(start);
 }
 
+// Position in KernelData::kinks_deg.
+std::uint32_t kinks_number(const KernelData& data, std::uint32_t index) {
+  return data.index_kinks.empty() ? 0 : data.index_kinks[index];
+}
+
 // Adds the directions of all bundles. Bundles share a direction if total reflection begins at the same cosine for their
-// indices. If some shapes need a split at the kink of their masking, they have a direction of their own.
+// indices, and their reflectances are split at the same kinks. If some shapes need a split at the kink of their
+// masking, they have a direction of their own.
 void add_directions(KernelData& data, const MomentsRequest& request) {
   constexpr std::size_t kDirectionsAtOnce = 512;
-  using Key = std::array<double, 3>;  // position in theta_deg, DirectionVariant
+  using Key = std::array<double, 4>;  // position in theta_deg, DirectionVariant
   std::unordered_map<Key, std::uint32_t, boost::hash<Key>> known;
   std::vector<Key> keys;
   std::array<bool, 2> needs{};  // a shape of the bundle needs a direction without, with the split
@@ -247,7 +263,7 @@ void add_directions(KernelData& data, const MomentsRequest& request) {
     for (std::size_t line = 0; line < needs.size(); ++line) {
       if (!needs[line]) continue;
       const Key key{static_cast<double>(bundle.direction), data.indices[bundle.index].critical_cos,
-                    static_cast<double>(line)};
+                    static_cast<double>(line), static_cast<double>(kinks_number(data, bundle.index))};
       const auto [found, is_new] = known.try_emplace(key, static_cast<std::uint32_t>(keys.size()));
       if (is_new) keys.push_back(key);
       thetas[line] = found->second;
@@ -256,9 +272,10 @@ void add_directions(KernelData& data, const MomentsRequest& request) {
   data.thetas.resize(keys.size());
   data.pieces.resize(keys.size());
   parallel_for(keys.size(), kDirectionsAtOnce, [&](std::size_t i) {
-    const auto& [direction, critical_cos, line] = keys[i];
-    const auto [theta, pieces] = direction_node(data, request, request.theta_deg[static_cast<std::size_t>(direction)],
-                                                {critical_cos, line != 0.0});
+    const auto& [direction, critical_cos, line, kinks] = keys[i];
+    const auto [theta, pieces] =
+        direction_node(data, request, request.theta_deg[static_cast<std::size_t>(direction)],
+                       {critical_cos, line != 0.0, data.kinks_deg[static_cast<std::size_t>(kinks)]});
     data.thetas[i] = theta;
     data.pieces[i] = pieces;
   });
@@ -361,13 +378,15 @@ KernelData kernel_data(const MomentsRequest& request, const RuleModel& model, Ta
 double worst_iterations(const KernelData& data) {
   double worst = 0.0;
   for (std::size_t i = 0; i < data.bundles.size(); ++i) {
-    const double critical = data.indices[data.bundles[i].index].critical_cos;
+    const std::uint32_t index = data.bundles[i].index;
+    const DirectionVariant variant{.critical_cos = data.indices[index].critical_cos,
+                                   .kinks_deg = data.kinks_deg[kinks_number(data, index)]};
     for (const std::uint32_t shape : data.bundle_shapes(i)) {
       const std::uint32_t direction = data.entry(i, shape).theta;
       const Pieces& pieces = data.pieces[direction];
       const kernel::ThetaNode& theta = data.thetas[direction];
       for (std::uint32_t piece = 0; piece < pieces.count; ++piece) {
-        const Loops loops = slope_loops(data, critical, theta.end[piece], theta.end[piece + 1]);
+        const Loops loops = slope_loops(data, variant, theta.end[piece], theta.end[piece + 1]);
         worst = std::max(worst, iterations(data, loops, pieces.most_nodes[piece]));
       }
     }

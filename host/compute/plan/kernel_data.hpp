@@ -72,11 +72,12 @@ struct KernelData {
   double tolerance = 1e-4;
   kernel::RuleNode rule{};
   int rule_order = 1;
-  bool has_total_reflection = false;     ///< true if total reflection begins at some angle for an index
-  bool has_curves = false;               ///< the kernel reads reflectances from tables
-  std::size_t row_kinks = 0;             ///< kinks of measured reflectances that split the azimuths
-  std::vector<CurveError> curve_errors;  ///< per index; empty without reflectance tables
-  double curves_s = 0.0;                 ///< time that the reflectance tables took
+  bool has_total_reflection = false;                  ///< true if total reflection begins at some angle for an index
+  bool has_curves = false;                            ///< the kernel reads reflectances from tables
+  std::vector<CurveError> curve_errors;               ///< per index; empty without reflectance tables
+  std::vector<std::vector<double>> kinks_deg = {{}};  ///< different RowKinks::split_deg; the first is empty
+  std::vector<std::uint32_t> index_kinks;             ///< for each index, a position in kinks_deg
+  double curves_s = 0.0;                              ///< time that the reflectance tables took
   std::vector<Bundle> bundles;
   std::vector<std::uint32_t> members;
   std::vector<kernel::ThetaNode> thetas;

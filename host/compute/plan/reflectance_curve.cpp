@@ -8,6 +8,7 @@
 #include <ranges>
 #include <utility>
 
+#include "model/angles.hpp"
 #include "model/smooth_surface.hpp"
 #include "plan/constants.hpp"
 #include "plan/kernel_data.hpp"
@@ -193,42 +194,58 @@ std::complex<double> steepest_pole(const Sixths& sixths) {
   return pole;
 }
 
-/// How far the lines beside a row differ from a smooth curve: about a jump of dR/dbeta times an eighth of an interval.
-/// Around normal incidence the reflectances go on as in a mirror, so the first row has a kink, too.
-double kink_at(const MeasuredReflectance& measured, std::size_t row) {
-  const double after = measured.beta_deg[row + 1] - measured.beta_deg[row];
-  const double before = row == 0 ? after : measured.beta_deg[row] - measured.beta_deg[row - 1];
-  double largest = 0.0;
-  for (const std::vector<double>* r : {&measured.r_s, &measured.r_p}) {
-    const double previous = row == 0 ? (*r)[1] : (*r)[row - 1];
-    const double jump = ((*r)[row + 1] - (*r)[row]) / after - ((*r)[row] - previous) / before;
-    largest = std::max(largest, 0.125 * std::min(before, after) * std::abs(jump));
-  }
-  return largest;
+/// The change of R_s and R_p with beta, per degree, beside an angle: before it if `step_deg` is negative, else after
+/// it. `row`: the row at the larger end of the interval.
+std::array<double, 2> slopes_beside(const MeasuredReflectance& measured, std::size_t row, double beta_deg,
+                                    double step_deg) {
+  const auto at = [&](double angle_deg) { return measured_absorptance(measured, row, cos_sin_deg(angle_deg).cos); };
+  const SmoothAbsorptance near = at(beta_deg), far = at(beta_deg + step_deg);
+  return {(near.s - far.s) / step_deg, (near.p - far.p) / step_deg};
+}
+
+struct Kink {
+  double size = 0.0;
+  std::vector<double> splits_deg;  ///< angles that resolve it
+};
+
+/// Size of a kink at an angle between two intervals, which end at the rows `before` and `after`: the jump of dR/dbeta
+/// times an eighth of the smaller interval. This is how far the curve differs from a smooth one.
+double kink_size(const MeasuredReflectance& measured, double beta_deg, std::size_t before, std::size_t after) {
+  constexpr double kStep = 1e-3;  // share of an interval
+  const auto length_deg = [&](std::size_t row) { return measured.beta_deg[row] - measured.beta_deg[row - 1]; };
+  const auto [s_before, p_before] = slopes_beside(measured, before, beta_deg, -kStep * length_deg(before));
+  const auto [s_after, p_after] = slopes_beside(measured, after, beta_deg, kStep * length_deg(after));
+  return 0.125 * std::min(length_deg(before), length_deg(after)) *
+         std::max(std::abs(s_after - s_before), std::abs(p_after - p_before));
+}
+
+std::vector<Kink> find_kinks(const MeasuredReflectance& measured) {
+  std::vector<Kink> kinks;
+  for (std::size_t row = 1; row + 1 < measured.beta_deg.size(); ++row)
+    kinks.push_back({kink_size(measured, measured.beta_deg[row], row, row + 1), {measured.beta_deg[row]}});
+  // At normal incidence R goes on as in a mirror: it has the tip of a cone. Arcs that shrink toward it resolve it.
+  const double first_deg = measured.beta_deg[1];
+  const auto [s, p] = slopes_beside(measured, 1, 0.0, 1e-3 * first_deg);
+  const double jump = 2.0 * std::max(std::abs(s), std::abs(p));
+  kinks.push_back({0.125 * first_deg * jump, {0.0, 0.25 * first_deg, 0.0625 * first_deg}});
+  if (const std::optional<double> limit_deg = difference_limit_deg(measured))
+    kinks.push_back({kink_size(measured, *limit_deg, 1, 1), {*limit_deg}});
+  std::ranges::sort(kinks, std::ranges::greater(), &Kink::size);
+  return kinks;
 }
 
 }  // namespace
 
-RowKinks row_kinks(const MomentsRequest& request) {
+RowKinks row_kinks(const FacetOptics& optics, double tolerance, std::size_t most) {
   RowKinks kinks;
-  if (request.optics.empty() || !request.optics.front().measured) return kinks;
-  const std::vector<double>& beta_deg = request.optics.front().measured->beta_deg;  // equal at all wavelengths
-  double level = 1.0;
-  std::vector<std::pair<double, std::size_t>> sizes(beta_deg.size() - 1);
-  for (std::size_t row = 0; row < sizes.size(); ++row) sizes[row].second = row;
-  for (const FacetOptics& optics : request.optics) {
-    level = std::min(level, std::max(reflectance_level(optics), kLeastLevel));
-    for (auto& [size, row] : sizes) size = std::max(size, kink_at(*optics.measured, row));
-  }
-  std::ranges::sort(sizes, std::ranges::greater());
-  for (const auto& [size, row] : sizes) {
-    std::vector<double> splits = {beta_deg[row]};
-    // At normal incidence the reflectances have the tip of a cone. Arcs that shrink toward it resolve it.
-    if (row == 0) splits = {0.0, 0.25 * beta_deg[1], 0.0625 * beta_deg[1]};
-    const bool is_split =
-        size > kLeastKink * level * request.tolerance && kinks.split_deg.size() + splits.size() <= DOLP_MOST_ROW_KINKS;
-    if (is_split) kinks.split_deg.insert(kinks.split_deg.end(), splits.begin(), splits.end());
-    if (!is_split) kinks.unsplit = std::hypot(kinks.unsplit, size);
+  if (!optics.measured) return kinks;
+  const double least = kLeastKink * tolerance * std::max(reflectance_level(optics), kLeastLevel);
+  for (const Kink& kink : find_kinks(*optics.measured)) {
+    if (kink.size > least && kinks.split_deg.size() + kink.splits_deg.size() <= most) {
+      kinks.split_deg.insert(kinks.split_deg.end(), kink.splits_deg.begin(), kink.splits_deg.end());
+    } else {
+      kinks.unsplit = std::hypot(kinks.unsplit, kink.size);
+    }
   }
   return kinks;
 }

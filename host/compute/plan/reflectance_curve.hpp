@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "model/facet_optics.hpp"
-#include "model/moments.hpp"
 
 namespace dolp {
 
@@ -30,8 +29,8 @@ struct RowKinks {
   double unsplit = 0.0;           ///< sizes of the other kinks, added in quadrature
 };
 
-/// The kinks of all optics of the request, which have the same angles. Without measured reflectances, there are none.
-RowKinks row_kinks(const MomentsRequest& request);
+/// The kinks of an index. At most `most` of them are split. Without measured reflectances, there are none.
+RowKinks row_kinks(const FacetOptics& optics, double tolerance, std::size_t most);
 
 /// Doubles the number of cells until the error is at most a share of the tolerance, or the number reaches its limit.
 /// The tolerance is relative to reflectance_level(). Domain: optics that are not bare.

@@ -97,18 +97,26 @@ SmoothAbsorptance measured_absorptance(const MeasuredReflectance& measured, std:
   return with_split([&](double at) { return between_rows(measured, row, at); }, cosine);
 }
 
-bool limits_difference(const MeasuredReflectance& measured) {
+std::optional<double> difference_limit_deg(const MeasuredReflectance& measured) {
   constexpr int kSteps = 90;
   constexpr double kRounding = 1e-12;
   const double first = 0.5 * (measured.r_s[0] + measured.r_p[0]);
   const double second = 0.5 * (measured.r_s[1] + measured.r_p[1]);
-  for (int i = 1; i < kSteps; ++i) {
-    const double share = static_cast<double>(i) / kSteps;
+  const auto is_limited = [&](double share) {
     const double sine = std::sin(share * measured.beta_deg[1] * std::numbers::pi / 180.0);
     const double most = half_difference_limit(std::lerp(first, second, share));
-    if (std::abs(free_half_difference(measured, sine * sine)) > most + kRounding) return true;
+    return std::abs(free_half_difference(measured, sine * sine)) > most + kRounding;
+  };
+  for (int i = 1; i < kSteps; ++i) {
+    double free = static_cast<double>(i - 1) / kSteps, limited = static_cast<double>(i) / kSteps;
+    if (!is_limited(limited)) continue;
+    while (limited - free > kRounding) {
+      const double middle = 0.5 * (free + limited);
+      (is_limited(middle) ? limited : free) = middle;
+    }
+    return limited * measured.beta_deg[1];
   }
-  return false;
+  return std::nullopt;
 }
 
 double reflectance_level(const FacetOptics& optics) {

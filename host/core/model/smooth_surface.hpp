@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include <vector>
 
 #include "model/facet_optics.hpp"
@@ -25,8 +27,9 @@ SmoothAbsorptance smooth_absorptance(const FacetOptics& optics, double cosine);
 /// at the larger angle.
 SmoothAbsorptance measured_absorptance(const MeasuredReflectance& measured, std::size_t row, double cosine);
 
-/// True if |R_s - R_p| is limited somewhere between the first two rows, so that both stay in [0, 1].
-bool limits_difference(const MeasuredReflectance& measured);
+/// The first angle between the first two rows at which |R_s - R_p| is limited, so that both stay in [0, 1], in degrees.
+/// nullopt if there is none.
+std::optional<double> difference_limit_deg(const MeasuredReflectance& measured);
 
 /// The unit for errors of reflectances: the reflectance or the absorptance at normal incidence, whichever is smaller.
 /// Films may reflect nothing at one angle, so for all but bare media both are means over four angles.

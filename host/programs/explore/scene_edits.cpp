@@ -351,24 +351,26 @@ void SceneEdits::set(const std::vector<Setting>& changes) {
 }
 
 void SceneEdits::reset(const std::string& key) {
-  // If the scene as opened has a rival, such as a material instead of n and k, then both n and k go.
+  const auto reset_all = [&](const auto& is_reset) {
+    std::vector<Setting> all = changes();
+    std::erase_if(all, is_reset);
+    std::ranges::copy_if(opened_.settings(), std::back_inserter(all), is_reset);
+    become(all);
+  };
+  const auto is_of_key = [&](const Setting& change) { return change.key == key || parent_table(change.key) == key; };
   const std::vector<Key>& keys = dolp::keys();
   const auto known = std::ranges::find(keys, key, &Key::key);
-  const std::vector<std::string> rivals = known == keys.end() ? std::vector<std::string>{} : known->rivals;
-  const auto was_there = [&](const std::string& rival) { return has_value(opened_, described(rival)); };
-  const bool is_replaced = std::ranges::any_of(rivals, was_there);
-  const auto is_alternative = [&](const Setting& change) {
-    const auto other = std::ranges::find(keys, change.key, &Key::key);
-    return is_replaced && other != keys.end() &&
-           (other->rivals == rivals || std::ranges::count(rivals, change.key) > 0);
-  };
-  const auto is_of_key = [&](const Setting& change) {
-    return change.key == key || parent_table(change.key) == key || is_alternative(change);
-  };
-  std::vector<Setting> all = changes();
-  std::erase_if(all, is_of_key);
-  std::ranges::copy_if(opened_.settings(), std::back_inserter(all), is_of_key);
-  become(all);
+  try {
+    reset_all(is_of_key);
+  } catch (const InputError&) {
+    if (known == keys.end() || known->rivals.empty()) throw;
+    // The scene as opened has another alternative, such as a material instead of n and k. Then both n and k go.
+    reset_all([&](const Setting& change) {
+      const auto other = std::ranges::find(keys, change.key, &Key::key);
+      return is_of_key(change) || (other != keys.end() && (other->rivals == known->rivals ||
+                                                           std::ranges::count(known->rivals, change.key) > 0));
+    });
+  }
 }
 
 std::vector<Setting> SceneEdits::changes_without(const std::vector<std::string>& keys) const {

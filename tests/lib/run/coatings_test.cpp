@@ -498,15 +498,17 @@ TEST(MeasuredReflectances, JaggedRows_MeetTheToleranceAndTheReference) {
   }
 }
 
-// Rows of 5 degrees with jumps of up to a half, and rows of 10 degrees of a dielectric. The zeniths are those of rows
-// and close to the normal, where all facets of a slope meet a row.
+// Rows of 5 degrees with jumps of up to a half; rows of 10 degrees of a dielectric; and a difference of R_s and R_p
+// that grows like sin^2(beta) up to the second row, and then linearly. The zeniths are those of rows and close to the
+// normal, where all facets of a slope meet a row.
 TEST(MeasuredReflectances, CoarseRows_AreWithinTheirBoundsOfTheReference) {
-  const std::array<const char*, 2> files = {
+  const std::array<const char*, 3> files = {
       {"0,0.3,0.3\n5,0.05,0.05\n10,0.05,0.05\n15,0.446,0.409\n20,0.105,0.077\n25,0.5,0.429\n30,0.94,0.122\n"
        "35,0.596,0.562\n40,0.95,0.95\n45,0.55,0.95\n50,0.208,0.95\n55,0.593,0.95\n60,0.95,0.95\n"
        "65,0.95,0.95\n70,0.95,0.565\n75,0.585,0.95\n80,0.103,0.95\n85,0.05,0.536\n90,1,1\n",
        "0,0.04,0.04\n10,0.041,0.039\n20,0.046,0.035\n30,0.056,0.028\n40,0.075,0.019\n50,0.11,0.006\n"
-       "60,0.18,0.002\n70,0.31,0.04\n80,0.54,0.24\n85,0.73,0.5\n90,1,1\n"}};
+       "60,0.18,0.002\n70,0.31,0.04\n80,0.54,0.24\n85,0.73,0.5\n90,1,1\n",
+       "0,0.5,0.5\n10,0.55,0.45\n20,0.6,0.4\n40,0.7,0.3\n90,0.95,0.05\n"}};
   for (const char* rows : files) {
     const TemporaryFile file("coarse.csv", std::string("beta_deg,r_s,r_p\n") + rows);
     for (const char* masking : {"none", "smith"}) {
@@ -528,6 +530,31 @@ TEST(MeasuredReflectances, CoarseRows_AreWithinTheirBoundsOfTheReference) {
               << where;
         }
       }
+    }
+  }
+}
+
+// The parts of a table have the bits of the whole, so the kinks of a wavelength must not depend on other wavelengths.
+TEST(MeasuredReflectances, EachWavelength_HasTheBitsThatItHasAlone) {
+  std::string rows = "wavelength_um,beta_deg,r_s,r_p\n";
+  for (const char* row : {"0,0.3,0.3", "10,0.31,0.29", "20,0.33,0.27", "40,0.4,0.2", "90,1,1"})
+    rows += std::string("8,") + row + '\n';
+  for (const char* row : {"0,0.3,0.3", "10,0.9,0.2", "20,0.3,0.6", "40,0.8,0.1", "90,1,1"})
+    rows += std::string("11,") + row + '\n';
+  const TemporaryFile file("wavelengths.csv", rows);
+  for (const char* tolerance : {"1e-2", "1e-3"}) {
+    const auto at = [&](const std::string& wavelengths) {
+      return results_of(scene_with(
+          {"surface.coating=none", "surface.n={}", "surface.k={}", "surface.masking=none", "grid.theta_deg=[40]",
+           "grid.sigma=[0.01, 0.05, 0.1, 0.3]", "surface.reflectance_file=" + file.path(), "spectrum.wavelength_um=8",
+           "grid.wavelength_um=" + wavelengths, std::string("accuracy.tolerance=") + tolerance}));
+    };
+    const std::vector<PointResult> both = at("[8, 11]"), first = at("[8]"), second = at("[11]");
+    ASSERT_EQ(both.size(), first.size() + second.size());
+    for (std::size_t i = 0; i < both.size(); ++i) {
+      const PointResult& alone = i < first.size() ? first[i] : second[i - first.size()];
+      for (const Quantity quantity : {kDolp, kRhoI, kErrorEstimate, kRhoErrorEstimate})
+        EXPECT_EQ(both[i][quantity], alone[quantity]) << tolerance << ' ' << i << ' ' << describe(quantity).name;
     }
   }
 }

@@ -241,7 +241,8 @@ class Remarks {
 
   void add_reflectances(const std::string& key) {
     const std::vector<std::shared_ptr<const MeasuredReflectance>>& measured = scene_.surface.reflectance->measured;
-    if (std::ranges::none_of(measured, [](const auto& rows) { return difference_limit_deg(*rows).has_value(); })) return;
+    if (std::ranges::none_of(measured, [](const auto& rows) { return difference_limit_deg(*rows).has_value(); }))
+      return;
     add(key, fmt::format("no row between 0 and {} degrees: r_s - r_p, proportional to sin^2 there, is limited so that "
                          "both stay in [0, 1]",
                          measured.front()->beta_deg[1]));

@@ -351,25 +351,30 @@ void SceneEdits::set(const std::vector<Setting>& changes) {
 }
 
 void SceneEdits::reset(const std::string& key) {
+  const std::vector<Key>& keys = dolp::keys();
+  const auto known = std::ranges::find(keys, key, &Key::key);
+  const std::vector<std::string> rivals = known == keys.end() ? std::vector<std::string>{} : known->rivals;
+  const auto is_of_key = [&](const Setting& change) { return change.key == key || parent_table(change.key) == key; };
+  // Also the other keys of the alternative, such as k beside n, its rivals, such as a material, and the whole table.
+  const auto is_of_alternative = [&](const Setting& change) {
+    const auto other = std::ranges::find(keys, change.key, &Key::key);
+    const bool is_beside = other != keys.end() && other->rivals == rivals;
+    return is_of_key(change) || is_beside || std::ranges::count(rivals, change.key) > 0 ||
+           change.key == parent_table(key);
+  };
   const auto reset_all = [&](const auto& is_reset) {
     std::vector<Setting> all = changes();
     std::erase_if(all, is_reset);
     std::ranges::copy_if(opened_.settings(), std::back_inserter(all), is_reset);
     become(all);
   };
-  const auto is_of_key = [&](const Setting& change) { return change.key == key || parent_table(change.key) == key; };
-  const std::vector<Key>& keys = dolp::keys();
-  const auto known = std::ranges::find(keys, key, &Key::key);
+  const auto was_there = [&](const std::string& rival) { return has_value(opened_, described(rival)); };
+  if (std::ranges::any_of(rivals, was_there)) return reset_all(is_of_alternative);
   try {
     reset_all(is_of_key);
   } catch (const InputError&) {
-    if (known == keys.end() || known->rivals.empty()) throw;
-    // The scene as opened has another alternative, such as a material instead of n and k. Then both n and k go.
-    reset_all([&](const Setting& change) {
-      const auto other = std::ranges::find(keys, change.key, &Key::key);
-      return is_of_key(change) || (other != keys.end() && (other->rivals == known->rivals ||
-                                                           std::ranges::count(known->rivals, change.key) > 0));
-    });
+    if (rivals.empty()) throw;
+    reset_all(is_of_alternative);
   }
 }
 

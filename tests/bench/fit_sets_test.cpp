@@ -5,7 +5,7 @@
 #include "scene/scene_reader.hpp"
 #include "studies/fit_sets.hpp"
 
-namespace {
+namespace fit_sets_test {
 
 using namespace dolp;
 using namespace dolp::bench;
@@ -40,4 +40,4 @@ TEST(FitSets, AllBounces_IntervalsOfTheBracketHoldTheTruth) {
   EXPECT_LT(width_of_n(fit_outcome(set, 1001, evaluator)), 0.25 * width_of_n(with_bracket));
 }
 
-}  // namespace
+}  // namespace fit_sets_test

@@ -16,7 +16,7 @@
 #include "studies/report.hpp"
 #include "studies/timing.hpp"
 
-namespace {
+namespace methods_test {
 
 using namespace dolp;
 using namespace dolp::bench;
@@ -172,4 +172,4 @@ TEST(BenchReport, Warnings_BadConditions_EachSayWhatToDo) {
   EXPECT_EQ(study["warnings"].get<std::vector<std::string>>(), expected);
 }
 
-}  // namespace
+}  // namespace methods_test

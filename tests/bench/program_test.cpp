@@ -8,7 +8,7 @@
 
 #include "bench_program.hpp"
 
-namespace {
+namespace program_test {
 
 using namespace dolp;
 using nlohmann::json;
@@ -125,4 +125,4 @@ TEST_F(BenchProgram, Plot_OfEveryStudy_GivesFigureAndTable) {
   EXPECT_FALSE(fs::exists(at("r.png")));
 }
 
-}  // namespace
+}  // namespace program_test

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace dolp {
+namespace dolp::parallel_ranges_test {
 namespace {
 
 constexpr std::size_t kGrain = 16;
@@ -40,4 +40,4 @@ TEST(ParallelRanges, AnErrorInOneRange_StopsTheLoopAndIsThrown) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::parallel_ranges_test

@@ -10,7 +10,7 @@
 #include "calibrate/rule_fit.hpp"
 #include "cli_support.hpp"
 
-namespace dolp {
+namespace dolp::calibrate_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 3;
@@ -91,4 +91,4 @@ TEST(Calibrate, BadArguments_ExitWith2) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::calibrate_test

@@ -8,7 +8,7 @@
 
 #include "cli_support.hpp"
 
-namespace {
+namespace cli_failure_test {
 
 using namespace dolp;
 namespace fs = std::filesystem;
@@ -295,4 +295,4 @@ TEST_F(CommandLine, Interrupt_WaitingForInput_Ends) {
   EXPECT_FALSE(fs::exists(at("out.csv")));
 }
 
-}  // namespace
+}  // namespace cli_failure_test

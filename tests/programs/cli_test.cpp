@@ -12,7 +12,7 @@
 #include "cli_support.hpp"
 #include "table/table_file.hpp"
 
-namespace {
+namespace cli_test {
 
 using namespace dolp;
 using nlohmann::json;
@@ -334,4 +334,4 @@ TEST_F(CommandLine, HelpAndVersion_OnStdout_Exit0) {
   EXPECT_TRUE(std::regex_match(version.out, std::regex("dolp " DOLP_VERSION " \\([-0-9a-z]+\\)\n"))) << version.out;
 }
 
-}  // namespace
+}  // namespace cli_test

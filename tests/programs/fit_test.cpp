@@ -8,7 +8,7 @@
 
 #include "cli_support.hpp"
 
-namespace {
+namespace fit_test {
 
 using namespace dolp;
 using nlohmann::json;
@@ -330,4 +330,4 @@ TEST_F(FitProgram, BadInput_IsOneLineThatSaysWhatIsAllowed) {
   expect_message("--data one.csv --data data.csv --vary surface.n=1:2", "all data sets have it, or none");
 }
 
-}  // namespace
+}  // namespace fit_test

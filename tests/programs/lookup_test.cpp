@@ -6,7 +6,7 @@
 #include "cli_support.hpp"
 #include "table/table_file.hpp"
 
-namespace {
+namespace lookup_test {
 
 using namespace dolp;
 using nlohmann::json;
@@ -167,4 +167,4 @@ TEST_F(TableAsScene, PlansNumbersOfValues_AreAboutEnough_AndHalfOfThemAreTooFew)
   EXPECT_GT(typical_error(thetas / 3, sigmas / 3), 1e-4);
 }
 
-}  // namespace
+}  // namespace lookup_test

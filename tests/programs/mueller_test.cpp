@@ -5,7 +5,7 @@
 
 #include "cli_support.hpp"
 
-namespace {
+namespace mueller_test {
 
 using namespace dolp;
 using nlohmann::json;
@@ -118,4 +118,4 @@ TEST_F(Mueller, OutputThatIsAnInput_Refused) {
   EXPECT_EQ(content("points.csv"), kGeometries);
 }
 
-}  // namespace
+}  // namespace mueller_test

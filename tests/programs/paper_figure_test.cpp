@@ -7,7 +7,7 @@
 
 #include "cli_support.hpp"
 
-namespace {
+namespace paper_figure_test {
 
 using namespace dolp;
 using nlohmann::json;
@@ -223,4 +223,4 @@ TEST_F(PaperFigure, Figure4_Attenuation_IntegralHasNoKinkAsVCavityHas) {
   }
 }
 
-}  // namespace
+}  // namespace paper_figure_test

@@ -7,7 +7,7 @@
 #include "cli_support.hpp"
 #include "table/table_file.hpp"
 
-namespace {
+namespace plan_test {
 
 using namespace dolp;
 using nlohmann::json;
@@ -305,4 +305,4 @@ TEST_F(DenseTable, Plan_SaysWhatTheRunInterpolates) {
   EXPECT_EQ(off["moments"], 12U * 40U * 36U);
 }
 
-}  // namespace
+}  // namespace plan_test

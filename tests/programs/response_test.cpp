@@ -7,7 +7,7 @@
 #include "table/table_file.hpp"
 #include "table/table_reader.hpp"
 
-namespace {
+namespace response_test {
 
 using namespace dolp;
 
@@ -124,4 +124,4 @@ TEST_F(Response, Verify_FindsWrongWeights) {
   EXPECT_TRUE(contains(outcome.out, "response_q at theta 0, sigma 0.4, q 2 is too far"));
 }
 
-}  // namespace
+}  // namespace response_test

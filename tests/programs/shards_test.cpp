@@ -9,7 +9,7 @@
 #include "table/table_file.hpp"
 #include "table_support.hpp"
 
-namespace dolp {
+namespace dolp::shards_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -332,4 +332,4 @@ TEST_F(Resume, OfACsv_IsTheCsvOfOneRun) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::shards_test

@@ -15,7 +15,7 @@
 #include "table/table_file.hpp"
 #include "verify/table_check.hpp"
 
-namespace dolp {
+namespace dolp::verify_test {
 namespace {
 
 enum Status { kDone = 0, kAccuracy = 1, kInput = 2, kDevice = 3 };
@@ -437,4 +437,4 @@ TEST_F(Verify, Devices_AreNamedAndMeasuredInEachPrecision) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::verify_test

@@ -14,7 +14,7 @@
 #include "reference/mueller.hpp"
 #include "reference/reference_evaluator.hpp"
 
-namespace dolp {
+namespace dolp::bounces_test {
 namespace {
 
 using boost::math::quadrature::gauss;
@@ -189,4 +189,4 @@ TEST(ReferenceBounces, HemisphericalIntegral_IsTheMoments) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::bounces_test

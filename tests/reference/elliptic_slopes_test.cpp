@@ -13,7 +13,7 @@
 #include "reference/reference_evaluator.hpp"
 #include "reference/vectors.hpp"
 
-namespace dolp {
+namespace dolp::elliptic_slopes_test {
 namespace {
 
 using reference::cross;
@@ -159,4 +159,4 @@ TEST(ReferenceElliptic, MaskingOfTheDistribution_ThrowsInputError) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::elliptic_slopes_test

@@ -19,7 +19,7 @@
 #include "reference/reference_evaluator.hpp"
 #include "reference/slopes.hpp"
 
-namespace dolp {
+namespace dolp::grooves_test {
 namespace {
 
 using boost::math::quadrature::gauss_kronrod;
@@ -254,4 +254,4 @@ TEST(ReferenceGrooves, OutsideTheDomain_ThrowsInputError) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::grooves_test

@@ -15,7 +15,7 @@
 #include "reference/mueller.hpp"
 #include "reference/slopes.hpp"
 
-namespace dolp {
+namespace dolp::masking_test {
 namespace {
 
 using reference::IntegralMasking;
@@ -215,4 +215,4 @@ TEST(ReferenceMueller, Specular_IsTheMatrixOfSmoothReflection) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::masking_test

@@ -18,7 +18,7 @@
 #include "model/choices.hpp"
 #include "reference/mueller.hpp"
 
-namespace dolp {
+namespace dolp::moments_test {
 namespace {
 
 using boost::math::quadrature::gauss_kronrod;
@@ -224,4 +224,4 @@ TEST(ReferenceEvaluator, OutsideTheDomain_ThrowsInputError) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::moments_test

@@ -7,7 +7,7 @@
 #include "model/transmission.hpp"
 #include "reference/moments.hpp"
 
-namespace dolp {
+namespace dolp::transmission_test {
 namespace {
 
 constexpr double kMostError = 1e-11;  // largest stated error of both quadratures, in units of the integral for g = 1
@@ -48,4 +48,4 @@ TEST(Transmission, MediumLikeAir_IsAPower) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::transmission_test

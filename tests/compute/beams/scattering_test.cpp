@@ -18,7 +18,7 @@
 #include "properties_support.hpp"
 #include "reference/reference_evaluator.hpp"
 
-namespace dolp {
+namespace dolp::scattering_test {
 namespace {
 
 using Matrix = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
@@ -249,4 +249,4 @@ TEST(BeamGeometry, BeamsInOnePlane_HaveTheFacetBetweenThem) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::scattering_test

@@ -14,7 +14,7 @@
 #include "error_text.hpp"
 #include "failing_new.hpp"
 
-namespace dolp {
+namespace dolp::devices_test {
 namespace {
 
 dolp::Device described(std::string name, dolp::Device::Type type, bool usable, bool float64) {
@@ -104,4 +104,4 @@ TEST(LacksThreads, NoMemoryForOneOfThem_Ends) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::devices_test

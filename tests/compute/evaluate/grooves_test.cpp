@@ -23,7 +23,7 @@
 #include "scene/scene_reader.hpp"
 #include "verify/qualification.hpp"
 
-namespace dolp {
+namespace dolp::grooves_test {
 namespace {
 
 constexpr std::array kDistributions = {Distribution::kCauchy, Distribution::kGaussian};
@@ -361,4 +361,4 @@ TEST(GrooveScenes, Bracket_IsWhatItsEndsSayAndHoldsAllBounces) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::grooves_test

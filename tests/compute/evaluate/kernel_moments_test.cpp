@@ -11,7 +11,7 @@
 #include "model/angles.hpp"
 #include "properties_support.hpp"
 
-namespace dolp {
+namespace dolp::kernel_moments_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 20260403;
@@ -152,4 +152,4 @@ INSTANTIATE_TEST_SUITE_P(Kernels, KernelProperties,
                          kernel_and_model_name);
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::kernel_moments_test

@@ -26,7 +26,7 @@
 #undef DOLP_DOUBLE
 #undef DOLP_KERNEL_NAMESPACE
 
-namespace dolp {
+namespace dolp::kernel_source_test {
 namespace {
 
 /// The number type of a kernel source: float or double.
@@ -304,4 +304,4 @@ TYPED_TEST(FresnelSource, TotalReflection_AbsorbsExactlyNothing) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::kernel_source_test

@@ -10,7 +10,7 @@
 #include "moments_only.hpp"
 #include "properties_support.hpp"
 
-namespace {
+namespace planned_moments_test {
 
 using namespace dolp;
 
@@ -114,4 +114,4 @@ TEST(PlannedMoments, Progress_RisesToAll_AndCancels) {
   EXPECT_THROW(planned_moments(plan, invented, cancel, work), Cancelled);
 }
 
-}  // namespace
+}  // namespace planned_moments_test

@@ -18,7 +18,7 @@
 #include "properties_support.hpp"
 #include "reference/reference_evaluator.hpp"
 
-namespace dolp {
+namespace dolp::slope_orders_test {
 namespace {
 
 struct Light {
@@ -319,4 +319,4 @@ INSTANTIATE_TEST_SUITE_P(Kernels, SlopeOrders,
                          [](const auto& test) { return to_name(test.param); });
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::slope_orders_test

@@ -21,7 +21,7 @@
 #include "plan/rows.hpp"
 #include "properties_support.hpp"
 
-namespace dolp {
+namespace dolp::vulkan_test {
 namespace {
 
 constexpr unsigned kSeed = 20240817;
@@ -270,17 +270,14 @@ TEST(VulkanEvaluator, CancelledRequest_LeavesTheEvaluatorUsable) {
   EXPECT_TRUE(std::ranges::equal(expected, actual, are_same));
 }
 
-}  // namespace
-
-namespace vulkan {
-namespace {
+using namespace vulkan;
 
 // A Vulkan instance and device with the objects for dispatches. The validation layer writes its messages to `log`.
 struct Session {
   explicit Session(ValidationLog& log)
       : instance(&log), device(instance.physical_devices().at(0), {}), kernels(device, false), stream(device) {}
   Instance instance;
-  Device device;
+  vulkan::Device device;
   Kernels kernels;
   CommandStream stream;
 };
@@ -401,5 +398,4 @@ TEST(Kernels, LastWorkgroup_WritesNothingBeyondItsCount) {
 }
 
 }  // namespace
-}  // namespace vulkan
-}  // namespace dolp
+}  // namespace dolp::vulkan_test

@@ -14,7 +14,7 @@
 #include "properties_support.hpp"
 #include "reference/reference_evaluator.hpp"
 
-namespace dolp {
+namespace dolp::error_bounds_test {
 namespace {
 
 // Allowed difference between two values of a moment that is exactly 0. With smith masking all moments are 0 at exactly
@@ -224,4 +224,4 @@ INSTANTIATE_TEST_SUITE_P(Maskings, NextToTheHorizon,
                          });
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::error_bounds_test

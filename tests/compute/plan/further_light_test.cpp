@@ -11,7 +11,7 @@
 #include "model/angles.hpp"
 #include "model/moments.hpp"
 
-namespace dolp {
+namespace dolp::further_light_test {
 namespace {
 
 MomentsRequest request_for(Distribution distribution, Scattering scattering) {
@@ -80,4 +80,4 @@ TEST(FurtherLight, ShapesAtTheEndsOfTheirRanges_AreNumbersFromZeroToOne) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::further_light_test

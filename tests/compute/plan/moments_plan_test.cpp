@@ -11,7 +11,7 @@
 #include "plan/response_plan.hpp"
 #include "properties_support.hpp"
 
-namespace dolp {
+namespace dolp::moments_plan_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 20261123;
@@ -212,4 +212,4 @@ TEST(SecondPass, SomeShapesOfAGrid_HeaviestTailIsNotLost) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::moments_plan_test

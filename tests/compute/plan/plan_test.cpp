@@ -17,7 +17,7 @@
 #include "plan/refinement.hpp"
 #include "plan/reflectance_curve.hpp"
 
-namespace dolp {
+namespace dolp::plan_test {
 namespace {
 
 // ---- Directions ----------------------------------------------------------------------------------------------------
@@ -187,4 +187,4 @@ TEST(KernelData, SceneTolerance_LimitsTheTablesOfTighterLevels) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::plan_test

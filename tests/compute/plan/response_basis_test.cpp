@@ -10,7 +10,7 @@
 #include "properties_support.hpp"
 #include "reference/fresnel.hpp"
 
-namespace {
+namespace response_basis_test {
 
 using namespace dolp;
 
@@ -112,4 +112,4 @@ TEST(ResponseBasis, IndicesWithAKink_AreNotReached) {
     EXPECT_FALSE(basis->find_weights(index)) << index.n << " " << index.k;
 }
 
-}  // namespace
+}  // namespace response_basis_test

@@ -7,7 +7,7 @@
 
 #include "radiometry/diffuse.hpp"
 
-namespace dolp {
+namespace dolp::diffuse_test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -100,4 +100,4 @@ TEST(DiffuseReflection, GrazingView_HasALimit) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::diffuse_test

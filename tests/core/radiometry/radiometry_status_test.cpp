@@ -10,7 +10,7 @@
 #include <dolp/status.hpp>
 #include "radiometry_support.hpp"
 
-namespace {
+namespace radiometry_status_test {
 
 using namespace radiometry_support;
 
@@ -273,4 +273,4 @@ TEST(Radiometry, GrazingExponentNearMinusOne_StaysFiniteBelowNinetyDegrees) {
   EXPECT_EQ(result.status & kReflectanceOutsideZeroToOne, kReflectanceOutsideZeroToOne);
 }
 
-}  // namespace
+}  // namespace radiometry_status_test

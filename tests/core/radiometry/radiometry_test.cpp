@@ -10,7 +10,7 @@
 #include "radiometry_support.hpp"
 #include "spectrum/planck.hpp"
 
-namespace {
+namespace radiometry_test {
 
 using namespace radiometry_support;
 
@@ -180,4 +180,4 @@ TEST(Radiometry, MetalWithoutSurroundings_KeepsTheDigitsOfItsEmission) {
   EXPECT_NEAR(result[Quantity::kDolp], 1.0 / 3.0, kAgreement);
 }
 
-}  // namespace
+}  // namespace radiometry_test

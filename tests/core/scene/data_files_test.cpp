@@ -7,7 +7,7 @@
 #include "scene_support.hpp"
 #include "temporary_file.hpp"
 
-namespace dolp {
+namespace dolp::data_files_test {
 namespace {
 
 const Spectrum kCo2Line{10.6, 10.6};
@@ -244,4 +244,4 @@ TEST(DiffuseFile_BesideOtherKeys, IsRefused) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::data_files_test

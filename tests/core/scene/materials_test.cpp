@@ -13,7 +13,7 @@
 #include "scene_support.hpp"
 #include "temporary_file.hpp"
 
-namespace dolp {
+namespace dolp::materials_test {
 namespace {
 
 const Spectrum kCo2Line{10.6, 10.6};
@@ -383,4 +383,4 @@ TEST(IrradianceFile_WithZeros, IsInterpolatedLinearly) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::materials_test

@@ -10,7 +10,7 @@
 
 #include "base/text.hpp"
 
-namespace dolp {
+namespace dolp::points_test {
 namespace {
 
 Points directions(const std::string& text) { return parse_points(text, "p.csv", PointsKind::kDirections); }
@@ -159,4 +159,4 @@ TEST(Points_RandomNumbers, ArriveBitForBit) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::points_test

@@ -14,7 +14,7 @@
 #include "scene_support.hpp"
 #include "temporary_file.hpp"
 
-namespace dolp {
+namespace dolp::scene_error_test {
 namespace {
 
 const std::string kHostDir = DOLP_HOST_DIR;
@@ -378,4 +378,4 @@ TEST(SceneOverride_Values, NeedNoQuotesAndKeepTheirSpelling) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::scene_error_test

@@ -11,7 +11,7 @@
 #include "scene_support.hpp"
 #include "temporary_file.hpp"
 
-namespace dolp {
+namespace dolp::scene_test {
 namespace {
 
 const std::string kHostDir = DOLP_HOST_DIR;
@@ -366,4 +366,4 @@ TEST(ShippedScenes_OfThePaper, HaveItsSamples) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::scene_test

@@ -16,7 +16,7 @@
 #include "spectrum/sky_factors.hpp"
 #include "temporary_file.hpp"
 
-namespace dolp {
+namespace dolp::sky_test {
 namespace {
 
 std::string refusal_of(const std::string& text) {
@@ -198,4 +198,4 @@ TEST(SkyNodes, ErrorOfWideTemperatureRanges_HoldsBetweenTheNodes) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::sky_test

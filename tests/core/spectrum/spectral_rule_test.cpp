@@ -13,7 +13,7 @@
 #include "spectrum/spectral_rule.hpp"
 #include "temporary_file.hpp"
 
-namespace {
+namespace spectral_rule_test {
 
 using namespace radiometry_support;
 
@@ -137,4 +137,4 @@ TEST(SpectralRule, FormulaMaterialBand_IntegratesReflectancesToItsPromise) {
   expect_promised_reflectances(material);
 }
 
-}  // namespace
+}  // namespace spectral_rule_test

@@ -14,7 +14,7 @@
 #include "scene/sky_profile.hpp"
 #include "spectrum/spectral_rules.hpp"
 
-namespace {
+namespace thinned_rule_test {
 
 using namespace dolp;
 
@@ -102,4 +102,4 @@ TEST(SpectralRules, EntriesWithTheirOwnIndex_KeepAllSamples) {
   EXPECT_EQ(SpectralRules(scene, {plain, own}).at({})->samples.size(), all);
 }
 
-}  // namespace
+}  // namespace thinned_rule_test

@@ -24,7 +24,7 @@
 #include "table/table_reader.hpp"
 #include "table_support.hpp"
 
-namespace {
+namespace table_test {
 
 using namespace dolp;
 namespace fs = std::filesystem;
@@ -303,4 +303,4 @@ TEST(PrintableLine, WhatATerminalObeys_IsReplaced) {
   EXPECT_EQ(printable_line("\xc0\xaf\xe0\x80\xaf\xed\xa0\x80"), "????????");
   EXPECT_EQ(printable_line(std::string_view("\0", 1)), "?");
 }
-}  // namespace
+}  // namespace table_test

@@ -19,7 +19,7 @@
 #include "table/table_reader.hpp"
 #include "table_support.hpp"
 
-namespace {
+namespace table_writing_test {
 
 using namespace dolp;
 namespace fs = std::filesystem;
@@ -224,4 +224,4 @@ TEST_F(TableFiles, ResultCsv_PartsOfManyRows_KeepTheirOrder) {
   for (std::size_t row = 0; row < 70'003; ++row) expected += std::to_string(row) + ",0.5,32\n";
   EXPECT_TRUE(read_file(at("p.csv")) == expected);
 }
-}  // namespace
+}  // namespace table_writing_test

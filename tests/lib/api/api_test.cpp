@@ -15,7 +15,7 @@
 #include "error_text.hpp"
 #include "in_folder.hpp"
 
-namespace {
+namespace api_test {
 
 using dolp::Quantity;
 
@@ -368,4 +368,4 @@ TEST_F(Library, Facts_AreThere) {
   EXPECT_EQ(dolp::kStatusBits.size(), 6U);
 }
 
-}  // namespace
+}  // namespace api_test

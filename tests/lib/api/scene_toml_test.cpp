@@ -9,7 +9,7 @@
 
 #include "temporary_file.hpp"
 
-namespace dolp {
+namespace dolp::scene_toml_test {
 namespace {
 
 const std::string kHostDir = DOLP_HOST_DIR;
@@ -46,4 +46,4 @@ TEST(SceneToml, NamedFiles_AreFoundFromTheNewFolder) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::scene_toml_test

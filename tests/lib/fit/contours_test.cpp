@@ -3,7 +3,7 @@
 
 #include "fit_support.hpp"
 
-namespace dolp::fit {
+namespace dolp::fit::contours_test {
 namespace {
 
 /// For each place (values of two parameters), minimises chi^2 over the third parameter and subtracts chi^2 of the fit.
@@ -86,4 +86,4 @@ TEST_F(FitContours, EightPoints_AreWhereTheLeastOfTheThirdParameterSays) { expec
 TEST_F(FitContours, FourPoints_AreWhereTheLeastOfTheThirdParameterSays) { expect_true(4, 7, 0.4); }
 
 }  // namespace
-}  // namespace dolp::fit
+}  // namespace dolp::fit::contours_test

@@ -4,7 +4,7 @@
 #include "fit_support.hpp"
 #include "scene/scene_keys.hpp"
 
-namespace dolp::fit {
+namespace dolp::fit::fit_test {
 namespace {
 
 TEST(FitQuality, IsAWordForTheP_Value) {
@@ -210,4 +210,4 @@ TEST_F(FitTest, SameSeed_GivesTheSameDigits) {
 }
 
 }  // namespace
-}  // namespace dolp::fit
+}  // namespace dolp::fit::fit_test

@@ -5,7 +5,7 @@
 
 #include "error_text.hpp"
 
-namespace dolp::fit {
+namespace dolp::fit::input_test {
 namespace {
 
 TEST(MeasuredData, Columns_AreReadAndCheckedLineByLine) {
@@ -74,4 +74,4 @@ TEST(FitParameter, Coordinates_AreLogarithmicOverADecade) {
 }
 
 }  // namespace
-}  // namespace dolp::fit
+}  // namespace dolp::fit::input_test

@@ -18,7 +18,7 @@
 #include "stored_evaluator.hpp"
 #include "verify/qualification.hpp"
 
-namespace dolp {
+namespace dolp::accuracy_test {
 namespace {
 
 // Largest share of points that may miss the tolerance because of rounding. For tolerances below kTight the share is
@@ -169,4 +169,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const testing::TestParamInfo<Setting>& test) { return std::string(test.param.name); });
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::accuracy_test

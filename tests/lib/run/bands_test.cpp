@@ -14,7 +14,7 @@
 #include "scene/scene_reader.hpp"
 #include "verify/table_check.hpp"
 
-namespace dolp {
+namespace dolp::bands_test {
 namespace {
 
 // DOLP of the emission of a smooth surface at 300 K in the band from 8 to 14 um, where n rises linearly from 0.90 to
@@ -107,4 +107,4 @@ TEST(Bands, TotalReflectionInsideOfANearMirror_TendsToTheMirror) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::bands_test

@@ -17,7 +17,7 @@
 #include "run/scene_table.hpp"
 #include "spectrum/planck.hpp"
 
-namespace dolp {
+namespace dolp::bistatic_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 20260212;
@@ -257,4 +257,4 @@ TEST(Bistatic, ViewAtNinetyDegreesOfADivergingReflectance_IsOutsideTheDomain) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::bistatic_test

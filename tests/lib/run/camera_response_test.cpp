@@ -10,7 +10,7 @@
 #include "temporary_file.hpp"
 #include "verify/table_check.hpp"
 
-namespace dolp {
+namespace dolp::camera_response_test {
 namespace {
 
 using enum Quantity;
@@ -182,4 +182,4 @@ TEST(DiffuseFile, Verify_AgreesWithTheReference) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::camera_response_test

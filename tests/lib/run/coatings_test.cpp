@@ -21,7 +21,7 @@
 #include "run/scene_remarks.hpp"
 #include "temporary_file.hpp"
 
-namespace dolp {
+namespace dolp::coatings_test {
 namespace {
 
 using enum Quantity;
@@ -574,4 +574,4 @@ TEST(MeasuredReflectances, BadFiles_AreRefusedWithTheirLine) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::coatings_test

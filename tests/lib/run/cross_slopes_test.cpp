@@ -12,7 +12,7 @@
 #include "run/scene_run.hpp"
 #include "scene/scene_reader.hpp"
 
-namespace dolp {
+namespace dolp::cross_slopes_test {
 namespace {
 
 using enum Quantity;
@@ -203,4 +203,4 @@ TEST(CrossSlopes, ImpossibleScenes_AreRefusedWithTheirKeys) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::cross_slopes_test

@@ -16,7 +16,7 @@
 #include "scene/points.hpp"
 #include "table/table_file.hpp"
 
-namespace dolp {
+namespace dolp::derivatives_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -242,4 +242,4 @@ TEST_F(DerivativeFiles, OfAllFormatsAndOfShards_HaveTheSameValues) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::derivatives_test

@@ -10,7 +10,7 @@
 #include "run/mueller_run.hpp"
 #include "temporary_file.hpp"
 
-namespace dolp {
+namespace dolp::diffuse_scenes_test {
 namespace {
 
 using enum Quantity;
@@ -131,4 +131,4 @@ TEST(DiffuseScenes, GridOfIndices_HasTheDiffusePartOfEach) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::diffuse_scenes_test

@@ -9,7 +9,7 @@
 #include "effects_support.hpp"
 #include "scene/scene_reader.hpp"
 
-namespace dolp {
+namespace dolp::effects_test {
 namespace {
 
 using namespace effects_support;
@@ -147,4 +147,4 @@ TEST(EffectBounds, RandomScenes_HoldWhatEachPartChanges) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::effects_test

@@ -15,7 +15,7 @@
 #include "run/scene_run.hpp"
 #include "scene/scene_reader.hpp"
 
-namespace dolp {
+namespace dolp::estimates_test {
 namespace {
 
 const std::string kScene = kRoughMetal + "[grid]\ntheta_deg = [30, 60]\n";
@@ -144,4 +144,4 @@ TEST(Influences, Bands_AreWithinAFactorOfTwoOfTheDifferenceOfTwoTables) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::estimates_test

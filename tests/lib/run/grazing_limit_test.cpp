@@ -11,7 +11,7 @@
 
 #include "scene_run_support.hpp"
 
-namespace dolp {
+namespace dolp::grazing_limit_test {
 namespace {
 
 using namespace scene_run_support;
@@ -169,4 +169,4 @@ TEST(GrazingLimit, RowsOfMeasuredReflectances_AreEndsOfThePanels) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::grazing_limit_test

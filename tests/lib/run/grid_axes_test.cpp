@@ -14,7 +14,7 @@
 #include "table/table_reader.hpp"
 #include "verify/table_check.hpp"
 
-namespace dolp {
+namespace dolp::grid_axes_test {
 namespace {
 
 using enum Quantity;
@@ -197,4 +197,4 @@ TEST(GridAxes, AllMaterials_AreThoseThatCoverTheSpectrum) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::grid_axes_test

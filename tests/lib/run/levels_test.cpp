@@ -9,7 +9,7 @@
 #include "moments_only.hpp"
 #include "run/scene_run.hpp"
 
-namespace dolp {
+namespace dolp::levels_test {
 namespace {
 
 constexpr double kTolerance = 1e-4;
@@ -121,4 +121,4 @@ TEST(RunScene_SelfCheck, BeyondTheBounds_NoEntryOfTheDirectionMeetsTheTolerance)
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::levels_test

@@ -15,7 +15,7 @@
 #include "run/scene_run.hpp"
 #include "scene/scene_reader.hpp"
 
-namespace dolp {
+namespace dolp::many_points_test {
 namespace {
 
 constexpr std::size_t kPoints = 9000;
@@ -118,4 +118,4 @@ TEST(RememberingEvaluator, RequestTwice_IsComputedOnce) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::many_points_test

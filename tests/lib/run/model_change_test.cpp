@@ -18,7 +18,7 @@
 #include "run/scene_remarks.hpp"
 #include "temporary_file.hpp"
 
-namespace dolp {
+namespace dolp::model_change_test {
 namespace {
 
 using enum Quantity;
@@ -273,4 +273,4 @@ TEST(ModelChange, Estimate_IsThatOfTheLargestEntry) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::model_change_test

@@ -12,7 +12,7 @@
 #include "reference/mueller.hpp"
 #include "run/scene_run.hpp"
 
-namespace dolp {
+namespace dolp::mueller_run_test {
 namespace {
 
 const OpticalConstants kPaint{1.5, 0.1};
@@ -163,4 +163,4 @@ TEST(MuellerPoints, SmithBelowItsExponent_NamesTheLine) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::mueller_run_test

@@ -9,7 +9,7 @@
 #include "run/scene_run.hpp"
 #include "scene_run_support.hpp"
 
-namespace {
+namespace prediction_test {
 
 using namespace dolp;
 using namespace scene_run_support;
@@ -93,4 +93,4 @@ TEST(Prediction, CountsOfTheFirstLevel_AreThoseOfTheRun) {
   }
 }
 
-}  // namespace
+}  // namespace prediction_test

@@ -13,7 +13,7 @@
 #include "model/smooth_surface.hpp"
 #include "spectrum/planck.hpp"
 
-namespace dolp {
+namespace dolp::resonant_films_test {
 namespace {
 
 using enum Quantity;
@@ -102,4 +102,4 @@ TEST(ResonantFilms, RandomStacks_AreWithinTheirBoundsAndTheTolerance) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::resonant_films_test

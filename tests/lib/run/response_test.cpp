@@ -12,7 +12,7 @@
 #include "run/response_run.hpp"
 #include "scene/scene_reader.hpp"
 
-namespace {
+namespace response_test {
 
 using namespace dolp;
 
@@ -188,4 +188,4 @@ TEST(Responses, At90Degrees_AreTheLimitOrNone) {
   }
 }
 
-}  // namespace
+}  // namespace response_test

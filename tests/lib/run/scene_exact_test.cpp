@@ -7,7 +7,7 @@
 
 #include "scene_run_support.hpp"
 
-namespace dolp {
+namespace dolp::scene_exact_test {
 namespace {
 
 using namespace scene_run_support;
@@ -86,4 +86,4 @@ TEST(SceneExact_QOfTwo, IsGgx) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::scene_exact_test

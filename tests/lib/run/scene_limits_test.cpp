@@ -6,7 +6,7 @@
 #include <dolp/status.hpp>
 #include "scene_run_support.hpp"
 
-namespace dolp {
+namespace dolp::scene_limits_test {
 namespace {
 
 using namespace scene_run_support;
@@ -192,4 +192,4 @@ TEST(Limits_IntegralMasking, LeavesPhysicsWhereDocumented) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::scene_limits_test

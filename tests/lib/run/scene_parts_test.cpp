@@ -13,7 +13,7 @@
 #include "scene_run_support.hpp"
 #include "table/table.hpp"
 
-namespace dolp {
+namespace dolp::scene_parts_test {
 namespace {
 
 using namespace scene_run_support;
@@ -175,4 +175,4 @@ TEST(SceneParts, ADenseBand_KeepsItsBitsInParts) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::scene_parts_test

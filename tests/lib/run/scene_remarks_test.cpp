@@ -6,7 +6,7 @@
 #include "scene_support.hpp"
 #include "temporary_file.hpp"
 
-namespace dolp {
+namespace dolp::scene_remarks_test {
 namespace {
 
 std::vector<std::string> remarks_of(const std::vector<std::string>& settings) {
@@ -118,4 +118,4 @@ TEST(SceneRemarks, FileThatLacksDataOrRows_IsSaid) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::scene_remarks_test

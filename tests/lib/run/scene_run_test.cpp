@@ -10,7 +10,7 @@
 #include "error_text.hpp"
 #include "scene_run_support.hpp"
 
-namespace dolp {
+namespace dolp::scene_run_test {
 namespace {
 
 using namespace scene_run_support;
@@ -141,4 +141,4 @@ INSTANTIATE_TEST_SUITE_P(SceneRun, RunsOfModel,
                                           testing::ValuesIn(kMaskings)));
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::scene_run_test

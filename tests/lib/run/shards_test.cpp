@@ -14,7 +14,7 @@
 #include "scene_run_support.hpp"
 #include "table/table_file.hpp"
 
-namespace {
+namespace shards_test {
 
 using namespace dolp;
 namespace fs = std::filesystem;
@@ -64,4 +64,4 @@ TEST_F(ReplacedShards, ByTheSameShard_AreMerged) {
   EXPECT_EQ(read_table(at("t.nc")).size(), 4U);
 }
 
-}  // namespace
+}  // namespace shards_test

@@ -12,7 +12,7 @@
 #include "scene/scene_reader.hpp"
 #include "scene_run_support.hpp"
 
-namespace dolp {
+namespace dolp::shipped_scenes_test {
 namespace {
 
 using namespace scene_run_support;
@@ -112,4 +112,4 @@ INSTANTIATE_TEST_SUITE_P(All, ShippedScene,
                          [](const auto& test) { return std::string(test.param.first); });
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::shipped_scenes_test

@@ -18,7 +18,7 @@
 #include "spectrum/planck.hpp"
 #include "spectrum/sky_factors.hpp"
 
-namespace dolp {
+namespace dolp::sky_test {
 namespace {
 
 using enum Quantity;
@@ -378,4 +378,4 @@ TEST(Sky, MirrorsAndLimitsAtTheHorizon_ReflectTheirOwnZenith) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::sky_test

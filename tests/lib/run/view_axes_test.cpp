@@ -10,7 +10,7 @@
 #include "table/table_file.hpp"
 #include "verify/table_check.hpp"
 
-namespace dolp {
+namespace dolp::view_axes_test {
 namespace {
 
 using enum Quantity;
@@ -169,4 +169,4 @@ TEST(PolarisationAngle, Emission_IsP_AndOppositeAzimuthsMirrorIt) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::view_axes_test

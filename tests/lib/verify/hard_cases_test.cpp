@@ -19,7 +19,7 @@
 #include "stored_evaluator.hpp"
 #include "verify/qualification.hpp"
 
-namespace dolp {
+namespace dolp::hard_cases_test {
 namespace {
 
 std::string label(const StoredCase& c) {
@@ -157,4 +157,4 @@ TEST(HardCases, RightAngle_IsTheLimitOfTheStoredValue) {
 }
 
 }  // namespace
-}  // namespace dolp
+}  // namespace dolp::hard_cases_test

@@ -8,7 +8,7 @@
 #include "explore_support.hpp"
 #include "window_support.hpp"
 
-namespace dolp::explore {
+namespace dolp::explore::axes_test {
 namespace {
 
 using namespace explore_test;
@@ -209,4 +209,4 @@ TEST_F(Axes, DragOfASlider_GivesCoarseCurves_AndHoldsZenithsAndColours_WhichCanB
 }
 
 }  // namespace
-}  // namespace dolp::explore
+}  // namespace dolp::explore::axes_test

@@ -10,7 +10,7 @@
 #include "explore_support.hpp"
 #include "in_folder.hpp"
 
-namespace dolp::explore {
+namespace dolp::explore::files_test {
 namespace {
 
 class ExploreFiles : public InFolder {
@@ -235,4 +235,4 @@ TEST(Preferences, DefaultPath_FollowsTheEnvironment) {
 }
 
 }  // namespace
-}  // namespace dolp::explore
+}  // namespace dolp::explore::files_test

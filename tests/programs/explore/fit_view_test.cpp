@@ -8,7 +8,7 @@
 #include "temporary_file.hpp"
 #include "window_support.hpp"
 
-namespace dolp::explore {
+namespace dolp::explore::fit_view_test {
 namespace {
 
 using namespace explore_test;
@@ -147,4 +147,4 @@ TEST_F(FitWindow, CancelClicked_EndsTheFitAndLeavesTheScene) {
 }
 
 }  // namespace
-}  // namespace dolp::explore
+}  // namespace dolp::explore::fit_view_test

@@ -10,7 +10,7 @@
 #include "explore_support.hpp"
 #include "temporary_file.hpp"
 
-namespace dolp::explore {
+namespace dolp::explore::parts_test {
 namespace {
 
 std::string sixteen_films() {
@@ -488,4 +488,4 @@ TEST(Exports, TrueError_IsBelowItsBound) {
 }
 
 }  // namespace
-}  // namespace dolp::explore
+}  // namespace dolp::explore::parts_test

@@ -12,7 +12,7 @@
 #include "explore_support.hpp"
 #include "temporary_file.hpp"
 
-namespace dolp::explore {
+namespace dolp::explore::session_test {
 namespace {
 
 bool says_stale(const std::string& text) { return text.find("the scene before") != std::string::npos; }
@@ -430,4 +430,4 @@ TEST(ExploreSession, RhoThatThePlanDrops_IsComputedWhenItIsShown) {
 }
 
 }  // namespace
-}  // namespace dolp::explore
+}  // namespace dolp::explore::session_test

@@ -4,7 +4,7 @@
 #include "explore/scene_edits.hpp"
 #include "window_support.hpp"
 
-namespace dolp::explore {
+namespace dolp::explore::sky_test {
 namespace {
 
 using namespace explore_test;
@@ -56,4 +56,4 @@ TEST_F(Skies, List_OffersUniformAndBuiltInSkies_AndTheFileOfTheSceneAsOpened) {
 }
 
 }  // namespace
-}  // namespace dolp::explore
+}  // namespace dolp::explore::sky_test

@@ -6,7 +6,7 @@
 
 #include "window_support.hpp"
 
-namespace {
+namespace window_files_test {
 
 using namespace dolp;
 using namespace dolp::explore;
@@ -183,4 +183,4 @@ TEST_F(WindowFiles, SceneAndSession_SavedByShortcut_AreOpenedAsTheyWere) {
   EXPECT_TRUE(session().pins()[0].curve.is_finished());
 }
 
-}  // namespace
+}  // namespace window_files_test

@@ -6,7 +6,7 @@
 #include "explore/window/style.hpp"
 #include "window_support.hpp"
 
-namespace {
+namespace window_look_test {
 
 using namespace dolp;
 using namespace dolp::explore;
@@ -142,4 +142,4 @@ TEST_F(WindowLook, Escape_ClosesWhatIsOpen) {
   EXPECT_NE(pixels(menu), opened);
 }
 
-}  // namespace
+}  // namespace window_look_test

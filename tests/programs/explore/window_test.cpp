@@ -18,7 +18,7 @@
 #include "virtual_display.hpp"
 #include "window_support.hpp"
 
-namespace {
+namespace window_test {
 
 using namespace dolp;
 using namespace dolp::explore;
@@ -311,4 +311,4 @@ TEST_F(CommandLine, Explore_WithoutDisplay_SaysSoInOneLine) {
   expect_refused(run(wanted), "dolp: no display", 3);
 }
 
-}  // namespace
+}  // namespace window_test

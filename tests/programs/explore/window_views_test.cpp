@@ -11,7 +11,7 @@
 #include "temporary_file.hpp"
 #include "window_support.hpp"
 
-namespace {
+namespace window_views_test {
 
 using namespace dolp;
 using namespace dolp::explore;
@@ -332,4 +332,4 @@ TEST_F(Window, SceneWithAWind_HasItsSliderInsteadOfSigma_AndADirectionalOneAnAzi
   EXPECT_EQ(session().view().panel, Panel::kAzimuth);
 }
 
-}  // namespace
+}  // namespace window_views_test

@@ -132,6 +132,16 @@ class Stack {
     return reflection(ratio(outside.s, cosine_), ratio(outside.p, cosine_));
   }
 
+  /// 1 - R_s and 1 - R_p, from the fluxes of energy. Unlike the differences, they keep their digits where R is near 1.
+  std::array<double, 2> absorptances() const {
+    const BothFields outside = fields();
+    const auto absorptance = [&](const Fields& f) {
+      const double flux = f.field.real() * f.flux.real() + f.field.imag() * f.flux.imag();
+      return std::max(4.0 * cosine_ * flux / std::norm(cosine_ * f.field + f.flux), 0.0);
+    };
+    return {absorptance(outside.s), absorptance(outside.p)};
+  }
+
   static FilmReflection reflection(const Ratio& s, const Ratio& p) {
     const Complex r_s = quotient(s.top, s.bottom), r_p = quotient(p.top, p.bottom);
     return {std::norm(r_s), std::norm(r_p), product(std::conj(r_s), r_p)};
@@ -316,6 +326,16 @@ FilmReflection film_reflection(const FacetOptics& optics, double cosine) {
     stack.thickness[outer] = d;
     return film_mean(stack, optics.films[inner], inner);
   });
+}
+
+std::array<double, 2> film_absorptances(const FacetOptics& optics, double cosine) {
+  // Below kGrazing, absorptances with a spread are proportional to the cosine. Above, 1 - R has enough digits.
+  constexpr double kGrazing = 1e-6;
+  if (std::ranges::none_of(optics.films, [](const Film& film) { return film.spread > 0.0; }))
+    return Stack(optics, cosine).absorptances();
+  const FilmReflection r = film_reflection(optics, std::max(cosine, kGrazing));
+  const double share = std::min(cosine / kGrazing, 1.0);
+  return {share * std::max(1.0 - r.r_s, 0.0), share * std::max(1.0 - r.r_p, 0.0)};
 }
 
 bool is_too_wide(const Film& film) {

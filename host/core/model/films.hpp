@@ -1,6 +1,7 @@
 // Reflection of light by a medium under films, whose thickness may vary over the surface.
 #pragma once
 
+#include <array>
 #include <complex>
 
 #include "model/facet_optics.hpp"
@@ -24,6 +25,10 @@ struct FilmReflection {
 /// Domain: cosine in (0, 1]; at most kMostVariedFilms films with a spread; not is_too_wide().
 /// Accuracy: 1e-14 without a spread, 1e-9 with one, 4e-6 if the mean thickness is below 5 spreads (tests FilmSpread).
 FilmReflection film_reflection(const FacetOptics& optics, double cosine);
+
+/// 1 - R_s and 1 - R_p, also where R is 1 but for its last digits. Domain: as film_reflection().
+/// Accuracy: relative to their size; 1e-9 with a spread.
+std::array<double, 2> film_absorptances(const FacetOptics& optics, double cosine);
 
 inline constexpr std::size_t kMostVariedFilms = 2;
 

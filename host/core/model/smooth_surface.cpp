@@ -42,23 +42,25 @@ double half_difference_limit(double mean) { return std::max(std::min(mean, 1.0 -
 
 double beta_deg_at(double cosine) { return std::acos(std::min(cosine, 1.0)) * 180.0 / std::numbers::pi; }
 
-/// measured_absorptance() without `split`.
+/// measured_absorptance() without `split`. It interpolates 1 - R by the angle to the row above, because both may be
+/// tiny next to 90 degrees.
 SmoothAbsorptance between_rows(const MeasuredReflectance& measured, std::size_t row, double cosine) {
-  const double before_deg = measured.beta_deg[row - 1];
-  const double share = (beta_deg_at(cosine) - before_deg) / (measured.beta_deg[row] - before_deg);
-  const double r_s = std::lerp(measured.r_s[row - 1], measured.r_s[row], share);
-  const double r_p = std::lerp(measured.r_p[row - 1], measured.r_p[row], share);
-  if (row > 1) return {1.0 - r_s, 1.0 - r_p};
-  const double mean = 0.5 * (r_s + r_p);
+  const double elevation_deg = std::asin(std::min(cosine, 1.0)) * 180.0 / std::numbers::pi;
+  const double after_deg = measured.beta_deg[row];
+  const double share = (elevation_deg - (90.0 - after_deg)) / (after_deg - measured.beta_deg[row - 1]);
+  const auto absorbed = [&](const std::vector<double>& r) { return std::lerp(1.0 - r[row], 1.0 - r[row - 1], share); };
+  const double s = absorbed(measured.r_s), p = absorbed(measured.r_p);
+  if (row > 1) return {s, p};
+  const double mean = 0.5 * (s + p);
   const double most = half_difference_limit(mean);
   const double half = std::clamp(free_half_difference(measured, (1.0 - cosine) * (1.0 + cosine)), -most, most);
-  return {1.0 - mean - half, 1.0 - mean + half};
+  return {mean - half, mean + half};
 }
 
 SmoothAbsorptance covered_absorptance(const FacetOptics& optics, double cosine) {
   if (optics.measured) return between_rows(*optics.measured, optics.measured->row_above(beta_deg_at(cosine)), cosine);
-  const FilmReflection r = film_reflection(optics, cosine);
-  return {std::max(1.0 - r.r_s, 0.0), std::max(1.0 - r.r_p, 0.0)};
+  const auto [s, p] = film_absorptances(optics, cosine);
+  return {s, p};
 }
 
 /// Adds `split`, (R_s - R_p) / sin^2(beta), to absorptances. Near normal incidence, where it is 0 / 0, it is
@@ -171,9 +173,9 @@ Moments mirror_moments(const FacetOptics& optics, double cosine) {
   moments.r_q = 0.5 * (absorbed.p - absorbed.s) * cosine;
   // If N is exactly 1, nothing is reflected: r_i and r_q are exactly 0 and have no error.
   moments.r_i_error = moments.r_i == 0.0 ? 0.0 : rounding;
-  moments.r_q_error = moments.r_i == 0.0 ? 0.0 : rounding;
   moments.albedo_error = rounding;
   moments.deficit_error = rounding * 0.5 * (absorbed.s + absorbed.p);
+  moments.r_q_error = moments.deficit_error;  // r_q is a difference of absorptances
   moments.direct_i = moments.deficit;
   moments.direct_q = -moments.r_q;
   moments.direct_i_error = moments.direct_q_error = moments.deficit_error;

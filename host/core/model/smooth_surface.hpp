@@ -17,10 +17,10 @@ struct SmoothAbsorptance {
 };
 
 /// Equation: a bare medium has 1 - R_s = 4 c Re(w) / |c + w|^2 and 1 - R_p = 4 c Re(conj(N^2) w) / |N^2 c + w|^2, where
-/// c is the cosine and w = sqrt(N^2 - 1 + c^2). Under films R is from film_reflection().
+/// c is the cosine and w = sqrt(N^2 - 1 + c^2). Under films they are film_absorptances().
 /// Domain: cosine c in (0, 1], n > 0, k >= 0. Total reflection (n < 1, k = 0) gives exactly 0.
-/// Accuracy: nothing cancels for a bare medium, even if it reflects nearly everything. With films the error is 1e-14,
-/// and the relative error of `split` is 1e-10.
+/// Accuracy: nothing cancels, even if the surface reflects nearly everything. The relative error of `split` is 1e-10
+/// with films.
 SmoothAbsorptance smooth_absorptance(const FacetOptics& optics, double cosine);
 
 /// The absorptances that two neighbouring rows of measured reflectances give, continued beyond the rows. `row`: the row

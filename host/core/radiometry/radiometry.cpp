@@ -81,7 +81,7 @@ double change_by_model(const SceneModel& scene, const SpectralRule& rule, std::s
     const SpectralSample& sample = rule.samples[j];
     const Moments& m = moments[j];
     if (model == EmissionModel::kDirect) {
-      change += sample.emitted * (1.0 - reflectances[j].rho_i - emissivities[j].i);
+      change += sample.emitted * (reflectances[j].absorbed - emissivities[j].i);
       continue;
     }
     const double mean_reflectance = m.albedo > 0.0 ? m.r_i / m.albedo : 1.0;
@@ -261,15 +261,19 @@ PointResult Radiometry::point(const Direction& direction, std::span<const Moment
     const double cos_source = bistatic ? cos_theta_i : direction.cos_theta;
     return finished(assemble(moments, direction.cos_theta, optics, cos_source, scattered));
   }
-  if (!bistatic) return finished(grazing_limit(scene_, kept_rule_, sky_, direction, moments));
+  const bool has_beam = bistatic && std::ranges::any_of(rule_.samples, [](const SpectralSample& sample) {
+                          return sample.irradiance != 0.0;
+                        });
+  if (!has_beam) return finished(grazing_limit(scene_, kept_rule_, sky_, direction, moments));
   PointResult result = outside_domain();
   result.status |= kReflectanceOutsideZeroToOne;
   return result;
 }
 
 bool Radiometry::may_change_dolp(const PointResult& result, double cos_theta) const {
+  const bool is_mirror = result[kAlbedo] == 1.0;  // its light meets no second facet
   const bool is_judged = scene_.surface.scattering == Scattering::kSingle && scene_.surface.specular > 0.0;
-  if (!is_judged || !promises_dolp(result.status) || std::isnan(result[kAlbedo])) return false;
+  if (!is_judged || is_mirror || !promises_dolp(result.status) || std::isnan(result[kAlbedo])) return false;
   if (emission_model(scene_) == EmissionModel::kDirect) return true;
   double most = 0.0;
   for (const Net& net : nets_) most += std::abs(net.thermal + cos_theta * net.source);

@@ -8,6 +8,7 @@
 #include <dolp/errors.hpp>
 #include <dolp/number_range.hpp>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 #include "base/text.hpp"
@@ -128,6 +129,23 @@ class Steps {
   NumberRange range_;
 };
 
+double u_over_i(const PointResult& result) {
+  if (result[Quantity::kDolp] == 0.0) return 0.0;  // there is no angle of polarisation
+  return result[Quantity::kDolp] * std::sin(2.0 * result[Quantity::kAolp] * std::numbers::pi / 180.0);
+}
+
+/// The derivative of a function at x and its value there, from values at the steps of StepResults, with the change by
+/// the extrapolation to step 0.
+struct Differences {
+  double derivative, change, middle, middle_change;
+};
+Differences differences(const std::array<double, 4>& values, double step) {
+  const double wide = (values[1] - values[0]) / (2.0 * step), narrow = (values[3] - values[2]) / step;
+  const double wide_mean = (values[0] + values[1]) / 2.0, narrow_mean = (values[2] + values[3]) / 2.0;
+  return {(4.0 * narrow - wide) / 3.0, std::abs(narrow - wide) / 3.0, (4.0 * narrow_mean - wide_mean) / 3.0,
+          std::abs(narrow_mean - wide_mean) / 3.0};
+}
+
 std::string per_unit(const std::string& unit) {
   if (unit == "1") return unit;
   return unit.find(' ') == std::string::npos ? unit + "-1" : "(" + unit + ")-1";
@@ -162,24 +180,30 @@ void compute_derivatives(const SceneValues& scene, const SceneEntries& entries, 
     steps.stay_on_axis();
     at = steps.results(evaluator, progress);
   }
-  constexpr std::array kDerived = {Quantity::kDolp, Quantity::kQOverI};
-  static_assert(kDerived.size() + 1 == kDerivativesPerKey);
   for (DerivativeColumn& column : columns)
     column.values.assign(entries.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const double step = at ? steps.step(entries[i]) : 0.0;
     if (!(step > 0.0)) continue;
-    double change = 0.0;
-    for (std::size_t j = 0; j < kDerived.size(); ++j) {
-      const auto value = [&](std::size_t k) { return (*at)[k][i][kDerived[j]]; };
-      const double wide = (value(1) - value(0)) / (2.0 * step);
-      const double narrow = (value(3) - value(2)) / step;
-      columns[j].values[i] = (4.0 * narrow - wide) / 3.0;
-      const double own = std::abs(narrow - wide) / 3.0;
-      change = std::isnan(own) ? own : std::max(change, own);
-    }
+    const auto component = [&](double (*of)(const PointResult&)) {
+      return differences({of((*at)[0][i]), of((*at)[1][i]), of((*at)[2][i]), of((*at)[3][i])}, step);
+    };
+    const Differences q = component([](const PointResult& r) { return r[Quantity::kQOverI]; });
+    const Differences u = component(u_over_i);
     const auto bound = [&](std::size_t k) { return (*at)[k][i][Quantity::kErrorEstimate]; };
-    columns.back().values[i] = change + ((bound(0) + bound(1)) / 6.0 + (bound(2) + bound(3)) * (4.0 / 3.0)) / step;
+    const double noise = ((bound(0) + bound(1)) / 6.0 + (bound(2) + bound(3)) * (4.0 / 3.0)) / step;
+    const double middle_noise = (bound(0) + bound(1)) / 6.0 + (bound(2) + bound(3)) * (2.0 / 3.0);
+    const double dolp = std::hypot(q.middle, u.middle);
+    const double sign = std::signbit((*at)[2][i][Quantity::kDolp]) ? -1.0 : 1.0;  // I may be negative
+    const double change = std::hypot(q.change, u.change);
+    // DOLP is the length of (Q/I, U/I). Its derivative needs their direction, which errors of the middle may turn.
+    const double off = std::hypot(q.middle_change, u.middle_change) + middle_noise;
+    const double turned = off < dolp ? off / dolp : 2.0;
+    const double rate = std::hypot(q.derivative, u.derivative);
+    static_assert(kDerivativesPerKey == 3);
+    columns[0].values[i] = dolp == 0.0 ? 0.0 : sign * (q.middle * q.derivative + u.middle * u.derivative) / dolp;
+    columns[1].values[i] = q.derivative;
+    columns[2].values[i] = change + noise + turned * rate;
   }
 }
 

@@ -254,6 +254,13 @@ TEST(Bistatic, ViewAtNinetyDegreesOfADivergingReflectance_IsOutsideTheDomain) {
   const PointResult r = seen_at(scene, 90.0);
   EXPECT_TRUE(std::isnan(r[Quantity::kDolp]));
   EXPECT_EQ(r.status, kReflectanceOutsideZeroToOne | kOutsideModelDomain);
+  scene.source.reset();  // without a source, the limit of DOLP is that of the hemispherical mode
+  const double bistatic = seen_at(scene, 90.0)[Quantity::kDolp];
+  scene.geometry.mode = Mode::kHemispherical;
+  FixedPrecision evaluator(Precision::kDouble);
+  const SceneEntries entries = {{90.0, {scene.surface.sigma, scene.surface.q}, {}}};
+  EXPECT_EQ(bistatic, evaluate_scene(scene, entries, evaluator, {}).front()[Quantity::kDolp]);
+  EXPECT_GT(bistatic, 0.0);
 }
 
 }  // namespace

@@ -415,12 +415,35 @@ TEST(Coatings, Mistakes_AreToldWithTheKeyAndWhatIsAllowed) {
 /// A CSV file with the reflectances of a smooth medium at angles of incidence in steps of `step_deg`.
 std::string measured_csv(const OpticalConstants& index, double step_deg) {
   std::string csv = "beta_deg,r_s,r_p\n";
-  for (double beta_deg = 0.0; beta_deg <= 90.0; beta_deg += step_deg) {
-    const double cosine = std::max(std::cos(beta_deg * std::numbers::pi / 180.0), 1e-9);
-    const SmoothAbsorptance absorbed = smooth_absorptance(index, beta_deg == 90.0 ? 1e-9 : cosine);
+  for (double beta_deg = 0.0; beta_deg < 90.0; beta_deg += step_deg) {
+    const SmoothAbsorptance absorbed = smooth_absorptance(index, std::cos(beta_deg * std::numbers::pi / 180.0));
     csv += fmt::format("{},{:.12g},{:.12g}\n", beta_deg, 1.0 - absorbed.s, 1.0 - absorbed.p);
   }
-  return csv;
+  return csv + "90,1,1\n";
+}
+
+// At 90 degrees a smooth surface reflects everything, and its emission, which has become 0, keeps the polarisation of
+// its limit.
+TEST(SmoothEmission, AtNinetyDegrees_IsTheLimit) {
+  const TemporaryFile file("measured.csv", measured_csv({1.5, 0.1}, 1.0));
+  for (const std::vector<std::string>& own : {
+           std::vector<std::string>{"surface.coating=[{n=1.7,k=0.02,thickness_um=3}]"},
+           {"surface.coating=[{n=1.7,k=0.02,thickness_um=3,thickness_spread_um=0.5}]"},
+           {"surface.coating=[{n=1.7,thickness_um=0}]"},
+           {"surface.coating=[{n=1.4,k=0.1,thickness_um=2},{n=1.7,thickness_um=5}]"},
+           {"surface.coating=none", "surface.n={}", "surface.k={}", "surface.reflectance_file=" + file.path()},
+       }) {
+    for (const char* model : {"fresnel", "moments", "direct"}) {
+      std::vector<std::string> overrides = own;
+      overrides.insert(overrides.end(), {std::string("emission.model=") + model, "surface.sigma=0",
+                                         "surface.masking=v-cavity", "grid.theta_deg=[89.99999,90]"});
+      const std::vector<PointResult> results = results_of(scene_with(overrides));
+      EXPECT_EQ(results[1].status, 0U) << model;
+      EXPECT_GT(results[1][kDolp], 0.01) << own[0] << " " << model;
+      EXPECT_NEAR(results[1][kQOverI], results[0][kQOverI], 1e-5) << own[0] << " " << model;
+      EXPECT_LE(results[1][kErrorEstimate], 1e-5) << model;
+    }
+  }
 }
 
 TEST(MeasuredReflectances, OfAMedium_GiveNearlyItsTable) {

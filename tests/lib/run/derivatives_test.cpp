@@ -146,6 +146,26 @@ TEST(Derivatives, ByTheWind_FollowFromThoseBySigma) {
   for (std::size_t i = 0; i < by_wind.size(); ++i) EXPECT_NEAR(by_wind[i], by_sigma[i] * sigma_per_wind, 1e-6);
 }
 
+// With surroundings as warm as the surface DOLP is 0. There |Q|/I has a kink, which the steps of the differences cross
+// although the kink is up to 1 % of the key away.
+TEST(Derivatives, NearAKinkOfDolp_HaveTheSignOfQ) {
+  for (const double surroundings_K : {299.0, 299.9, 299.9999, 300.0001, 300.5}) {
+    const SceneValues scene =
+        parse(kScene, {"surface.masking=v-cavity", "surroundings.temperature_K=" + std::to_string(surroundings_K)});
+    const std::vector<std::vector<double>> columns = derivatives_with(scene, {"surroundings.temperature_K"});
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double sign = surroundings_K < 300.0 ? -1.0 : 1.0;  // of Q
+      EXPECT_GT(std::abs(columns[1][i]), 1e-5);
+      EXPECT_NEAR(columns[0][i], sign * columns[1][i], columns[2][i]) << surroundings_K;
+      EXPECT_TRUE(std::abs(surroundings_K - 300.0) < 0.01 || columns[2][i] < 0.1 * std::abs(columns[1][i]));
+    }
+  }
+  const SceneValues at_kink = parse(kScene, {"surface.masking=v-cavity", "surroundings.temperature_K=300"});
+  const std::vector<std::vector<double>> columns = derivatives_with(at_kink, {"surroundings.temperature_K"});
+  for (std::size_t i = 0; i < 2; ++i)
+    EXPECT_GE(columns[2][i], std::abs(columns[1][i]) + std::abs(columns[0][i]));  // from the left or from the right
+}
+
 TEST(Derivatives, AtAnEndOfTheDomain_AreNan) {
   const SceneValues scene = parse(kScene, {"surface.k=0", "surface.specular=0.9", "grid.theta_deg=[0, 40, 90]"});
   const std::vector<std::vector<double>> found =

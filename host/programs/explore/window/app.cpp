@@ -106,13 +106,17 @@ void App::close() {
 }
 
 void App::run() {
+  // Wakes up to draw a tooltip when the mouse has rested for kTooltipDelay_s. The rest begins after the frames that follow
+  // the last event, because on a slow machine these frames take long.
+  const auto rest = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<float>(kTooltipDelay_s + 0.05F));
+  Clock::time_point event, tooltip;
   while (answer()) {
-    // Wakes up when the mouse has rested for kTooltipDelay_s, to draw a tooltip.
-    constexpr double kNote_s = static_cast<double>(kTooltipDelay_s) + 0.05;
+    if (std::exchange(event, input_.last_event()) != input_.last_event()) tooltip = Clock::now() + rest;
+    const double left_s = std::chrono::duration<double>(tooltip - Clock::now()).count();
     if (ImGui::GetIO().WantTextInput) {
       glfwWaitEventsTimeout(kBlink_s);
-    } else if (const double rest_s = input_.rest_s(); rest_s < kNote_s) {
-      glfwWaitEventsTimeout(kNote_s - rest_s);
+    } else if (left_s > 0.0) {
+      glfwWaitEventsTimeout(left_s);
     } else {
       glfwWaitEvents();
     }

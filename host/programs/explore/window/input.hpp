@@ -38,7 +38,7 @@ class Input {
   int pressed_key() const { return pressed_key_; }  ///< GLFW's number of the key that goes down in this frame
   /// True if there were events since the last call of take_news().
   bool take_news() { return std::exchange(has_news_, false); }
-  double rest_s() const { return std::chrono::duration<double>(Clock::now() - last_event_).count(); }
+  std::chrono::steady_clock::time_point last_event() const { return last_event_; }
   std::map<std::string, Area>& areas() { return areas_; }  ///< named areas of this frame, by which tests find controls
 
  private:

@@ -161,10 +161,9 @@ py::object to_object(const dolp::Value& value) {
 
 /// Issues each remark as a Python warning at the user's line. Throws if a Python filter makes the warning an error.
 void warn(const std::vector<std::string>& remarks) {
-  constexpr int kCaller = 2;  // stack level of the user's line; level 1 is the dolp package
   const py::object category = py::module_::import("dolp._native").attr("InputWarning");
   for (const std::string& remark : remarks)
-    py::module_::import("warnings").attr("warn")(to_str(remark), category, kCaller);
+    py::module_::import("dolp._arguments").attr("warn")(to_str(remark), category);
 }
 
 dolp::Scene with_warnings(dolp::Scene scene) {

@@ -107,6 +107,15 @@ TEST_F(CommandLine, Eval_StdinToStdout_ReportOnStderr) {
   EXPECT_TRUE(contains(outcome.err, "3 points"));
 }
 
+TEST_F(CommandLine, Eval_OwnSlopesAlongAndAcross_HaveRhoU) {
+  put("points.csv", "theta_deg,surface_azimuth_deg,sigma_cross\n40,30,0.2\n");
+  const std::string no_masking = "--set surface.masking=none --evaluator cpu --quiet";
+  const Outcome at_points = dolp(joined("eval scene.toml --points points.csv -o /dev/stdout", no_masking));
+  put("points.csv", "theta_deg,surface_azimuth_deg\n40,30\n");
+  const Columns of_scene = eval(joined("--set surface.sigma_cross=0.2", no_masking));
+  EXPECT_EQ(parse_csv(at_points.out).at("rho_u"), of_scene.at("rho_u"));
+}
+
 TEST_F(CommandLine, Eval_SceneFromStdin_SameAsFromFile) {
   const Outcome outcome = dolp("eval - --points points.csv -o - --quiet", kScene);
   EXPECT_EQ(parse_csv(succeeded(outcome).out).at("dolp"), eval({}).at("dolp"));

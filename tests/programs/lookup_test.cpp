@@ -53,8 +53,15 @@ TEST_F(TableAsScene, EveryCommand_TakesATable) {
   put("geometries.csv", "theta_i_deg,theta_r_deg,delta_phi_deg\n30,30,180\n");
   EXPECT_EQ(dolp("mueller t.nc --points geometries.csv -o -").out,
             dolp("mueller scene.toml --points geometries.csv -o -").out);
+  expect_refused(dolp("eval r.nc --points points.csv -o -"), "r.nc: is a response table, which has no material");
+  succeeded(dolp("response r.nc -o again.nc --quiet"));
   expect_refused(dolp("table t.nc -o t.nc"), "t.nc: the output would overwrite an input");
   EXPECT_EQ(lookup().out, values);
+}
+
+TEST_F(TableAsScene, AxisOfNames_NeedsItsColumn) {
+  make_table("--set surface.n=none --set surface.k=none --set grid.material=[\"iron\",\"water\"] --evaluator cpu");
+  expect_refused(lookup(), "t.nc: grid.material has 2 values; add the column \"material\" to points.csv");
 }
 
 // The table stores n and k of the file, so the file may go. At another wavelength only the file would know them.

@@ -123,6 +123,15 @@ TEST_F(Verify, AngleOfUnpolarisedLight_IsNotAFailure) {
   EXPECT_EQ(verify_json(kDone)["passed"], true);
 }
 
+// Near 90 degrees the reference of a band with fringes is less accurate than the closed form of a smooth surface.
+TEST_F(Verify, ErrorsThatTheReferenceCannotSee_AreUndecided) {
+  succeeded(dolp("table " DOLP_HOST_DIR "/scenes/paint_on_metal.toml -o t.nc --quiet --set emission.model=fresnel "
+                 "--set surroundings=none --set surface.sigma=0 --set grid.theta_deg=90"));
+  const nlohmann::json json = verify_json(kDone);
+  EXPECT_EQ(json["quantities"][0]["undecided"], 1);
+  EXPECT_TRUE(contains(json["verdict"].get<std::string>(), "values are undecided, because the reference"));
+}
+
 TEST_F(Verify, GoodTable_Exit0AndEveryQuantityIsCompared) {
   make_table();
   const nlohmann::json json = verify_json(kDone);

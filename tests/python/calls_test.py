@@ -26,6 +26,10 @@ class Calls(PackageCase):
         with self.assertWarnsRegex(dolp.InputWarning, "emission.temperature_K = 25: 25 K is cold") as caught:
             cold = self.scene.with_({"title": "cold"}), dolp.Scene(self.scene, {"emission.temperature_K": 25})
         self.assertEqual(caught.filename, __file__)
+        for call in (lambda: dolp.table(self.scene, theta_deg=[3, 1, 2], evaluator="cpu"), lambda: dolp.Scene(cold[1], {"title": "b"})):
+            with self.assertWarns(dolp.InputWarning) as caught:
+                call()
+            self.assertEqual(caught.filename, __file__)
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             dolp.Scene(self.scene, {"emission.temperature_K": 290})

@@ -76,6 +76,17 @@ class Camera(PackageCase):
         unpolarised = xr.Dataset({"stokes_i": 2.0, "stokes_q": 0.0, "stokes_u": 0.0})
         self.assertTrue(np.isnan(dolp.camera_stokes(unpolarised, Z, Z, [0, 1, 0]).aolp_deg))
 
+    def test_pixels_without_axes_have_no_angle(self):
+        light = xr.Dataset({"stokes_i": 2.0, "stokes_q": 0.2, "stokes_u": 0.0})
+        normals = [[0, 0, 1], [0.1, 0, 1], [0, 0.2, 1], [np.nan] * 3]
+        views = [[0, 0, 2], [0, 0, 1], [0, 1, 0], [np.nan] * 3]
+        seen = dolp.camera_stokes(light, normals, views, [0, 1, 0])
+        np.testing.assert_array_equal(np.isfinite(seen.aolp_deg), [False, True, False, False])
+        np.testing.assert_array_equal(np.isfinite(seen.stokes_q), [False, True, False, False])
+        np.testing.assert_allclose(seen.dolp, [0.1, 0.1, 0.1, np.nan])
+        toward = dolp.camera_stokes(self.curve, Z, Z, [0, 1, 0])  # unpolarised
+        self.assertAlmostEqual(float(toward.stokes_q), 0, delta=1e-6)
+
     def test_values_for_each_normal_are_taken_as_they_are(self):
         normals = np.array([[[0.1, 0, 1], [0.5, 0.2, 1]], [[0, -1, 1], [0.3, 2, 1]]])
         views = np.array([[[0, 0, 1.0], [0.1, 0, 1]], [[0, 0.2, 1], [0.3, 0.1, 1]]])

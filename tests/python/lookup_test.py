@@ -53,7 +53,11 @@ class Lookup(PackageCase):
         again = dolp.table(dolp.Scene(table))
         self.assertEqual(again.attrs["evaluator"], "cpu")
         np.testing.assert_array_equal(again.dolp, table.dolp)
-        self.assertEqual(dolp.Scene(table.sel(sigma=0.2, theta=[30]))["grid.sigma"], [0.2])
+        chosen = dolp.Scene(table.sel(sigma=0.2, theta=[30]))
+        self.assertEqual((chosen["grid.sigma"], chosen["surface.sigma"]), ([0.2], 0.2))
+        for form in ("NETCDF4", "NETCDF3_64BIT"):
+            dolp.table(self.scene, **AXES).to_netcdf(self.folder / "saved.nc", format=form)
+            np.testing.assert_array_equal(dolp.table(dolp.Scene(self.folder / "saved.nc")).dolp, dolp.table(self.scene, **AXES).dolp)
         copy = pickle.loads(pickle.dumps(scene))
         self.assertEqual(float(dolp.evaluate(copy, theta_deg=30).dolp), float(dolp.evaluate(scene, theta_deg=30).dolp))
         with self.assertRaisesRegex(dolp.InputError, "Dataset: has no attribute \"scene\""):

@@ -69,6 +69,13 @@ class Package(PackageCase):
         self.assertEqual(square.theta.attrs["units"], "degree")
         named = dolp.evaluate(self.scene, theta_deg=xr.DataArray(theta, dims="ray"), sigma=xr.DataArray([0.1, 0.2], dims="part"))
         self.assertEqual(named.dolp.dims, ("ray", "part"))
+        on_axes = dolp.evaluate(self.scene, theta_deg=xr.DataArray(theta, dims="theta"), sigma=xr.DataArray([0.1, 0.2], dims="sigma"))
+        np.testing.assert_array_equal(on_axes.dolp.sel(theta=60), named.dolp[2])
+        np.testing.assert_array_equal(on_axes.sigma, [0.1, 0.2])
+        for wrong, message in ((xr.DataArray(np.ones((2, 2)), dims=("theta", "x")), "rename the dimension theta"),
+                               (xr.DataArray([1.0, 2, 3], dims="part", coords={"part": [7, 8, 9]}), "DataArrays differ")):
+            with self.assertRaisesRegex(dolp.InputError, message):
+                dolp.evaluate(self.scene, theta_deg=wrong, sigma=xr.DataArray([0.1, 0.2, 0.3], dims="part", coords={"part": [1, 2, 3]}))
         labelled = xr.DataArray(theta, dims="ray", coords={"theta": ("ray", theta, {"mine": 1})})
         self.assertEqual(dolp.evaluate(self.scene, theta_deg=labelled).theta.attrs["units"], "degree")
         self.assertEqual(labelled.theta.attrs, {"mine": 1})

@@ -135,5 +135,22 @@ class Response(PackageCase):
                      dolp.Scene.for_response(text="surface.sigma = 0.2", overrides={"surface": {"q": 3, "masking": "smith"}})):
             found = dolp.response(bare, evaluator="cpu", theta_deg=60, sigma=0.2, q=3)
             np.testing.assert_array_equal(found.response_i.values, expected.response_i.values)
-            with self.assertRaisesRegex(dolp.InputError, "comes from Scene.for_response, so only dolp.response takes it"):
+            with self.assertRaisesRegex(dolp.InputError, "has no material.*only dolp.response takes it"):
                 dolp.table(bare, evaluator="cpu")
+
+    def test_a_response_table_is_no_scene_with_a_material(self):
+        response = dolp.response(self.scene, evaluator="cpu", theta_deg=60, sigma=0.2, q=3)
+        response.to_netcdf(self.folder / "r.nc")
+        with self.assertRaisesRegex(dolp.InputError, "r.nc: is a response table, which has no material"):
+            dolp.lookup(self.folder / "r.nc", theta_deg=60, evaluator="cpu")
+        with self.assertRaisesRegex(dolp.InputError, "has no material.*only dolp.response takes it"):
+            dolp.evaluate(dolp.Scene(response), theta_deg=60, evaluator="cpu")
+        for surface in (dolp.Scene(response), dolp.Scene.for_response(self.folder / "r.nc")):
+            again = dolp.response(surface, evaluator="cpu")
+            np.testing.assert_array_equal(again.response_i.values, response.response_i.values)
+
+    def test_dimensions_of_materials_have_any_name(self):
+        response = dolp.response(self.scene, theta_deg=60, sigma=0.1, q=3, evaluator="cpu")
+        n, k = np.r_[0.4, np.full(23, 1.5)], np.r_[0.3, np.full(23, 0.1)]
+        own, other = (dolp.moments(response, n=xr.DataArray(n, dims=dim), k=xr.DataArray(k, dims=dim)) for dim in ("m", "material"))
+        np.testing.assert_array_equal(own.rho_error.values, other.rho_error.values)

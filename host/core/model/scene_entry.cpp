@@ -164,6 +164,10 @@ SceneEntries SceneEntries::part(const PerAxis& first, const PerAxis& count) cons
   return part;
 }
 
+bool SceneEntries::has_own_cross_slopes() const {
+  return std::ranges::any_of(points_, [](const SceneEntry& entry) { return entry.shape.sigma_cross > 0.0; });
+}
+
 bool SceneEntries::has_own_index() const {
   if (is_grid_) return !axes_[Axis::kN].empty() || !axes_[Axis::kK].empty();
   return std::ranges::any_of(points_, [](const SceneEntry& point) { return point.index.has_value(); });

@@ -147,6 +147,9 @@ SceneDocument::SceneDocument(const std::string& text, const std::string& path_na
   }
   try {
     root_ = toml::parse(std::string_view(text));
+    Lines lines;
+    add_lines(lines, "", root_);
+    lines_ = std::make_shared<const Lines>(std::move(lines));
   } catch (const toml::parse_error& error) {
     throw InputError(fmt::format("{}:{}: {}", name_, error.source().begin.line, toml_fault(text, error)));
   }
@@ -257,10 +260,20 @@ const std::string* SceneDocument::find_origin(std::string_view key) const {
   }
 }
 
+void SceneDocument::add_lines(Lines& lines, const std::string& key, const toml::node& node) {
+  lines[key] = node.source().begin.line;
+  const std::string before = key.empty() ? "" : key + '.';
+  if (const toml::table* table = node.as_table()) {
+    for (const auto& [name, value] : *table) add_lines(lines, before + std::string(name.str()), value);
+  } else if (const toml::array* list = node.as_array(); list && list->is_homogeneous<toml::table>()) {
+    for (std::size_t i = 0; i < list->size(); ++i) add_lines(lines, before + std::to_string(i + 1), *list->get(i));
+  }
+}
+
 unsigned SceneDocument::line_number(std::string_view key) const {
   for (; !key.empty(); key = table_part(key)) {
-    const toml::node* node = find(key);
-    if (node && node->source().begin.line > 0) return node->source().begin.line;
+    const auto found = lines_->find(key);
+    if (found != lines_->end() && found->second > 0) return found->second;
   }
   return 1;
 }

@@ -48,8 +48,12 @@ class SceneDocument {
   void drop_other_alternatives(const std::string& key);
   void erase(const std::string& key);
 
+  using Lines = std::map<std::string, unsigned, std::less<>>;
+  static void add_lines(Lines& lines, const std::string& key, const toml::node& node);
+
   std::string name_;
   toml::table root_;
+  std::shared_ptr<const Lines> lines_;  // of the keys in the text; copies of toml++'s nodes know no lines
   std::map<std::string, std::string, std::less<>> origins_;  // key -> origin of the setting that gave it
 };
 

@@ -176,7 +176,7 @@ std::optional<std::variant<std::string, double>> read_attribute(const Reader& re
   if (type == NC_CHAR) {
     std::string text(length, '\0');
     reader.call(name, nc_get_att_text, variable, name.c_str(), text.data());
-    return text;
+    return text.substr(0, text.find_last_not_of('\0') + 1);  // other writers end texts by a zero byte
   }
   if (length != 1) return std::nullopt;
   if (type == NC_STRING) {

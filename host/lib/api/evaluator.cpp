@@ -133,7 +133,7 @@ Results Evaluator::evaluate(const Scene& scene, const std::vector<Column>& point
     CollectedResults collected(run.entries());
     const RunOutcome outcome = run.compute(collected.sink());
     TableLayout layout = table_layout(values, run);
-    layout.quantities = output_quantities(values);
+    layout.quantities = output_quantities(values, nullptr, &run.entries());
     layout.head.attributes = all_attributes(values, layout, outcome, options.history);
     Results results{{run_columns(layout.quantities, collected.take())},
                     layout.quantities,

@@ -13,6 +13,7 @@
 #include "report/run_report.hpp"
 #include "run/estimates.hpp"
 #include "run/mueller_run.hpp"
+#include "run/scene_remarks.hpp"
 #include "run/scene_run.hpp"
 #include "run/scene_table.hpp"
 #include "run/table_run.hpp"
@@ -41,15 +42,6 @@ std::optional<ScatteringGap> timed_gap(const SceneValues& scene, const SceneEntr
   std::optional<ScatteringGap> gap = scattering_gap(scene, entries, run.plan);
   run.estimates_s = seconds_since(start);
   return gap;
-}
-
-void add_remarks(Report& report, const Points& points) {
-  const Points::Column& um = points[Axis::kWavelength];
-  if (um && !um->empty() && std::ranges::min(*um) > kLikelyNanometres)
-    report.remarks.push_back(points.where() + ": wavelength_um is in micrometres; were nanometres meant?");
-  const Points::Column& kelvin = points[Axis::kTemperature];
-  if (kelvin && !kelvin->empty() && std::ranges::min(*kelvin) < kLikelyCelsius_K)
-    report.remarks.push_back(points.where() + ": temperature_K is in kelvins; were degrees Celsius meant?");
 }
 
 void add_left_out(ReportBuilder& report, const Points& points) {
@@ -128,7 +120,8 @@ Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& 
     SceneEntries entries = point_entries(values, points);
     check_writable(path);
     Run run(values, std::move(entries), options, impl_->maker(values));
-    const TableLayout layout{.quantities = output_quantities(values), .derivatives = run.derivatives()};
+    const TableLayout layout{.quantities = output_quantities(values, nullptr, &run.entries()),
+                             .derivatives = run.derivatives()};
     ResultCsv csv = points_csv(path, points, layout);
     double rows_s = 0.0;
     const auto write_rows = [&](const SceneEntries&, RunResults results, const RunSummary&) {
@@ -145,7 +138,8 @@ Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& 
     ReportBuilder report = run_report(values, outcome, gap, fmt::format("{} points", points.size()), path.string());
     add_left_out(report, points);
     Report result = public_report(report, outcome.summary.meets_tolerance(), path);
-    add_remarks(result, points);
+    const std::vector<std::string> remarks = remarks_on(values, points);
+    result.remarks.insert(result.remarks.end(), remarks.begin(), remarks.end());
     return result;
   });
 }

@@ -28,11 +28,27 @@ std::optional<KeyValue> find_value(const SceneValues& scene, std::string_view ke
   return known->value(scene);
 }
 
+/// Errors: InputError if `scene` is of a response table, whose material and radiation are arbitrary, unless it serves
+/// for another response table: then `settings` contain surface_settings().
+void check_has_material(const Scene& scene, const std::string& name, const std::vector<Setting>& settings) {
+  if (std::ranges::find(scene.table_attributes(), "c0", &Attribute::name) == scene.table_attributes().end()) return;
+  const auto is_given = [&](const Setting& of_surface) {
+    return std::ranges::find(settings, of_surface.key, &Setting::key) != settings.end();
+  };
+  if (!std::ranges::all_of(surface_settings(), is_given)) {
+    throw InputError(fmt::format(
+        "{}: is a response table, which has no material and no radiation; give the file of a scene, or pass "
+        "the table to dolp.moments",
+        name));
+  }
+}
+
 }  // namespace
 
 Scene Scene::from_file(const std::filesystem::path& path, const std::vector<Setting>& settings) {
   if (path.extension() == ".nc" || is_table_file(path.string())) {
     const Scene scene = from_attributes(read_attributes(path), path.string());
+    check_has_material(scene, path.string(), settings);
     return settings.empty() ? scene : scene.with(settings);
   }
   if (path.extension() == ".csv" || path.extension() == ".npy") check_may_hold_scene(path.string());

@@ -47,10 +47,17 @@ ReportBuilder::Json value_json(const CheckedValue& value) {
 ReportBuilder quantity_report(const QuantityCheck& check) {
   const CheckedValue& worst = check.worst;
   ReportBuilder report;
-  report.row(check.name, "{} compared, worst: error {:.2e} of {:.2e} stated, at {}{}", key("compared", check.compared),
-             worst.error(), worst.stated, position_text(worst.position),
-             check.unstated > 0 ? fmt::format("; nothing stated for {} of them", check.unstated) : "");
-  report.values({{"name", check.name}, {"unstated", check.unstated}, {"worst", value_json(worst)}});
+  const auto note = [](std::size_t count, std::string_view text) {
+    return count > 0 ? fmt::format("; {} for {} of them", text, count) : "";
+  };
+  report.row(check.name, "{} compared, worst: error {:.2e} of {:.2e} stated, at {}{}{}",
+             key("compared", check.compared), worst.error(), worst.stated, position_text(worst.position),
+             note(check.unstated, "nothing stated"),
+             note(check.undecided, "undecided, as the reference is less accurate,"));
+  report.values({{"name", check.name},
+                 {"unstated", check.unstated},
+                 {"undecided", check.undecided},
+                 {"worst", value_json(worst)}});
   return report;
 }
 
@@ -68,6 +75,14 @@ void add_failures(ReportBuilder& report, const std::vector<CheckedValue>& failur
 }
 
 std::string table_verdict(const TableCheck& check) {
+  std::size_t undecided = 0;
+  for (const QuantityCheck& quantity : check.quantities) undecided += quantity.undecided;
+  if (check.passed() && undecided > 0) {
+    return fmt::format(
+        "passed: {} of {} entries, no error beyond what the table and the reference state; {} values are "
+        "undecided, because the reference is less accurate there than the table says of itself",
+        check.checked, check.entries, undecided);
+  }
   if (check.passed()) {
     return fmt::format("passed: {} of {} entries, every error within what the table states", check.checked,
                        check.entries);

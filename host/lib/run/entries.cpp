@@ -146,11 +146,13 @@ void check_labels_chosen(const SceneValues& scene, const Points& points) {
     const std::vector<std::string>& labels = scene.labels[axis];
     if (labels.size() < 2 || points[axis]) continue;
     const char* const key = axis == Axis::kMaterial ? "surface.material=NAME" : "spectrum.band_um=[FROM, TO]";
-    throw InputError(fmt::format(
-        "{}: grid.{} has {} values; choose one with --set {}{}", scene.path_name, describe(axis).column, labels.size(),
-        key,
-        points.name.empty() ? ""
-                            : fmt::format(", or add the column \"{}\" to {}", describe(axis).column, points.name)));
+    const bool is_of_table = scene.known && !scene.known->table.empty();  // dolp lookup has no --set
+    std::vector<std::string> ways;
+    if (!is_of_table || points.name.empty()) ways.push_back(fmt::format("choose one with --set {}", key));
+    if (!points.name.empty())
+      ways.push_back(fmt::format("add the column \"{}\" to {}", describe(axis).column, points.name));
+    throw InputError(fmt::format("{}: grid.{} has {} values; {}", is_of_table ? scene.known->table : scene.path_name,
+                                 describe(axis).column, labels.size(), fmt::join(ways, ", or ")));
   }
 }
 

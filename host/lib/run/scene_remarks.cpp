@@ -7,6 +7,7 @@
 #include <functional>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <dolp/number_range.hpp>
@@ -106,8 +107,24 @@ CoarseRows coarsest_rows(const Material& material, const std::vector<Interval>& 
 class Remarks {
  public:
   explicit Remarks(const SceneValues& scene) : scene_(scene) {}
+  /// Remarks on a scene whose axes have the values of the points.
+  Remarks(const SceneValues& scene, const Points& points) : scene_(scene), points_(&points) {
+    for (const Axis axis : kAllAxes)
+      if (points[axis] && !points[axis]->empty() && !describe(axis).has_labels) scene_.grid[axis] = *points[axis];
+  }
 
   void add(const std::string& key, const std::string& what) { lines_.push_back(scene_.document->prefix(key) + what); }
+
+  /// A remark on the values of an axis. The scene has them in [grid] or, where it has no such axis, in `key`.
+  void add(Axis axis, const std::string& key, const std::string& what) {
+    const std::string column = describe(axis).column;
+    if (points_ && (*points_)[axis]) {
+      lines_.push_back(fmt::format("{}: {}: {}", points_->where(),
+                                   points_->has_winds && axis == Axis::kSigma ? kWind.column : column, what));
+    } else {
+      add(scene_.document->find("grid." + column) ? "grid." + column : key, what);
+    }
+  }
 
   void add_sorted_axes() {
     std::vector<const char*> columns = {kWind.column};
@@ -127,26 +144,24 @@ class Remarks {
   }
 
   void add_wavelengths() {
-    const bool has_grid = !scene_.grid[Axis::kWavelength].empty();
     for (const auto& [low, high] : used_um(scene_)) {
-      if (low <= kLikelyNanometres) return;
+      if (high <= kLikelyNanometres) continue;
+      add(Axis::kWavelength,
+          !scene_.bands.empty()       ? "grid.band_um"
+          : scene_.spectrum.is_band() ? scene_.spectrum.key()
+                                      : "spectrum.wavelength_um",
+          "is in micrometres; were nanometres or wavenumbers meant?");
+      return;
     }
-    add(has_grid                    ? "grid.wavelength_um"
-        : !scene_.bands.empty()     ? "grid.band_um"
-        : scene_.spectrum.is_band() ? scene_.spectrum.key()
-                                    : "spectrum.wavelength_um",
-        "is in micrometres; were nanometres meant?");
   }
 
   void add_temperatures() {
     const auto check = [&](const char* key, double lowest_K) {
       if (lowest_K < kLikelyCelsius_K) add(key, fmt::format("{} K is cold; were degrees Celsius meant?", lowest_K));
     };
-    if (const std::vector<double>& grid = scene_.grid[Axis::kTemperature]; !grid.empty()) {
-      check("grid.temperature_K", std::ranges::min(grid));
-    } else if (scene_.emission) {
-      check("emission.temperature_K", scene_.emission->temperature_K);
-    }
+    if (const std::optional<double> surface_K = coldest_K(); surface_K && *surface_K < kLikelyCelsius_K)
+      add(Axis::kTemperature, "emission.temperature_K",
+          fmt::format("{} K is cold; were degrees Celsius meant?", *surface_K));
     if (scene_.path && scene_.path->temperature_K) check("path.temperature_K", *scene_.path->temperature_K);
     if (!scene_.surroundings) return;
     const SkyProfile* profile = scene_.surroundings->profile.get();
@@ -167,8 +182,7 @@ class Remarks {
       const std::string key = fmt::format("surface.coating.{}.", i + 1);
       if (!scene_.names.coating[i].material_file.empty()) add_material(key + "material_file", layer.material);
       if (!scene_.names.coating[i].material.empty()) add_coarse_rows(key + "material", layer.material);
-      if (layer.thickness_um >= kLikelyNanometresOfFilm)
-        add(key + "thickness_um", "is in micrometres; were nanometres meant?");
+      if (layer.thickness_um >= kLikelyNanometresOfFilm) add(key + "thickness_um", kThickFilm);
       if (layer.thickness_spread_um > layer.thickness_um)
         add(key + "thickness_spread_um", "is above the mean thickness; thicknesses below 0 are left out");
     }
@@ -192,22 +206,57 @@ class Remarks {
 
   void add_angles_and_slopes() {
     for (const char* key : {"geometry.surface_azimuth_deg", "grid.surface_azimuth_deg"})
-      if (scene_.document->find(key) && !scene_.surface.has_cross_slopes())
-        add(key, "has no effect: slopes are equal along and across; give surface.sigma_cross or surface.wind_model");
-    const std::vector<double>& theta_deg = scene_.grid[Axis::kTheta];
-    if (theta_deg.size() >= kFewAngles && std::ranges::max(theta_deg) < kLikelyRadians &&
-        std::ranges::max(theta_deg) > kLeastLikelyRadians)
-      add("grid.theta_deg", fmt::format("is at most {} degrees; is it in radians?", std::ranges::max(theta_deg)));
+      if (scene_.document->find(key) && !has_cross_slopes()) add(key, kUnusedAzimuth);
+    if (points_ && (*points_)[Axis::kSurfaceAzimuth] && !has_cross_slopes())
+      add(Axis::kSurfaceAzimuth, "", kUnusedAzimuth);
+    for (const Axis axis : {Axis::kTheta, Axis::kViewZenith}) {
+      const std::set<double> zeniths_deg(scene_.grid[axis].begin(), scene_.grid[axis].end());
+      if (zeniths_deg.size() >= kFewAngles && *zeniths_deg.rbegin() < kLikelyRadians &&
+          *zeniths_deg.rbegin() > kLeastLikelyRadians)
+        add(axis, "", fmt::format("is at most {} degrees; is it in radians?", *zeniths_deg.rbegin()));
+    }
     const double roughest = std::ranges::max(scene_.grid[Axis::kSigma]);
     if (roughest > kSteepSigma)
-      add(scene_.document->find("grid.sigma") ? "grid.sigma" : "surface.sigma",
+      add(Axis::kSigma, "surface.sigma",
           fmt::format("{} is a slope of {:.0f} degrees, not a height; real surfaces have less than {:g}", roughest,
                       std::atan(roughest) * 180.0 / std::numbers::pi, kSteepSigma));
+  }
+
+  void add_diffuse() {
+    const Surface& surface = scene_.surface;
+    const bool has_diffuse = surface.diffuse > 0.0 || surface.diffuse_table;
+    if (!has_diffuse && scene_.document->find("surface.diffuse_polarisation"))
+      add("surface.diffuse_polarisation",
+          "has no effect: the surface has no diffuse part; surface.diffuse gives it one");
+  }
+
+  void add_films_of_points() {
+    for (const auto& [film, column] : points_->films) {
+      const bool is_thick = film.second == FilmValue::Part::kThickness && !column->empty() &&
+                            std::ranges::max(*column) >= kLikelyNanometresOfFilm;
+      if (is_thick)
+        lines_.push_back(
+            fmt::format("{}: surface.coating.{}.thickness_um: {}", points_->where(), film.first + 1, kThickFilm));
+    }
   }
 
   std::vector<std::string> lines() && { return std::move(lines_); }
 
  private:
+  static constexpr const char* kUnusedAzimuth =
+      "has no effect: slopes are equal along and across; give surface.sigma_cross or surface.wind_model";
+  static constexpr const char* kThickFilm = "is in micrometres; were nanometres meant?";
+
+  bool has_cross_slopes() const {
+    return scene_.surface.has_cross_slopes() || (points_ && (*points_)[Axis::kSigmaCross]);
+  }
+
+  std::optional<double> coldest_K() const {
+    const std::vector<double>& grid_K = scene_.grid[Axis::kTemperature];
+    if (!grid_K.empty()) return std::ranges::min(grid_K);
+    return scene_.emission ? std::optional(scene_.emission->temperature_K) : std::nullopt;
+  }
+
   const char* source_key() const {
     for (const char* key : {"source.preset", "source.file", "source.relative_irradiance"})
       if (scene_.document->find(key)) return key;
@@ -264,7 +313,7 @@ class Remarks {
   }
 
   void add_hot_sky(const SkyProfile* profile) {
-    const double surface_K = scene_.emission ? scene_.emission->temperature_K : 0.0;
+    const double surface_K = coldest_K().value_or(0.0);
     if (surface_K < kLikelyCelsius_K) return;  // no emission, or probably degrees Celsius
     bool is_hot = !profile && scene_.surroundings->temperature_K > kHotSky * surface_K;
     const std::vector<Interval> used = used_um(scene_);
@@ -292,7 +341,8 @@ class Remarks {
             kSkyBandFrom_um, kSkyBandTo_um, profile->emissivity));
   }
 
-  const SceneValues& scene_;
+  SceneValues scene_;
+  const Points* points_ = nullptr;
   std::vector<std::string> lines_;
 };
 
@@ -328,7 +378,21 @@ std::vector<std::string> remarks_on(const SceneValues& scene) {
   remarks.add_files();
   remarks.add_mode();
   remarks.add_angles_and_slopes();
+  remarks.add_diffuse();
   return std::move(remarks).lines();
+}
+
+std::vector<std::string> remarks_on(const SceneValues& scene, const Points& points) {
+  Remarks remarks(scene, points);
+  remarks.add_wavelengths();
+  remarks.add_temperatures();
+  remarks.add_files();
+  remarks.add_angles_and_slopes();
+  remarks.add_films_of_points();
+  std::vector<std::string> lines = std::move(remarks).lines();
+  const std::vector<std::string> known = remarks_on(scene);
+  std::erase_if(lines, [&](const std::string& line) { return std::ranges::find(known, line) != known.end(); });
+  return lines;
 }
 
 }  // namespace dolp

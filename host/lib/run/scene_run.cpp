@@ -483,7 +483,7 @@ double Run::wall_s() const { return seconds_since(start_); }
 RunSummary run_scene(const SceneValues& scene, const SceneEntries& entries, const EffectPlan& given,
                      ModelEvaluator* evaluator, const RunOutput& output) {
   const EffectPlan plan = with_spectra(given, scene, entries);
-  const Quantities quantities = output_quantities(scene, &plan);
+  const Quantities quantities = output_quantities(scene, &plan, &entries);
   const std::size_t samples = plan.rules->most_samples(entries);
   const std::size_t whole = entries.whole_size();
   const bool has_moments = entries.is_grid() && plan.kept.moments;

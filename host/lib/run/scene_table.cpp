@@ -150,7 +150,8 @@ std::string rule_text(double tolerance, const EvaluationReport& evaluation) {
   return text;
 }
 
-Quantities output_quantities(const SceneValues& scene, const EffectPlan* plan) {
+Quantities output_quantities(const SceneValues& scene, const EffectPlan* plan, const SceneEntries* entries) {
+  const bool has_cross_slopes = scene.surface.has_cross_slopes() || (entries && entries->has_own_cross_slopes());
   const auto is_given = [&](QuantityNeeds needs) {
     switch (needs) {
       case QuantityNeeds::kNothing:
@@ -164,7 +165,7 @@ Quantities output_quantities(const SceneValues& scene, const EffectPlan* plan) {
       case QuantityNeeds::kBracket:
         return scene.emission && scene.emission->has_bracket;
       case QuantityNeeds::kCrossSlopes:
-        return scene.surface.has_cross_slopes() && (plan == nullptr || plan->gives_rho);
+        return has_cross_slopes && (plan == nullptr || plan->gives_rho);
     }
     return false;
   };

@@ -16,8 +16,10 @@ namespace dolp {
 inline constexpr const char* kModelChange = "model_change";           ///< attribute with ModelChange::i
 inline constexpr const char* kModelChangeDolp = "model_change_dolp";  ///< attribute with ModelChange::dolp_points
 
-/// The quantities in the results of a scene. With a plan: only the quantities that the run computes.
-Quantities output_quantities(const SceneValues& scene, const EffectPlan* plan = nullptr);
+/// The quantities in the results of a scene. With a plan: only the quantities that the run computes. With entries: also
+/// rho_u if their slopes differ along and across.
+Quantities output_quantities(const SceneValues& scene, const EffectPlan* plan = nullptr,
+                             const SceneEntries* entries = nullptr);
 
 /// The layout of the table over `axes` (a grid or a part of it), with all attributes that are known before the run.
 TableLayout table_layout(const SceneValues& scene, const EffectPlan& plan, const Axes& axes);

@@ -181,6 +181,7 @@ double allowed_error(Bound bound, std::uint32_t status, double tolerance, const 
 void add(TableCheck& check, QuantityCheck& quantity_check, const CheckedValue& value) {
   ++quantity_check.compared;
   if (std::isinf(value.stated)) ++quantity_check.unstated;
+  if (value.is_undecided()) ++quantity_check.undecided;
   if (quantity_check.compared == 1 || value.ratio() > quantity_check.worst.ratio()) quantity_check.worst = value;
   if (!value.complaint.empty()) check.failures.push_back(value);
 }

@@ -28,14 +28,17 @@ struct CheckedValue {
   double reference_error = 0.0;  ///< error bound of `reference`, in the unit of `stored`
   std::string complaint;         ///< what is wrong; empty if nothing is wrong
   double error() const;
+  /// True if the error may exceed `stated`, but the reference is less accurate than the table and cannot tell.
+  bool is_undecided() const { return complaint.empty() && error() > stated && reference_error > stated; }
   double ratio() const;  ///< error() / (stated + reference_error); 0 if the table states no bound
 };
 
 struct QuantityCheck {
   std::string name;
   std::size_t compared = 0;
-  std::size_t unstated = 0;  ///< compared values for which the table states no bound
-  CheckedValue worst;        ///< value with the largest ratio()
+  std::size_t unstated = 0;   ///< compared values for which the table states no bound
+  std::size_t undecided = 0;  ///< CheckedValue::is_undecided()
+  CheckedValue worst;         ///< value with the largest ratio()
 };
 
 struct TableCheck {

@@ -64,6 +64,8 @@ int parse_and_run(int argc, char** argv) {
   int status = kExitDone;
   try {
     app.parse(argc, argv);
+    for (const char* own : {"/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"})
+      if (options.output_path == own) options.output_path = "-";
     if (options.run == nullptr) fmt::print("{}", app.help());
     if (options.run != nullptr) status = options.run(options);
   } catch (const CLI::ParseError& error) {

@@ -4,6 +4,8 @@ from __future__ import annotations
 import difflib
 import operator
 import os
+import sys
+import warnings
 from collections.abc import Iterable, Mapping
 from typing import Any, Union
 
@@ -19,6 +21,14 @@ Array = Union[float, "np.ndarray", "xr.DataArray", "list[float]"]
 
 class MissingFileError(InputError, FileNotFoundError):
     """A file that a call should read does not exist."""
+
+
+def warn(text: str, category: type[Warning]) -> None:
+    """Issues a warning at the line of the user's program that called this package."""
+    level, frame = 2, sys._getframe(1)
+    while frame.f_back and frame.f_code.co_filename.startswith(os.path.dirname(__file__) + os.sep):
+        level, frame = level + 1, frame.f_back
+    warnings.warn(text, category, stacklevel=level)
 
 
 def check_mapping(name: str, values: Mapping[str, Any] | None) -> Mapping[str, Any]:

@@ -9,6 +9,8 @@ import xarray as xr
 from ._arguments import floats
 from ._native import InputError
 
+LEAST_SINE = 1e-9  # of theta; below, rounding decides the direction of the plane of incidence
+LEAST_DOLP = 1e-6  # below, light counts as unpolarised; in float a result at normal incidence has a DOLP near 1e-9
 BEYOND_DEG = 1e-6  # a zenith so little beyond the zeniths of a result takes the value at its end
 
 
@@ -22,8 +24,10 @@ def camera_stokes(result: xr.Dataset, normals: Any, view: Any, up: Any) -> xr.Da
 
     The Dataset has theta_deg (zenith of the camera, from the normal), stokes_i, stokes_q, stokes_u, dolp and aolp_deg.
     Q > 0 is horizontal in the image. aolp_deg counts from the image's right, counter-clockwise, from 0 to 180, and is
-    NaN without polarisation. All values are NaN where the normal is NaN or faces away, and where theta is outside
-    `result`.
+    NaN without polarisation. All values are NaN where the normal or the view is NaN, where the normal faces away, and
+    where theta is outside `result`. stokes_q, stokes_u and aolp_deg are also NaN where the view is parallel to `up`, and
+    where the normal points at the camera although the light is polarised (slopes that differ along and across, or a
+    source beside the camera): there the axes of the surface are unknown.
 
     >>> t = dolp.evaluate(scene, theta_deg=[0, 40, 80])
     >>> seen = dolp.camera_stokes(t, normals=[[0, 0, 1]], view=[1, 0, 1], up=[0, 0, 1])
@@ -41,14 +45,16 @@ def camera_stokes(result: xr.Dataset, normals: Any, view: Any, up: Any) -> xr.Da
         theta = np.where(cosine > 0, np.degrees(np.arctan2(np.linalg.norm(s, axis=-1), cosine)), np.nan)
         right = np.cross(up, view)
         right /= np.linalg.norm(right, axis=-1, keepdims=True)
-    if np.isnan(right).any():
+    if np.isnan(right).all():
         raise InputError("up: must not be parallel to view, and neither may be 0")
     turn = 2 * np.arctan2((s * np.cross(view, right)).sum(axis=-1), (s * right).sum(axis=-1))
     names = ("stokes_i", "stokes_q", "stokes_u")
     i, q, u = (np.where(np.isnan(theta), np.nan, _at(result, name, theta)) for name in names)
-    q, u = q * np.cos(turn) - u * np.sin(turn), q * np.sin(turn) + u * np.cos(turn)
     with np.errstate(invalid="ignore", divide="ignore"):
         polarised = np.hypot(q, u)
+        # A normal that points at the camera has no plane of incidence, and so no axes to turn from.
+        turn = np.where((np.linalg.norm(s, axis=-1) < LEAST_SINE) & (polarised > LEAST_DOLP * i), np.nan, turn)
+        q, u = q * np.cos(turn) - u * np.sin(turn), q * np.sin(turn) + u * np.cos(turn)
         aolp = np.where(polarised > 0, np.degrees(np.arctan2(u, q)) / 2 % 180, np.nan)
         dolp = polarised / i
     dims = tuple(f"point_{axis}" for axis in range(len(shape))) if len(shape) > 1 else ("point",) * len(shape)

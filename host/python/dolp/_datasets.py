@@ -101,7 +101,7 @@ def scene_of_dataset(table: xr.Dataset) -> _native.Scene:
     values = [(name, value) for name, value in single.items() if name in KEY_ATTRIBUTES]
     values += [(f"grid.{columns[name]}", _grid_value(name, value)) for name, value in single.items()
                if name in _native.table_axes()]
-    return scene.with_(values) if values else scene
+    return scene.with_(values).for_points() if values else scene
 
 
 def _grid_value(axis: str, value: Any) -> Any:

@@ -1,13 +1,12 @@
 """The warning for scenes in which single scattering is not enough."""
 from __future__ import annotations
 
-import warnings
-
 from collections.abc import Hashable, Mapping
 from typing import Any
 
 import numpy as np
 
+from ._arguments import warn
 from ._scene import Scene
 
 _MODEL_INACCURATE = 32  # status bit
@@ -19,8 +18,7 @@ class ModelWarning(UserWarning):
     uncertainties."""
 
 
-def warn_of_model(scene: Scene, status: Any, attributes: Mapping[Hashable, Any] | None = None,
-                  stacklevel: int = 3) -> None:
+def warn_of_model(scene: Scene, status: Any, attributes: Mapping[Hashable, Any] | None = None) -> None:
     """Warns once for each scene if an entry has status 32. `attributes`: those of the results, with the largest changes
     of I and of DOLP."""
     if scene._has_model_warning or not np.any(np.asarray(status) & _MODEL_INACCURATE):
@@ -30,14 +28,14 @@ def warn_of_model(scene: Scene, status: Any, attributes: Mapping[Hashable, Any] 
     if attributes and "model_change_dolp" in attributes:
         much = (f"I by up to {100 * float(attributes['model_change']):.2g} % and DOLP by up to "
                 f"{float(attributes['model_change_dolp']):.2g} points")
-    warnings.warn(f"{scene!r}: light that single scattering loses, or that the masking creates, changes {much} "
-                  f"(status 32); {scene._native.model_advice()}", ModelWarning, stacklevel=stacklevel)
+    warn(f"{scene!r}: light that single scattering loses, or that the masking creates, changes {much} "
+         f"(status 32); {scene._native.model_advice()}", ModelWarning)
 
 
-def warn_of_gap(scene: Scene, gap: float | None, stacklevel: int = 3) -> None:
+def warn_of_gap(scene: Scene, gap: float | None) -> None:
     """Warns once for each scene if a bracket reaches more than one uncertainty away from a fit. `gap`: this distance."""
     if scene._has_model_warning or gap is None or gap <= 1:
         return
     scene._has_model_warning = True
-    warnings.warn(f"{scene!r}: light of further bounces can move the model by {gap:.2g} uncertainties of a point, which the "
-                  'intervals of the fit ignore; model_error="bracket" includes it', ModelWarning, stacklevel=stacklevel)
+    warn(f"{scene!r}: light of further bounces can move the model by {gap:.2g} uncertainties of a point, which the "
+         'intervals of the fit ignore; model_error="bracket" includes it', ModelWarning)

@@ -41,12 +41,18 @@ def columns_of(points: Mapping[str, Array], labels: Mapping[str, list[str]] = {}
     if any(isinstance(values, xr.DataArray) for values in points.values()):
         arrays = {name: values.copy(data=floats(name, values)) if isinstance(values, xr.DataArray)
                   else xr.DataArray(floats(name, values)) for name, values in points.items()}
+        try:
+            xr.align(*arrays.values(), join="exact")
+        except ValueError as error:
+            raise InputError(f"points: the coordinates or sizes of DataArrays differ: {error}") from None
+        coordinates = {name: coordinate.variable.copy(deep=False)
+                       for array in arrays.values() for name, coordinate in array.coords.items()}
+        coordinates |= {array.dims[0]: array.variable for column, array in arrays.items() if array.ndim == 1
+                        and array.dims[0] == COORDINATES.get(column, ("",))[0] and array.dims[0] not in coordinates}
         arrays = dict(zip(arrays, xr.broadcast(*arrays.values())))
         template = next(iter(arrays.values()))
         points = {name: array.values for name, array in arrays.items()}
         shape, dims = template.shape, template.dims
-        coordinates = {name: coordinate.variable.copy(deep=False)
-                       for array in arrays.values() for name, coordinate in array.coords.items()}
     else:
         points = {name: floats(name, values) for name, values in points.items()}
         try:
@@ -59,6 +65,9 @@ def columns_of(points: Mapping[str, Array], labels: Mapping[str, list[str]] = {}
         name, known = COORDINATES.get(column) or (column, KEY_ATTRIBUTES.get(column, {}))
         if name in coordinates:
             coordinates[name].attrs.update(known)
+        elif name in dims:
+            raise InputError(f"points: {column} varies along more dimensions than {name}, which are {', '.join(map(str, dims))}; "
+                             f"rename the dimension {name}")
         else:
             along = dims if values.ndim > 0 else ()
             coordinates[name] = xr.Variable(along, np.broadcast_to(values, shape) if along else values, known)

@@ -13,6 +13,7 @@ from ._runs import native_evaluator, native_surface, with_axes
 from ._scene import Scene
 
 _HINT = "take entries by sel or isel, and compute others instead of interpolating, as in dolp.response(scene, theta_deg=65)"
+_ORDER, _ANGLE = "order of a polynomial", "angle between beta"  # dimensions that no user has
 _ANGLES = 256  # number of angles at which _distance compares reflectances with polynomials
 _AXES = ("theta", "sigma", "q")
 _ENTRY = ("albedo", "response_error")  # with the axes and the weights, in the order of dolp::response_fingerprint
@@ -128,28 +129,28 @@ def _coefficients(beta: xr.DataArray) -> xr.DataArray:
     """Matrix that turns values at the angles beta into Chebyshev coefficients of the polynomial through the values."""
     count = beta.size
     values = np.polynomial.chebyshev.chebvander(np.polynomial.chebyshev.chebpts1(count)[::-1], count - 1).T
-    return xr.DataArray(values * np.where(np.arange(count) == 0, 1, 2)[:, None] / count, {"beta": beta}, ("m", "beta"))
+    return xr.DataArray(values * np.where(np.arange(count) == 0, 1, 2)[:, None] / count, {"beta": beta}, (_ORDER, "beta"))
 
 
 def _size(mean: xr.DataArray, half: xr.DataArray) -> xr.DataArray:
     """The largest 2^m |a_m|, the factor of response_error in rho_error. The a_m are Chebyshev coefficients of `mean`
     and of `half` / sin^2 beta. `mean` and `half` are half the sum and half the difference of r_s and r_p."""
-    growth = xr.DataArray(2.0 ** np.arange(mean.sizes["beta"]), dims="m")
+    growth = xr.DataArray(2.0 ** np.arange(mean.sizes["beta"]), dims=_ORDER)
     curves = mean, half / np.sin(np.deg2rad(mean.beta)) ** 2
-    return np.maximum(*((growth * abs(curve.dot(_coefficients(mean.beta), "beta"))).max("m") for curve in curves))
+    return np.maximum(*((growth * abs(curve.dot(_coefficients(mean.beta), "beta"))).max(_ORDER) for curve in curves))
 
 
 def _distance(response: xr.Dataset, index: xr.DataArray, r_s: xr.DataArray, r_p: xr.DataArray) -> xr.DataArray:
     """Largest error of the polynomials that replace (r_s + r_p) / 2 and (r_s - r_p) / 2 between the angles beta."""
     beta, c0 = response.beta, float(response.attrs["c0"])
     x = np.polynomial.chebyshev.chebpts1(_ANGLES)
-    cosine = xr.DataArray(c0 * np.sinh(0.5 * (1 + x) * np.arcsinh(1 / c0)), dims="angle")
-    polynomials = xr.DataArray(np.polynomial.chebyshev.chebvander(x, beta.size - 1), dims=("angle", "m"))
-    between = polynomials.dot(_coefficients(beta), "m")
+    cosine = xr.DataArray(c0 * np.sinh(0.5 * (1 + x) * np.arcsinh(1 / c0)), dims=_ANGLE)
+    polynomials = xr.DataArray(np.polynomial.chebyshev.chebvander(x, beta.size - 1), dims=(_ANGLE, _ORDER))
+    between = polynomials.dot(_coefficients(beta), _ORDER)
     s, p = _fresnel(index, cosine)
     mean_off = abs(s + p - (r_s + r_p).dot(between, "beta"))
     half_off = abs(s - p - (1 - cosine ** 2) * ((r_s - r_p) / np.sin(np.deg2rad(beta)) ** 2).dot(between, "beta"))
-    return np.maximum(mean_off, half_off).max("angle") / 2
+    return np.maximum(mean_off, half_off).max(_ANGLE) / 2
 
 
 def _at_beta(name: str, values: xr.DataArray, beta: xr.DataArray) -> xr.DataArray:

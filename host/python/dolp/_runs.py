@@ -4,7 +4,6 @@ from __future__ import annotations
 import functools
 import json
 import os
-import warnings
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
@@ -12,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from . import _native
-from ._arguments import Array, Path, axis_values, check_names, label_values, device_name, flag, native_path, short, word, word_list
+from ._arguments import Array, Path, axis_values, check_names, label_values, device_name, flag, native_path, short, warn, word, word_list
 from ._datasets import concatenated, dataset_at, table_dataset
 from ._model_warning import warn_of_model
 from ._native import InputError
@@ -116,7 +115,7 @@ def evaluate(scene: Scene, *, evaluator: str | None = None, device: str = "", ke
 
 def _evaluated(scene: Scene, evaluator: str | None, device: str, keep_all: bool, points: Mapping[str, Array],
                derivatives: Iterable[str] = ()) -> xr.Dataset:
-    """Computes points for `evaluate` and `lookup`, so warnings name the line that called one of them."""
+    """Computes points for `evaluate` and `lookup`."""
     native, engine = native_scene(scene), native_evaluator(scene, evaluator, device)
     frame, columns = columns_of(points, native.labels(), has_keys=True)
     _warn_of_radians(columns.get("theta_deg", np.zeros(0)))
@@ -129,7 +128,7 @@ def _evaluated(scene: Scene, evaluator: str | None, device: str, keep_all: bool,
 
     results = dataset_at(
         _over_keys(run, native, columns, varied) if varied and 0 not in frame.shape else run(native, columns), frame)
-    warn_of_model(scene, results.get("status", 0), results.attrs, stacklevel=4)
+    warn_of_model(scene, results.get("status", 0), results.attrs)
     return results
 
 
@@ -137,8 +136,7 @@ def _warn_of_radians(theta_deg: np.ndarray) -> None:
     """Warns of zeniths that all lie between 0 and pi / 2. Up to three directions near the normal may be meant."""
     largest = np.nanmax(theta_deg, initial=0.0)
     if 0.5 < largest < 1.6 and len(np.unique(theta_deg)) > 3:
-        warnings.warn(f"points: theta_deg is at most {largest:.4g} degrees; is it in radians?", _native.InputWarning,
-                      stacklevel=4)
+        warn(f"points: theta_deg is at most {largest:.4g} degrees; is it in radians?", _native.InputWarning)
 
 
 def lookup(table: Path | xr.Dataset, *, evaluator: str | None = None, device: str = "",
@@ -224,7 +222,7 @@ def _evaluator_of(evaluator: str, device: str) -> _native.Evaluator:
 
 def native_scene(scene: Scene) -> _native.Scene:
     if isinstance(scene, Scene) and scene._is_for_response:
-        raise InputError("scene: comes from Scene.for_response, so only dolp.response takes it; write dolp.Scene(...)")
+        raise InputError("scene: has no material, because it comes from Scene.for_response or a response table; only dolp.response takes it, so write dolp.Scene(PATH) with the file of a scene")
     return native_surface(scene)
 
 

@@ -45,6 +45,7 @@ class Scene:
         elif isinstance(path, xr.Dataset):
             scene = scene_of_dataset(path)
             self._native = scene.with_(values) if values else scene
+            self._is_for_response = "c0" in path.attrs
         elif path is not None:
             if isinstance(path, str) and "\n" in path:
                 raise InputError(f"path: {short(path)} is the text of a scene; write Scene(text=...)")

@@ -28,9 +28,12 @@ TEST(SceneRemarks, ProbablyMeantOtherwise_IsOneLineThatNamesKeyAndUnit) {
            {{profile + hot.path()}, "is hotter than twice the surface, 300 K; are both in kelvins?"},
            {{profile + microflick.path()},
             "is hotter than twice the surface, 300 K; radiance is in W m-2 sr-1 um-1, of which a microflick is 0.01"},
-           {{"spectrum.wavelength_um=8000"}, "is in micrometres; were nanometres meant?"},
-           {{"spectrum.band_um=[3000, 5000]"}, "is in micrometres; were nanometres meant?"},
-           {{"grid.wavelength_um=[3000, 5000]"}, "is in micrometres; were nanometres meant?"},
+           {{"spectrum.wavelength_um=8000"}, "is in micrometres; were nanometres or wavenumbers meant?"},
+           {{"spectrum.band_um=[3000, 5000]"}, "is in micrometres; were nanometres or wavenumbers meant?"},
+           {{"spectrum.band_um=[8, 1250]"}, "is in micrometres; were nanometres or wavenumbers meant?"},
+           {{"surface.diffuse_polarisation=transmission"},
+            "has no effect: the surface has no diffuse part; surface.diffuse gives it one"},
+           {{"grid.wavelength_um=[3000, 5000]"}, "is in micrometres; were nanometres or wavenumbers meant?"},
            {{"surface.coating=[{n=1.5,thickness_um=1}]", "surface.coating.1.thickness_um=500"},
             "is in micrometres; were nanometres meant?"},
            {{profile + "clear-sky", "spectrum.wavelength_um=6.3"},
@@ -62,7 +65,7 @@ TEST(SceneRemarks, OrdinaryScenes_HaveNone) {
                                                    {"emission.temperature_K=60"},
                                                    {"surroundings.temperature_K=600"},
                                                    {"surroundings.profile=clear-sky"},
-                                                   {"grid.wavelength_um=[900, 5000]"},
+                                                   {"grid.wavelength_um=[900, 1000]"},
                                                    {"surface.material=iron"},
                                                    {"geometry.mode=bistatic", "source.irradiance=1"},
                                                    {"geometry.mode=bistatic", "source.preset=sun"},
@@ -115,6 +118,38 @@ TEST(SceneRemarks, FileThatLacksDataOrRows_IsSaid) {
   EXPECT_NE(of_axis[0].find("soda-lime glass: the rows of n and k are coarse near 8.2 um"), std::string::npos);
   const TemporaryFile source("e.csv", "3,1\n12,2\n");
   EXPECT_TRUE(remarks_of({"source.file=" + source.path()}).at(0).ends_with(gap("3 and 12")));
+}
+
+TEST(SceneRemarks, NameTheLineOfTheKey_AlsoAfterSettings) {
+  const SceneValues scene =
+      parse_scene(std::string(kMinimal) + "\n[grid]\nsigma = 0.1\ntheta_deg = [3, 1, 2]\n", "s.toml");
+  const std::size_t line = 1 + static_cast<std::size_t>(std::ranges::count(scene.text, '\n') - 1);
+  for (const SceneValues& of : {scene, with_settings(scene, {{"title", "b"}})}) {
+    const std::vector<std::string> remarks = remarks_on(of);
+    ASSERT_EQ(remarks.size(), 1U);
+    EXPECT_TRUE(remarks[0].starts_with(fmt::format("s.toml:{}: grid.theta_deg = [", line))) << remarks[0];
+  }
+}
+
+TEST(SceneRemarks, OnPoints_NameTheirColumn) {
+  const auto remarks_of_points = [](const std::string& text, const std::vector<std::string>& settings = {}) {
+    return remarks_on(parse(kMinimal, settings), parse_points(text, "p.csv", PointsKind::kDirections));
+  };
+  for (const auto& [text, remark] : {
+           std::pair("theta_deg\n0\n0.5\n1\n1.2\n1.5\n", "theta_deg: is at most 1.5 degrees; is it in radians?"),
+           {"sigma\n5\n", "sigma: 5 is a slope of 79 degrees, not a height; real surfaces have less than 2"},
+           {"wavelength_um\n9\n4000\n", "wavelength_um: is in micrometres; were nanometres or wavenumbers meant?"},
+           {"temperature_K\n20\n", "temperature_K: 20 K is cold; were degrees Celsius meant?"},
+           {"surface.coating.1.thickness_um\n500\n",
+            "surface.coating.1.thickness_um: is in micrometres; were nanometres meant?"},
+           {"surface_azimuth_deg\n30\n",
+            "surface_azimuth_deg: has no effect: slopes are equal along and across; give surface.sigma_cross or "
+            "surface.wind_model"},
+       }) {
+    EXPECT_EQ(remarks_of_points(text), std::vector<std::string>{std::string("p.csv:1: ") + remark});
+  }
+  EXPECT_EQ(remarks_of_points("wavelength_um\n15\n", {"surroundings.profile=clear-sky"}).size(), 1U);
+  EXPECT_TRUE(remarks_of_points("theta_deg,sigma_cross,surface_azimuth_deg\n40,0.2,30\n").empty());
 }
 
 }  // namespace

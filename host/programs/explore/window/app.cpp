@@ -149,6 +149,8 @@ void run_program(const Scene& scene, const ProgramOptions& options) {
   if (!options.screenshot_path.empty()) {
     if (options.frames == 0)
       throw InputError("--screenshot needs --frames N beside it: the picture shows the last frame");
+    if (std::filesystem::path(options.screenshot_path).extension() != ".png")
+      throw InputError(fmt::format("--screenshot {}: the name must end in .png", options.screenshot_path));
     check_writable(options.screenshot_path);
   }
   require_device(options.device);

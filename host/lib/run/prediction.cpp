@@ -14,6 +14,7 @@
 namespace dolp {
 namespace {
 
+constexpr std::size_t kDirectionBytes = 1000;  // pieces, nodes and positions that the kernels get
 /// The axis from which a sample of directions draws zeniths: theta, unless moments are at several view zeniths.
 Axis drawn_axis(const SceneValues& scene, const SceneEntries& grid) {
   return grid.axes()[moment_axis(scene)].empty() ? Axis::kTheta : moment_axis(scene);
@@ -234,8 +235,9 @@ RunPrediction predict_run(const SceneValues& scene, const SceneEntries& entries,
     run.beams += beams;
     // Columns of results take memory twice, because the previous part is still being written.
     const std::size_t columns = part.size() * sizeof(PointResult);
-    largest = std::max(largest, columns + columns_before + first.moments.size() * sizeof(Moments) + largest_step +
-                                    beams * (sizeof(ScatteringEntry) + sizeof(ScatteringMatrix)));
+    const std::size_t directions = kDirectionBytes * (part.size() / part.entries_per_direction());
+    largest = std::max(largest, columns + columns_before + directions + first.moments.size() * sizeof(Moments) +
+                                    largest_step + beams * (sizeof(ScatteringEntry) + sizeof(ScatteringMatrix)));
     columns_before = columns;
   }
   run.host_bytes = static_cast<double>(largest);

@@ -26,9 +26,10 @@
 namespace dolp {
 namespace {
 
-// Largest number of moments in a part of a grid, and in a part of a list of points. Both limits keep the memory small.
+// Largest number of moments in a part of a grid. It keeps the memory small.
 constexpr std::size_t kMomentsAtOnce = 1U << 20U;
-constexpr std::size_t kPointsAtOnce = 1U << 17U;
+// The same for directions of a grid, and for points, which have a direction each. A direction takes some 1000 bytes.
+constexpr std::size_t kDirectionsAtOnce = 1U << 17U;
 // If more than 1 in kWholeDirectionMissRatio entries of a direction misses the tolerance, the whole direction is
 // computed again. Tuned. Evaluations per entry with smith masking at half, once and twice this value: 1.71, 1.81, 1.99.
 constexpr std::size_t kWholeDirectionMissRatio = 8;
@@ -416,7 +417,7 @@ Sink CollectedResults::sink() {
 }
 
 std::vector<SceneEntries> run_parts(const SceneEntries& entries, std::size_t spectral_samples) {
-  const std::size_t moments = entries.is_grid() ? kMomentsAtOnce : kPointsAtOnce;
+  const std::size_t moments = std::min(kMomentsAtOnce, kDirectionsAtOnce * entries.entries_per_direction());
   return entries.parts(std::max<std::size_t>(1, moments / spectral_samples));
 }
 

@@ -106,8 +106,8 @@ void App::close() {
 }
 
 void App::run() {
-  // Wakes up to draw a tooltip when the mouse has rested for kTooltipDelay_s. The rest begins after the frames that follow
-  // the last event, because on a slow machine these frames take long.
+  // Wakes up to draw a tooltip when the mouse has rested for kTooltipDelay_s. The rest begins after the frames that
+  // follow the last event, because on a slow machine these frames take long.
   const auto rest = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<float>(kTooltipDelay_s + 0.05F));
   Clock::time_point event, tooltip;
   while (answer()) {

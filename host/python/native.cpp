@@ -412,13 +412,15 @@ PYBIND11_MODULE(_native, module) {
            [](dolp::Evaluator& evaluator, const dolp::Scene& scene, const Columns& columns, bool keep_all,
               std::vector<std::string> derivatives) {
              const std::vector<dolp::Column> points = views(columns);
-             return result_parts(interruptible([&](const dolp::Progress& progress) {
+             dolp::Results results = interruptible([&](const dolp::Progress& progress) {
                return evaluator.evaluate(scene, points,
                                          {.keep_all = keep_all,
                                           .progress = progress,
                                           .history = "dolp.evaluate",
                                           .derivatives = std::move(derivatives)});
-             }));
+             });
+             warn(results.remarks);
+             return result_parts(std::move(results));
            })
       .def("fit",
            [](dolp::Evaluator& evaluator, const dolp::Scene& scene,

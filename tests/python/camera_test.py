@@ -84,6 +84,7 @@ class Camera(PackageCase):
         np.testing.assert_array_equal(np.isfinite(seen.aolp_deg), [False, True, False, False])
         np.testing.assert_array_equal(np.isfinite(seen.stokes_q), [False, True, False, False])
         np.testing.assert_allclose(seen.dolp, [0.1, 0.1, 0.1, np.nan])
+        self.assertEqual(dolp.camera_stokes(light, np.zeros((0, 3)), np.zeros((0, 3)), Z).dolp.shape, (0,))
         toward = dolp.camera_stokes(self.curve, Z, Z, [0, 1, 0])  # unpolarised
         self.assertAlmostEqual(float(toward.stokes_q), 0, delta=1e-6)
 

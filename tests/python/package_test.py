@@ -72,6 +72,8 @@ class Package(PackageCase):
         on_axes = dolp.evaluate(self.scene, theta_deg=xr.DataArray(theta, dims="theta"), sigma=xr.DataArray([0.1, 0.2], dims="sigma"))
         np.testing.assert_array_equal(on_axes.dolp.sel(theta=60), named.dolp[2])
         np.testing.assert_array_equal(on_axes.sigma, [0.1, 0.2])
+        constant = dolp.evaluate(self.scene, theta_deg=60, sigma=xr.DataArray([0.1, 0.2], dims="theta"), evaluator="cpu")
+        np.testing.assert_array_equal(constant.theta, [60, 60])
         for wrong, message in ((xr.DataArray(np.ones((2, 2)), dims=("theta", "x")), "rename the dimension theta"),
                                (xr.DataArray([1.0, 2, 3], dims="part", coords={"part": [7, 8, 9]}), "DataArrays differ")):
             with self.assertRaisesRegex(dolp.InputError, message):

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <vector>
@@ -14,6 +15,7 @@ using Complex = std::complex<double>;
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kFourPi = 4.0 * std::numbers::pi;
+constexpr double kFilmRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
 // Facets whose film differs from the mean by more than this many spreads are left out: 3e-12 of them.
 constexpr double kReachInSpreads = 7.0;
@@ -132,14 +134,19 @@ class Stack {
     return reflection(ratio(outside.s, cosine_), ratio(outside.p, cosine_));
   }
 
-  /// 1 - R_s and 1 - R_p, from the fluxes of energy. Unlike the differences, they keep their digits where R is near 1.
-  std::array<double, 2> absorptances() const {
+  FilmAbsorptance absorptance() const {
+    // Each film adds a few roundings of the fields. Their net flux is a difference where light is nearly all reflected.
+    const double rounding = kFilmRounding * static_cast<double>(1 + waves_.size());
     const BothFields outside = fields();
-    const auto absorptance = [&](const Fields& f) {
-      const double flux = f.field.real() * f.flux.real() + f.field.imag() * f.flux.imag();
-      return std::max(4.0 * cosine_ * flux / std::norm(cosine_ * f.field + f.flux), 0.0);
+    FilmAbsorptance absorbed;
+    const auto take = [&](const Fields& f) {
+      const double scale = 4.0 * cosine_ / std::norm(cosine_ * f.field + f.flux);
+      absorbed.error = std::max(absorbed.error, rounding * scale * std::sqrt(std::norm(f.field) * std::norm(f.flux)));
+      return std::max(scale * (f.field.real() * f.flux.real() + f.field.imag() * f.flux.imag()), 0.0);
     };
-    return {absorptance(outside.s), absorptance(outside.p)};
+    absorbed.s = take(outside.s);
+    absorbed.p = take(outside.p);
+    return absorbed;
   }
 
   static FilmReflection reflection(const Ratio& s, const Ratio& p) {
@@ -328,14 +335,28 @@ FilmReflection film_reflection(const FacetOptics& optics, double cosine) {
   });
 }
 
-std::array<double, 2> film_absorptances(const FacetOptics& optics, double cosine) {
-  // Below kGrazing, absorptances with a spread are proportional to the cosine. Above, 1 - R has enough digits.
+FilmAbsorptance film_absorptance(const FacetOptics& optics, double cosine) {
+  // With a spread, absorptance / cosine is a straight line in the cosine below kGrazing. Above, 1 - R has enough
+  // digits.
   constexpr double kGrazing = 1e-6;
   if (std::ranges::none_of(optics.films, [](const Film& film) { return film.spread > 0.0; }))
-    return Stack(optics, cosine).absorptances();
-  const FilmReflection r = film_reflection(optics, std::max(cosine, kGrazing));
-  const double share = std::min(cosine / kGrazing, 1.0);
-  return {share * std::max(1.0 - r.r_s, 0.0), share * std::max(1.0 - r.r_p, 0.0)};
+    return Stack(optics, cosine).absorptance();
+  const auto difference = [&](double at) {
+    const FilmReflection r = film_reflection(optics, at);
+    return FilmAbsorptance{std::max(1.0 - r.r_s, 0.0), std::max(1.0 - r.r_p, 0.0), kFilmRounding};
+  };
+  if (cosine >= kGrazing) return difference(cosine);
+  const FilmAbsorptance near = difference(kGrazing), far = difference(2.0 * kGrazing);
+  const double share = cosine / kGrazing;
+  FilmAbsorptance absorbed{0.0, 0.0, 4.0 * share * kFilmRounding};
+  const auto extrapolated = [&](double at, double beyond) {
+    const double bend = 0.5 * beyond - at;
+    if (at > 0.0) absorbed.error = std::max(absorbed.error, share * (4.0 * kFilmRounding + 4.0 * bend * bend / at));
+    return std::max(share * (at + (share - 1.0) * bend), 0.0);
+  };
+  absorbed.s = extrapolated(near.s, far.s);
+  absorbed.p = extrapolated(near.p, far.p);
+  return absorbed;
 }
 
 bool is_too_wide(const Film& film) {

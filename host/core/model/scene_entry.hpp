@@ -107,7 +107,7 @@ class SceneEntries {
   std::size_t entries_per_direction() const {
     return is_grid_ ? sigma().size() * q().size() * counts_[Axis::kSigmaCross] * counts_[Axis::kSurfaceAzimuth] : 1;
   }
-  bool has_own_cross_slopes() const;  ///< true if points of a list have slopes that differ along and across
+  bool has_own_cross_slopes() const;  ///< true if points of a list have a sigma_cross
   bool has_own_index() const;         ///< true if some entries have their own n or k
   /// The n and k that entries have: the combinations of both axes of a grid, or n and k of each point that has them.
   std::vector<OpticalConstants> own_indices() const;

@@ -13,6 +13,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
+constexpr double kMirrorRounding = 16.0 * std::numeric_limits<double>::epsilon();
+
 SmoothAbsorptance bare_absorptance(const OpticalConstants& index, double cosine) {
   // Powers of a tiny N underflow. If n and k are both below kLeast, kLeast replaces n. Results change by up to 4e-75.
   constexpr double kLeast = 1e-75;
@@ -27,7 +29,7 @@ SmoothAbsorptance bare_absorptance(const OpticalConstants& index, double cosine)
   const double s_denominator = std::norm(cosine + w);
   const double p_denominator = std::norm(square * cosine + w);
   const double transmitted = 4.0 * cosine * w.real();
-  return {transmitted / s_denominator, 4.0 * cosine * (std::conj(square) * w).real() / p_denominator,
+  return {transmitted / s_denominator, 4.0 * cosine * (std::conj(square) * w).real() / p_denominator, 0.0,
           transmitted / s_denominator * (std::norm(square - 1.0) / p_denominator)};
 }
 
@@ -50,17 +52,19 @@ SmoothAbsorptance between_rows(const MeasuredReflectance& measured, std::size_t 
   const double share = (elevation_deg - (90.0 - after_deg)) / (after_deg - measured.beta_deg[row - 1]);
   const auto absorbed = [&](const std::vector<double>& r) { return std::lerp(1.0 - r[row], 1.0 - r[row - 1], share); };
   const double s = absorbed(measured.r_s), p = absorbed(measured.r_p);
-  if (row > 1) return {s, p};
+  const bool reflects_all = measured.r_s[row] == 1.0 && measured.r_p[row] == 1.0;  // as at 90 degrees
+  const double error = kMirrorRounding * (reflects_all ? std::abs(share) : 1.0);
+  if (row > 1) return {s, p, error};
   const double mean = 0.5 * (s + p);
   const double most = half_difference_limit(mean);
   const double half = std::clamp(free_half_difference(measured, (1.0 - cosine) * (1.0 + cosine)), -most, most);
-  return {mean - half, mean + half};
+  return {mean - half, mean + half, error};
 }
 
 SmoothAbsorptance covered_absorptance(const FacetOptics& optics, double cosine) {
   if (optics.measured) return between_rows(*optics.measured, optics.measured->row_above(beta_deg_at(cosine)), cosine);
-  const auto [s, p] = film_absorptances(optics, cosine);
-  return {s, p};
+  const auto [s, p, error] = film_absorptance(optics, cosine);
+  return {s, p, error};
 }
 
 /// Adds `split`, (R_s - R_p) / sin^2(beta), to absorptances. Near normal incidence, where it is 0 / 0, it is
@@ -165,7 +169,7 @@ std::vector<double> kink_elevations_rad(const FacetOptics& optics) {
 
 Moments mirror_moments(const FacetOptics& optics, double cosine) {
   const SmoothAbsorptance absorbed = smooth_absorptance(optics, cosine);
-  const double rounding = 16.0 * std::numeric_limits<double>::epsilon() * cosine;
+  const double rounding = kMirrorRounding * cosine;
   Moments moments;
   moments.albedo = cosine;
   moments.deficit = 0.5 * (absorbed.s + absorbed.p) * cosine;
@@ -174,7 +178,7 @@ Moments mirror_moments(const FacetOptics& optics, double cosine) {
   // If N is exactly 1, nothing is reflected: r_i and r_q are exactly 0 and have no error.
   moments.r_i_error = moments.r_i == 0.0 ? 0.0 : rounding;
   moments.albedo_error = rounding;
-  moments.deficit_error = rounding * 0.5 * (absorbed.s + absorbed.p);
+  moments.deficit_error = rounding * 0.5 * (absorbed.s + absorbed.p) + cosine * absorbed.error;
   moments.r_q_error = moments.deficit_error;  // r_q is a difference of absorptances
   moments.direct_i = moments.deficit;
   moments.direct_q = -moments.r_q;

@@ -99,7 +99,11 @@ MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Refle
 Emissivity fresnel_emissivity(const FacetOptics& index, double cos_theta) {
   const SmoothAbsorptance absorptance = smooth_absorptance(index, cos_theta);
   const double mean = 0.5 * (absorptance.s + absorptance.p);
-  return {.i = mean, .q = 0.5 * (absorptance.s - absorptance.p), .terms = mean};
+  return {.i = mean,
+          .q = 0.5 * (absorptance.s - absorptance.p),
+          .i_error = absorptance.error,
+          .q_error = absorptance.error,
+          .terms = mean};
 }
 
 Emissivity direct_emissivity(const Surface& surface, const Moments& moments, double cos_theta,

@@ -154,6 +154,7 @@ struct Results : ResultColumns {
   /// The global attributes that a table file would have: device, precision, effects, rule, ...
   std::vector<Attribute> attributes;
   double integrand_evaluations = 0.0;  ///< number of evaluations of the integrand for these results
+  std::vector<std::string> remarks;    ///< one line for each column of points that was probably meant differently
 };
 
 /// Points and their results as CSV, in the format of write_points. Errors: InputError for a column of wrong length.

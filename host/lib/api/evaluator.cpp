@@ -12,6 +12,7 @@
 #include "report/run_report.hpp"
 #include "run/mueller_run.hpp"
 #include "run/response_run.hpp"
+#include "run/scene_remarks.hpp"
 #include "run/scene_run.hpp"
 #include "run/scene_table.hpp"
 #include "scene/scene_reader.hpp"
@@ -128,8 +129,8 @@ void Evaluator::table_parts(const Scene& scene, const std::function<void(const T
 
 Results Evaluator::evaluate(const Scene& scene, const std::vector<Column>& points, const RunOptions& call_options) {
   return impl().exclusively(scene, call_options, [&](const SceneValues& values, const RunOptions& options) {
-    Run run(values, point_entries(values, points_of_columns(points, PointsKind::kDirections)), options,
-            impl_->maker(values));
+    const Points columns = points_of_columns(points, PointsKind::kDirections);
+    Run run(values, point_entries(values, columns), options, impl_->maker(values));
     CollectedResults collected(run.entries());
     const RunOutcome outcome = run.compute(collected.sink());
     TableLayout layout = table_layout(values, run);
@@ -140,6 +141,7 @@ Results Evaluator::evaluate(const Scene& scene, const std::vector<Column>& point
                     layout.head.stokes_units,
                     layout.head.attributes};
     results.integrand_evaluations = outcome.evaluation.evaluations;
+    results.remarks = remarks_on(values, columns);
     return results;
   });
 }

@@ -112,6 +112,10 @@ class Steps {
     SceneValues changed = axis_ ? scene_ : with_settings(scene_, {{key_, moved(value({}))}});
     changed.accuracy.tolerance = std::min(scene_.accuracy.tolerance, kStepTolerance);
     if (evaluator.has_double()) changed.accuracy.precision = Precision::kDouble;
+    if (!axis_ && entries_.is_grid()) {  // a grid has its own copy of the scene's slopes along and across
+      const SceneEntries grid = SceneEntries::grid(entries_.axes(), entries_.index(), changed.cross_slopes());
+      return evaluate_scene(changed, grid, evaluator, progress);
+    }
     if (!axis_) return evaluate_scene(changed, entries_, evaluator, progress);
     const auto change = [&](double own) { return from_key(moved(to_key(own))); };
     return evaluate_scene(changed, entries_.changed(*axis_, change), evaluator, progress);
@@ -201,8 +205,8 @@ void compute_derivatives(const SceneValues& scene, const SceneEntries& entries, 
     const double turned = off < dolp ? off / dolp : 2.0;
     const double rate = std::hypot(q.derivative, u.derivative);
     static_assert(kDerivativesPerKey == 3);
-    columns[0].values[i] = dolp == 0.0 ? 0.0 : sign * (q.middle * q.derivative + u.middle * u.derivative) / dolp;
-    columns[1].values[i] = q.derivative;
+    columns[0].values[i] = dolp == 0.0 ? 0.0 : sign * (q.middle * q.derivative + u.middle * u.derivative) / dolp + 0.0;
+    columns[1].values[i] = q.derivative + 0.0;  // adding 0 turns -0 into 0
     columns[2].values[i] = change + noise + turned * rate;
   }
 }

@@ -35,6 +35,7 @@ constexpr double kLeastPart = 0.01;
 constexpr std::size_t kFewAngles = 4;
 constexpr double kLeastLikelyRadians = 0.5;
 constexpr double kSteepSigma = 2.0;
+constexpr std::size_t kMostWavelengths = 1000;  // of points, for remarks on files
 
 using Interval = std::pair<double, double>;
 
@@ -111,6 +112,11 @@ class Remarks {
   Remarks(const SceneValues& scene, const Points& points) : scene_(scene), points_(&points) {
     for (const Axis axis : kAllAxes)
       if (points[axis] && !points[axis]->empty() && !describe(axis).has_labels) scene_.grid[axis] = *points[axis];
+    std::vector<double>& um = scene_.grid[Axis::kWavelength];  // those of files of rows are compared with each row
+    if (um.size() <= kMostWavelengths) return;
+    std::ranges::sort(um);
+    for (std::size_t i = 0; i < kMostWavelengths; ++i) um[i] = um[i * (um.size() - 1) / (kMostWavelengths - 1)];
+    um.resize(kMostWavelengths);
   }
 
   void add(const std::string& key, const std::string& what) { lines_.push_back(scene_.document->prefix(key) + what); }
@@ -210,10 +216,11 @@ class Remarks {
     if (points_ && (*points_)[Axis::kSurfaceAzimuth] && !has_cross_slopes())
       add(Axis::kSurfaceAzimuth, "", kUnusedAzimuth);
     for (const Axis axis : {Axis::kTheta, Axis::kViewZenith}) {
-      const std::set<double> zeniths_deg(scene_.grid[axis].begin(), scene_.grid[axis].end());
-      if (zeniths_deg.size() >= kFewAngles && *zeniths_deg.rbegin() < kLikelyRadians &&
-          *zeniths_deg.rbegin() > kLeastLikelyRadians)
-        add(axis, "", fmt::format("is at most {} degrees; is it in radians?", *zeniths_deg.rbegin()));
+      const std::vector<double>& zeniths_deg = scene_.grid[axis];
+      const double most_deg = zeniths_deg.empty() ? 0.0 : std::ranges::max(zeniths_deg);
+      if (most_deg > kLeastLikelyRadians && most_deg < kLikelyRadians &&
+          std::set<double>(zeniths_deg.begin(), zeniths_deg.end()).size() >= kFewAngles)
+        add(axis, "", fmt::format("is at most {} degrees; is it in radians?", most_deg));
     }
     const double roughest = std::ranges::max(scene_.grid[Axis::kSigma]);
     if (roughest > kSteepSigma)
@@ -225,7 +232,7 @@ class Remarks {
   void add_diffuse() {
     const Surface& surface = scene_.surface;
     const bool has_diffuse = surface.diffuse > 0.0 || surface.diffuse_table;
-    if (!has_diffuse && scene_.document->find("surface.diffuse_polarisation"))
+    if (!has_diffuse && surface.diffuse_polarisation != DiffusePolarisation::kNone)
       add("surface.diffuse_polarisation",
           "has no effect: the surface has no diffuse part; surface.diffuse gives it one");
   }
@@ -244,7 +251,7 @@ class Remarks {
 
  private:
   static constexpr const char* kUnusedAzimuth =
-      "has no effect: slopes are equal along and across; give surface.sigma_cross or surface.wind_model";
+      "has no effect where slopes are equal along and across; give surface.sigma_cross or surface.wind_model";
   static constexpr const char* kThickFilm = "is in micrometres; were nanometres meant?";
 
   bool has_cross_slopes() const {

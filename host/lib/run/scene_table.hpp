@@ -16,8 +16,8 @@ namespace dolp {
 inline constexpr const char* kModelChange = "model_change";           ///< attribute with ModelChange::i
 inline constexpr const char* kModelChangeDolp = "model_change_dolp";  ///< attribute with ModelChange::dolp_points
 
-/// The quantities in the results of a scene. With a plan: only the quantities that the run computes. With entries: also
-/// rho_u if their slopes differ along and across.
+/// The quantities in the results of a scene. With a plan: only the quantities that the run computes. With a list of
+/// entries: also rho_u if they have a sigma_cross.
 Quantities output_quantities(const SceneValues& scene, const EffectPlan* plan = nullptr,
                              const SceneEntries* entries = nullptr);
 

@@ -45,7 +45,7 @@ def camera_stokes(result: xr.Dataset, normals: Any, view: Any, up: Any) -> xr.Da
         theta = np.where(cosine > 0, np.degrees(np.arctan2(np.linalg.norm(s, axis=-1), cosine)), np.nan)
         right = np.cross(up, view)
         right /= np.linalg.norm(right, axis=-1, keepdims=True)
-    if np.isnan(right).all():
+    if not np.linalg.norm(up) > 0 or (view.ndim == 1 and np.isnan(right).any()):
         raise InputError("up: must not be parallel to view, and neither may be 0")
     turn = 2 * np.arctan2((s * np.cross(view, right)).sum(axis=-1), (s * right).sum(axis=-1))
     names = ("stokes_i", "stokes_q", "stokes_u")
@@ -53,9 +53,9 @@ def camera_stokes(result: xr.Dataset, normals: Any, view: Any, up: Any) -> xr.Da
     with np.errstate(invalid="ignore", divide="ignore"):
         polarised = np.hypot(q, u)
         # A normal that points at the camera has no plane of incidence, and so no axes to turn from.
-        turn = np.where((np.linalg.norm(s, axis=-1) < LEAST_SINE) & (polarised > LEAST_DOLP * i), np.nan, turn)
+        turn = np.where((np.linalg.norm(s, axis=-1) < LEAST_SINE) & (polarised > LEAST_DOLP * abs(i)), np.nan, turn)
         q, u = q * np.cos(turn) - u * np.sin(turn), q * np.sin(turn) + u * np.cos(turn)
-        aolp = np.where(polarised > 0, np.degrees(np.arctan2(u, q)) / 2 % 180, np.nan)
+        aolp = np.where(polarised > 0, np.degrees(np.arctan2(u, q)) / 2 % 180 % 180, np.nan)
         dolp = polarised / i
     dims = tuple(f"point_{axis}" for axis in range(len(shape))) if len(shape) > 1 else ("point",) * len(shape)
     units = {name: result[name].attrs.get("units", "") for name in names}

@@ -47,8 +47,7 @@ def columns_of(points: Mapping[str, Array], labels: Mapping[str, list[str]] = {}
             raise InputError(f"points: the coordinates or sizes of DataArrays differ: {error}") from None
         coordinates = {name: coordinate.variable.copy(deep=False)
                        for array in arrays.values() for name, coordinate in array.coords.items()}
-        coordinates |= {array.dims[0]: array.variable for column, array in arrays.items() if array.ndim == 1
-                        and array.dims[0] == COORDINATES.get(column, ("",))[0] and array.dims[0] not in coordinates}
+        own = {column: array.variable for column, array in arrays.items()}
         arrays = dict(zip(arrays, xr.broadcast(*arrays.values())))
         template = next(iter(arrays.values()))
         points = {name: array.values for name, array in arrays.items()}
@@ -61,11 +60,15 @@ def columns_of(points: Mapping[str, Array], labels: Mapping[str, list[str]] = {}
             shapes = ", ".join(f"{name} {values.shape}" for name, values in points.items())
             raise InputError(f"points: shapes do not broadcast: {shapes}") from None
         dims, coordinates = _dimensions(points, shape)
+        own = {}
     for column, values in points.items():
         name, known = COORDINATES.get(column) or (column, KEY_ATTRIBUTES.get(column, {}))
         if name in coordinates:
             coordinates[name].attrs.update(known)
-        elif name in dims:
+        elif name in dims and column in own and own[column].dims in ((), (name,)):
+            coordinates[name] = own[column].set_dims({name: shape[dims.index(name)]}).copy()
+            coordinates[name].attrs.update(known)
+        elif name in dims and own:
             raise InputError(f"points: {column} varies along more dimensions than {name}, which are {', '.join(map(str, dims))}; "
                              f"rename the dimension {name}")
         else:

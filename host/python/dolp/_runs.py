@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from . import _native
-from ._arguments import Array, Path, axis_values, check_names, label_values, device_name, flag, native_path, short, warn, word, word_list
+from ._arguments import Array, Path, axis_values, check_names, label_values, device_name, flag, native_path, short, word, word_list
 from ._datasets import concatenated, dataset_at, table_dataset
 from ._model_warning import warn_of_model
 from ._native import InputError
@@ -118,7 +118,6 @@ def _evaluated(scene: Scene, evaluator: str | None, device: str, keep_all: bool,
     """Computes points for `evaluate` and `lookup`."""
     native, engine = native_scene(scene), native_evaluator(scene, evaluator, device)
     frame, columns = columns_of(points, native.labels(), has_keys=True)
-    _warn_of_radians(columns.get("theta_deg", np.zeros(0)))
     _check_labels(native, columns)
     varied = {key: columns.pop(key) for key in [*columns] if "." in key}
     _check_varied("points", varied, columns)
@@ -130,13 +129,6 @@ def _evaluated(scene: Scene, evaluator: str | None, device: str, keep_all: bool,
         _over_keys(run, native, columns, varied) if varied and 0 not in frame.shape else run(native, columns), frame)
     warn_of_model(scene, results.get("status", 0), results.attrs)
     return results
-
-
-def _warn_of_radians(theta_deg: np.ndarray) -> None:
-    """Warns of zeniths that all lie between 0 and pi / 2. Up to three directions near the normal may be meant."""
-    largest = np.nanmax(theta_deg, initial=0.0)
-    if 0.5 < largest < 1.6 and len(np.unique(theta_deg)) > 3:
-        warn(f"points: theta_deg is at most {largest:.4g} degrees; is it in radians?", _native.InputWarning)
 
 
 def lookup(table: Path | xr.Dataset, *, evaluator: str | None = None, device: str = "",

@@ -422,6 +422,22 @@ std::string measured_csv(const OpticalConstants& index, double step_deg) {
   return csv + "90,1,1\n";
 }
 
+// Light that is all reflected leaves an emission of rounding errors, which the bounds of DOLP must say. The tunnel
+// through an evanescent film absorbs 1e-13 of the light.
+TEST(SmoothEmission, OfRoundingErrors_HasTheStatus) {
+  for (const std::vector<std::string>& own : {
+           std::vector<std::string>{"surface.n=0.5", "surface.k=0", "surface.coating=[{n=1.5,thickness_um=3}]"},
+           {"surface.n=1.5", "surface.k=0.1", "surface.coating=[{n=0.5,thickness_um=40}]"},
+       }) {
+    for (const char* model : {"fresnel", "moments", "direct"}) {
+      std::vector<std::string> overrides = own;
+      overrides.insert(overrides.end(), {std::string("emission.model=") + model, "surface.sigma=0",
+                                         "surface.masking=v-cavity", "grid.theta_deg=60"});
+      EXPECT_NE(result_of(overrides).status & (kToleranceNotMet | kOutsideModelDomain), 0U) << own[0] << " " << model;
+    }
+  }
+}
+
 // At 90 degrees a smooth surface reflects everything, and its emission, which has become 0, keeps the polarisation of
 // its limit.
 TEST(SmoothEmission, AtNinetyDegrees_IsTheLimit) {

@@ -148,6 +148,25 @@ TEST(Derivatives, ByTheWind_FollowFromThoseBySigma) {
 
 // With surroundings as warm as the surface DOLP is 0. There |Q|/I has a kink, which the steps of the differences cross
 // although the kink is up to 1 % of the key away.
+// Entries of a grid have the scene's slopes along and across, unless the grid has axes of them.
+TEST(Derivatives, BySlopesAlongAndAcross_AreDifferences) {
+  constexpr double kStep = 1e-3;
+  const std::vector<std::string> base = {"surface.masking=none", "surface.sigma_cross=0.15",
+                                         "geometry.surface_azimuth_deg=40", "accuracy.tolerance=1e-8"};
+  for (const std::string key : {"surface.sigma_cross", "geometry.surface_azimuth_deg"}) {
+    const SceneValues scene = parse(kScene, base);
+    const std::vector<std::vector<double>> columns = derivatives_with(scene, {key});
+    const double at = find_scene_key(key)->value(scene)->number, step = kStep * at;
+    const std::vector<PointResult> below = results_of(with_settings(scene, {{key, at - step}}));
+    const std::vector<PointResult> above = results_of(with_settings(scene, {{key, at + step}}));
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double expected = (above[i][Quantity::kDolp] - below[i][Quantity::kDolp]) / (2.0 * step);
+      EXPECT_GT(std::abs(expected), 1e-6) << key;
+      EXPECT_NEAR(columns[0][i], expected, 1e-2 * std::abs(expected)) << key;
+    }
+  }
+}
+
 TEST(Derivatives, NearAKinkOfDolp_HaveTheSignOfQ) {
   for (const double surroundings_K : {299.0, 299.9, 299.9999, 300.0001, 300.5}) {
     const SceneValues scene =

@@ -143,7 +143,7 @@ TEST(SceneRemarks, OnPoints_NameTheirColumn) {
            {"surface.coating.1.thickness_um\n500\n",
             "surface.coating.1.thickness_um: is in micrometres; were nanometres meant?"},
            {"surface_azimuth_deg\n30\n",
-            "surface_azimuth_deg: has no effect: slopes are equal along and across; give surface.sigma_cross or "
+            "surface_azimuth_deg: has no effect where slopes are equal along and across; give surface.sigma_cross or "
             "surface.wind_model"},
        }) {
     EXPECT_EQ(remarks_of_points(text), std::vector<std::string>{std::string("p.csv:1: ") + remark});

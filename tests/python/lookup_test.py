@@ -127,6 +127,9 @@ class Axes(PackageCase):
         self.assertEqual(float(dolp.lookup(xr.load_dataset(path), material="quartz", band_um="8-9", theta_deg=40).dolp),
                          float(dolp.lookup(path, material="quartz", band_um="8-9", theta_deg=40).dolp))
         found = dolp.lookup(table, material=["PET", "quartz"], band_um="8-9", temperature_K=310, theta_deg=40)
+        of_all = dolp.lookup(table, material=table.material, band_um="8-9", temperature_K=310, theta_deg=40)
+        np.testing.assert_array_equal(of_all.material, table.material)
+        np.testing.assert_array_equal(of_all.dolp.sel(material=found.material.values), found.dolp)
         self.assertEqual(found.material.values.tolist(), ["PET", "SiO2 amorphous quartz"])
         with self.assertRaisesRegex(dolp.InputError, "material = 'lead': must be one of gold"):
             dolp.lookup(table, material="lead", band_um="8-9", temperature_K=310, theta_deg=40)

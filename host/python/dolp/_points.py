@@ -76,7 +76,8 @@ def columns_of(points: Mapping[str, Array], labels: Mapping[str, list[str]] = {}
             coordinates[name] = xr.Variable(along, np.broadcast_to(values, shape) if along else values, known)
     for column in labels.keys() & points.keys():
         at = coordinates[COORDINATES[column][0]]
-        at.data = np.array(labels[column], object)[at.values.astype(int)]
+        if at.dtype.kind == "f":  # positions; a DataArray with a coordinate of names keeps it
+            at.data = np.array(labels[column], object)[at.values.astype(int)]
     columns = {name: np.broadcast_to(values, shape if values.ndim > 0 else ()).ravel()
                for name, values in points.items()}
     return Frame(shape, dims, coordinates), columns

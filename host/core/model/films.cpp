@@ -135,13 +135,19 @@ class Stack {
   }
 
   FilmAbsorptance absorptance() const {
-    // Each film adds a few roundings of the fields. Their net flux is a difference where light is nearly all reflected.
+    // Each film adds a few roundings of the fields. Where light is nearly all reflected, their net flux is a
+    // difference.
     const double rounding = kFilmRounding * static_cast<double>(1 + waves_.size());
     const BothFields outside = fields();
     FilmAbsorptance absorbed;
     const auto take = [&](const Fields& f) {
-      const double scale = 4.0 * cosine_ / std::norm(cosine_ * f.field + f.flux);
-      absorbed.error = std::max(absorbed.error, rounding * scale * std::sqrt(std::norm(f.field) * std::norm(f.flux)));
+      const Ratio r = ratio(f, cosine_);
+      const double reflected = std::norm(r.top) / std::norm(r.bottom);
+      const bool is_small = reflected < 0.5;
+      const double scale = 4.0 * cosine_ / std::norm(r.bottom);
+      const double error = is_small ? 1.0 : scale * std::sqrt(std::norm(f.field) * std::norm(f.flux));
+      absorbed.error = std::max(absorbed.error, rounding * error);
+      if (is_small) return 1.0 - reflected;
       return std::max(scale * (f.field.real() * f.flux.real() + f.field.imag() * f.flux.imag()), 0.0);
     };
     absorbed.s = take(outside.s);

@@ -53,7 +53,7 @@ class SceneDocument {
 
   std::string name_;
   toml::table root_;
-  std::shared_ptr<const Lines> lines_;  // of the keys in the text; copies of toml++'s nodes know no lines
+  std::shared_ptr<const Lines> lines_;  // lines of the keys in the text; copies of nodes of toml++ have lost them
   std::map<std::string, std::string, std::less<>> origins_;  // key -> origin of the setting that gave it
 };
 

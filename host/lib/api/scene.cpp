@@ -32,8 +32,8 @@ std::optional<KeyValue> find_value(const SceneValues& scene, std::string_view ke
 /// for another response table: then `settings` contain surface_settings().
 void check_has_material(const Scene& scene, const std::string& name, const std::vector<Setting>& settings) {
   if (std::ranges::find(scene.table_attributes(), "c0", &Attribute::name) == scene.table_attributes().end()) return;
-  const auto is_given = [&](const Setting& of_surface) {
-    return std::ranges::find(settings, of_surface.key, &Setting::key) != settings.end();
+  const auto is_given = [&](const Setting& placeholder) {
+    return std::ranges::find(settings, placeholder.key, &Setting::key) != settings.end();
   };
   if (!std::ranges::all_of(surface_settings(), is_given)) {
     throw InputError(fmt::format(

@@ -189,8 +189,8 @@ void compute_derivatives(const SceneValues& scene, const SceneEntries& entries, 
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const double step = at ? steps.step(entries[i]) : 0.0;
     if (!(step > 0.0)) continue;
-    const auto component = [&](double (*of)(const PointResult&)) {
-      return differences({of((*at)[0][i]), of((*at)[1][i]), of((*at)[2][i]), of((*at)[3][i])}, step);
+    const auto component = [&](double (*read)(const PointResult&)) {
+      return differences({read((*at)[0][i]), read((*at)[1][i]), read((*at)[2][i]), read((*at)[3][i])}, step);
     };
     const Differences q = component([](const PointResult& r) { return r[Quantity::kQOverI]; });
     const Differences u = component(u_over_i);

@@ -124,8 +124,8 @@ TEST(SceneRemarks, NameTheLineOfTheKey_AlsoAfterSettings) {
   const SceneValues scene =
       parse_scene(std::string(kMinimal) + "\n[grid]\nsigma = 0.1\ntheta_deg = [3, 1, 2]\n", "s.toml");
   const std::size_t line = 1 + static_cast<std::size_t>(std::ranges::count(scene.text, '\n') - 1);
-  for (const SceneValues& of : {scene, with_settings(scene, {{"title", "b"}})}) {
-    const std::vector<std::string> remarks = remarks_on(of);
+  for (const SceneValues& changed : {scene, with_settings(scene, {{"title", "b"}})}) {
+    const std::vector<std::string> remarks = remarks_on(changed);
     ASSERT_EQ(remarks.size(), 1U);
     EXPECT_TRUE(remarks[0].starts_with(fmt::format("s.toml:{}: grid.theta_deg = [", line))) << remarks[0];
   }

@@ -14,6 +14,7 @@
 #include "run/derivatives.hpp"
 #include "run/table_run.hpp"
 #include "scene/points.hpp"
+#include "scene/scene_keys.hpp"
 #include "table/table_file.hpp"
 
 namespace dolp::derivatives_test {

@@ -179,7 +179,7 @@ Moments mirror_moments(const FacetOptics& optics, double cosine) {
   moments.r_i_error = moments.r_i == 0.0 ? 0.0 : rounding;
   moments.albedo_error = rounding;
   moments.deficit_error = rounding * 0.5 * (absorbed.s + absorbed.p) + cosine * absorbed.error;
-  moments.r_q_error = moments.deficit_error;  // r_q is a difference of absorptances
+  moments.r_q_error = moments.r_i == 0.0 ? 0.0 : moments.deficit_error;  // r_q is a difference of absorptances
   moments.direct_i = moments.deficit;
   moments.direct_q = -moments.r_q;
   moments.direct_i_error = moments.direct_q_error = moments.deficit_error;

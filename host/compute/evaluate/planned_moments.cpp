@@ -38,7 +38,7 @@ class Calls {
       : plan_(plan), evaluator_(evaluator), progress_(progress), work_(work), kernel_moments_(plan.kernel_moments()) {}
 
   PlannedMoments::Step step(const MomentsStep& step) {
-    std::vector<Moments> nodes = step.responses ? combined_nodes(step) : planned(step.nodes());
+    std::vector<Moments> nodes = step.responses ? combined_nodes(step) : evaluated(step.nodes(), step.nodes().size());
     if (!step.shapes) {
       std::vector<std::size_t> first;
       for (const Bundle& bundle : step.request.bundles) first.push_back(bundle.first_entry);
@@ -51,30 +51,25 @@ class Calls {
   }
 
  private:
-  std::vector<Moments> planned(const MomentsRequest& request) {
-    const std::size_t count = request.size();
+  /// `planned`: number of moments by which the request advances the progress.
+  std::vector<Moments> evaluated(const MomentsRequest& request, std::size_t planned) {
     const Progress plan_progress = [&](std::size_t done, std::size_t all) {
-      const std::size_t so_far = done_ + count * done / std::max<std::size_t>(all, 1);
+      const std::size_t so_far = done_ + planned * done / std::max<std::size_t>(all, 1);
       return !progress_ || progress_(plan_.size() * so_far / std::max<std::size_t>(kernel_moments_, 1), plan_.size());
     };
-    std::vector<Moments> moments = evaluated(request, plan_progress);
-    done_ += count;
-    return moments;
-  }
-
-  std::vector<Moments> evaluated(const MomentsRequest& request, const Progress& progress) {
     const EvaluationReport before = evaluator_.report();
     const Clock::time_point start = Clock::now();
-    std::vector<Moments> moments = evaluator_.evaluate(request, progress);
+    std::vector<Moments> moments = evaluator_.evaluate(request, plan_progress);
     work_.transfer_s += transfer_time(before, evaluator_.report(), seconds_since(start));
+    done_ += planned;
     return moments;
   }
 
   std::vector<Moments> combined_nodes(const MomentsStep& step) {
     std::vector<std::vector<Moments>> passes;
-    for (const MomentsRequest& pass : step.responses->passes) passes.push_back(planned(pass));
+    for (const MomentsRequest& pass : step.responses->passes) passes.push_back(evaluated(pass, pass.size()));
     std::vector<Moments> others;
-    if (step.responses->others) others = planned(*step.responses->others);
+    if (const auto& request = step.responses->others) others = evaluated(*request, request->size());
     const Clock::time_point start = Clock::now();
     std::vector<Moments> moments = combined(step.nodes(), *step.responses, passes, others);
     work_.sums_s += seconds_since(start);
@@ -96,7 +91,7 @@ class Calls {
     MomentsRequest selected = request.select_bundles(left);
     selected.basis = nullptr;
     work_.interpolated -= entries;
-    step.moments = evaluated(selected, [&](std::size_t, std::size_t) { return !progress_ || progress_(1, 1); });
+    step.moments = evaluated(selected, 0);
     return step;
   }
 

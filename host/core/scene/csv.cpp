@@ -91,11 +91,12 @@ bool CsvReader::next() {
   const bool is_above_cells = cells_.empty();
   while (read_ < lines_.size()) {
     line_ = trim(lines_[read_++]);
+    if (is_above_cells && line_.empty()) continue;
     if (has_cells(line_)) {
       split_line();
       return true;
     }
-    if (is_above_cells && !line_.empty()) comments_.push_back(line_);
+    if (is_above_cells) comments_.push_back(line_);
   }
   return false;
 }

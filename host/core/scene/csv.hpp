@@ -14,7 +14,7 @@ struct CsvForm {
   /// ' ' means any number of blanks and tabs. nullopt: the line of names decides among semicolon, comma, tab and
   /// blanks.
   std::optional<char> separator = ',';
-  bool has_blank_lines = true;  ///< true: blank lines are skipped; false: a blank line is one empty cell
+  bool has_blank_lines = true;  ///< true: blank lines are skipped; false: below the names they are one empty cell
   std::size_t first_line = 1;
 };
 

@@ -178,45 +178,62 @@ Progress offset_progress(const Progress& progress, std::size_t before, std::size
   return [&progress, before, total](std::size_t done, std::size_t) { return progress(before + done, total); };
 }
 
-EvaluatorResults run_requests(const RunContext& context, const PartRequests& requests, MomentsPlan plan,
-                              const Progress& progress) {
-  const std::size_t moments = requests.moments().size();
-  const std::size_t beams = requests.beams().entries.size();
-  const std::size_t total = moments + beams;
-  if (total == 0) return {};
-  EvaluatorResults evaluated;
-  if (moments > 0) {
-    evaluated.moments =
-        planned_moments(std::move(plan), *context.evaluator, offset_progress(progress, 0, total), context.summary.work);
+/// For each direction of a grid: 1 if its moments are interpolated or sums of responses.
+std::vector<char> interpolated_directions(const RunContext& context, const SceneEntries& grid,
+                                          const PartRequests& requests, const MomentsPlan& plan) {
+  const std::vector<char> saves = plan.saving_bundles();
+  const std::size_t together = grid.entries_per_direction();
+  std::vector<char> directions(grid.size() / together, 0);
+  EntryReader reader(grid);
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    if (!wants_moments(context.scene, reader[i], context.plan)) continue;
+    const std::size_t entry = requests.member_moments(i, reader.on_axes()).first;
+    directions[i / together] = saves[requests.moments().find_bundle(entry)];
+    i += together - 1 - i % together;  // all entries of a direction are in one bundle for each index
   }
-  if (beams == 0) return evaluated;
+  return directions;
+}
+
+std::vector<ScatteringMatrix> evaluated_beams(const RunContext& context, const ScatteringRequest& request,
+                                              const Progress& progress) {
+  if (request.entries.empty()) return {};
   const EvaluationReport before = context.evaluator->report();
   const auto start = std::chrono::steady_clock::now();
-  evaluated.beams = context.evaluator->scatter(requests.beams(), offset_progress(progress, moments, total));
+  std::vector<ScatteringMatrix> beams = context.evaluator->scatter(request, progress);
   context.summary.work.transfer_s += transfer_time(before, context.evaluator->report(), seconds_since(start));
-  return evaluated;
+  return beams;
 }
 
-RunResults selection_results(const RunContext& context, const Selection& selection, const PartRequests& requests,
-                             MomentsPlan plan, const Progress& progress) {
-  const EvaluatorResults evaluated = run_requests(context, requests, std::move(plan), progress);
-  const auto start = std::chrono::steady_clock::now();
-  RunResults results(context.quantities, {}, selection.size());
-  parallel_ranges(results.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
-    MemberResults member_result(context, selection, requests, evaluated);
-    for (std::size_t i = first; i < last; ++i) results.set(i, member_result(i));
-  });
-  context.summary.radiometry_s += seconds_since(start);
-  return results;
-}
+struct LevelResults {
+  RefinementLevel level;
+  RunResults results;
+  std::vector<char> is_interpolated = {};  ///< one flag per direction of a whole part of a grid
+};
 
-RunResults computed_at(const RunContext& context, const Selection& selection, const RefinementLevel& level,
-                       const Progress& progress) {
-  const auto start = std::chrono::steady_clock::now();
+LevelResults computed_at(const RunContext& context, const Selection& selection, const RefinementLevel& level,
+                         const Progress& progress) {
+  auto start = std::chrono::steady_clock::now();
   const PartRequests requests(context.scene, context.spectra.indices, context.plan, selection, level);
   MomentsPlan plan(requests.moments());
   context.summary.response_basis_s += seconds_since(start);
-  return selection_results(context, selection, requests, std::move(plan), progress);
+  LevelResults computed{level, {}};
+  const std::size_t moments = requests.moments().size();
+  const std::size_t total = moments + requests.beams().entries.size();
+  if (moments > 0 && selection.is_whole_grid())
+    computed.is_interpolated = interpolated_directions(context, selection.part, requests, plan);
+  EvaluatorResults evaluated;
+  if (moments > 0)
+    evaluated.moments =
+        planned_moments(std::move(plan), *context.evaluator, offset_progress(progress, 0, total), context.summary.work);
+  evaluated.beams = evaluated_beams(context, requests.beams(), offset_progress(progress, moments, total));
+  start = std::chrono::steady_clock::now();
+  computed.results = RunResults(context.quantities, {}, selection.size());
+  parallel_ranges(selection.size(), kEntriesAtOnce, [&](std::size_t first, std::size_t last) {
+    MemberResults member_result(context, selection, requests, evaluated);
+    for (std::size_t i = first; i < last; ++i) computed.results.set(i, member_result(i));
+  });
+  context.summary.radiometry_s += seconds_since(start);
+  return computed;
 }
 
 bool is_better(const PointResult& a, const PointResult& b) {
@@ -238,7 +255,7 @@ using EntriesByLevel = std::map<RefinementLevel, std::vector<std::size_t>>;
 /// uses responses (integrals that many refractive indices share), the level uses double precision if it may, because
 /// float rounding disturbs responses. The tolerance is then the scene's tolerance divided by a power of 10. So more
 /// directions with different indices get the same level.
-RefinementLevel level_of_direction(RefinementLevel next, const RunContext& context) {
+RefinementLevel level_for_direction(RefinementLevel next, const RunContext& context) {
   next.may_interpolate = true;
   if (!context.basis) return next;
   const Accuracy& accuracy = context.scene.accuracy;
@@ -263,51 +280,23 @@ void queue_refinement(const RunContext& context, const SceneEntries& part, const
   if (last.may_interpolate && missed.size() * kWholeDirectionMissRatio > members.size()) {
     const auto middle = missed.begin() + static_cast<std::ptrdiff_t>(missed.size() / 2);
     std::nth_element(missed.begin(), middle, missed.end());
-    std::vector<std::size_t>& all = by_level[level_of_direction(middle->first, context)];
+    std::vector<std::size_t>& all = by_level[level_for_direction(middle->first, context)];
     all.insert(all.end(), members.begin(), members.end());
   } else {
     for (const auto& [next, member] : missed) by_level[next].push_back(member);
   }
 }
 
-struct FirstResults {
-  RefinementLevel level;
-  RunResults results;
-  std::vector<char> is_interpolated;  ///< one flag per direction of the part
-};
-
-/// For each direction of a grid: 1 if its moments are interpolated or sums of responses.
-std::vector<char> interpolated_directions(const RunContext& context, const SceneEntries& grid,
-                                          const PartRequests& requests, const MomentsPlan& plan) {
-  const std::vector<char> saves = plan.saving_bundles();
-  const std::size_t together = grid.entries_per_direction();
-  std::vector<char> directions(grid.size() / together, 0);
-  EntryReader reader(grid);
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    if (!wants_moments(context.scene, reader[i], context.plan)) continue;
-    const std::size_t entry = requests.member_moments(i, reader.on_axes()).first;
-    directions[i / together] = saves[requests.moments().find_bundle(entry)];
-    i += together - 1 - i % together;  // all entries of a direction are in one bundle for each index
-  }
-  return directions;
-}
-
-FirstResults first_results(const RunContext& context, const SceneEntries& part, const Progress& progress) {
-  FirstResults first;
-  first.level = first_level(context.scene.accuracy, context.evaluator->has_double());
-  if (context.evaluator->computes_each_entry()) first.level.may_interpolate = false;
-  if (first.level.may_interpolate) first.level.basis = context.basis;
-  const auto start = std::chrono::steady_clock::now();
-  const PartRequests requests(context.scene, context.spectra.indices, context.plan, {part}, first.level);
-  MomentsPlan plan(requests.moments());
-  context.summary.response_basis_s += seconds_since(start);
-  if (part.is_grid()) first.is_interpolated = interpolated_directions(context, part, requests, plan);
-  first.results = selection_results(context, {part}, requests, std::move(plan), progress);
-  return first;
+/// The level at which a part is computed first.
+RefinementLevel level_for_parts(const RunContext& context) {
+  RefinementLevel level = first_level(context.scene.accuracy, context.evaluator->has_double());
+  if (context.evaluator->computes_each_entry()) level.may_interpolate = false;
+  if (level.may_interpolate) level.basis = context.basis;
+  return level;
 }
 
 /// Computes again the entries that miss the tolerance. They are counted already, so `progress` can only cancel here.
-void refine(const RunContext& context, const SceneEntries& part, FirstResults& first, const Progress& progress) {
+void refine(const RunContext& context, const SceneEntries& part, LevelResults& first, const Progress& progress) {
   const Progress is_wanted = [&](std::size_t, std::size_t) { return progress(1, 1); };
   const std::size_t entries_per_direction = part.entries_per_direction();
   RunResults& results = first.results;
@@ -332,7 +321,7 @@ void refine(const RunContext& context, const SceneEntries& part, FirstResults& f
     const std::vector<std::size_t> members = std::move(by_level.begin()->second);
     by_level.erase(by_level.begin());
     if (level.may_interpolate) level.basis = context.basis;
-    const RunResults better = computed_at(context, {part, members}, level, is_wanted);
+    const RunResults better = computed_at(context, {part, members}, level, is_wanted).results;
     for (std::size_t j = 0; j < members.size(); ++j) {
       const PointResult result = better.at(j);
       if (is_better(result, results.at(members[j]))) results.set(members[j], result);
@@ -348,7 +337,7 @@ RunResults recompute_for_check(const RunContext& context, const SceneEntries& pa
   const RunSummary before = context.summary;
   const EvaluationReport evaluated_before = context.evaluator->report();
   const auto start = std::chrono::steady_clock::now();
-  RunResults results = computed_at(context, {part, positions}, check_level(first), none);
+  RunResults results = computed_at(context, {part, positions}, check_level(first), none).results;
   // The times of the check become one time, so that they do not count twice.
   const EvaluationReport evaluated = context.evaluator->report();
   RunSummary& summary = context.summary;
@@ -382,11 +371,11 @@ bool wants_evaluator(const SceneValues& scene, const SceneEntries& entries, cons
 RunResults part_results(const RunContext& context, const SceneEntries& part, std::span<const std::size_t> positions,
                         SelfCheck& check, const Progress& progress) {
   if (!wants_evaluator(context.scene, part, context.plan)) {
-    RunResults results = computed_at(context, {part}, {}, progress);
+    RunResults results = computed_at(context, {part}, {}, progress).results;
     if (!progress(1, 1)) throw Cancelled();
     return results;
   }
-  FirstResults first = first_results(context, part, progress);
+  LevelResults first = computed_at(context, {part}, level_for_parts(context), progress);
   RunResults& results = first.results;
   const RunResults again = recompute_for_check(context, part, first.level, positions);
   refine(context, part, first, progress);

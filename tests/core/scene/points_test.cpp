@@ -67,8 +67,8 @@ TEST(Points_Results, AreLeftOut_AndNamed) {
   EXPECT_EQ(*points[Axis::kSigma], std::vector<double>{0.2});
 }
 
-TEST(Points_UpperCase_AndLastRowsWithoutValues, AreTaken) {
-  const Points points = directions("Theta_deg,N\n60,1.5\n,\n , \n\n");
+TEST(Points_UpperCase_AndRowsWithoutValuesAtBothEnds, AreTaken) {
+  const Points points = directions("\n \nTheta_deg,N\n60,1.5\n,\n , \n\n");
   EXPECT_EQ(points.size(), 1U);
   EXPECT_EQ(*points[Axis::kN], std::vector<double>{1.5});
   EXPECT_EQ(points.header, "Theta_deg,N");

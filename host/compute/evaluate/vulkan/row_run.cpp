@@ -46,8 +46,7 @@ class RowRun final : public TiledRun {
     if (table_pipeline.valid()) table_pipeline.get();
   }
 
- protected:
-  std::vector<Moments> compute_tiles(const Progress& progress) override {
+  std::vector<Moments> compute(const Progress& progress) override {
     cost_.curves_s = data_.curves_s;
     std::vector<kernel::MomentsNode> results(rows_.rows.size() * rows_.width);
     column_results_.assign(results.size() * column_sums(data_), 0.0);

@@ -29,8 +29,7 @@ class SlopeRun final : public TiledRun {
     add_results(DOLP_BINDING_AZIMUTHS, result_bytes(slopes), data_, slopes_variant(data_));
   }
 
- protected:
-  std::vector<Moments> compute_tiles(const Progress& progress) override {
+  std::vector<Moments> compute(const Progress& progress) override {
     std::vector<Moments> moments(request_.size());
     const std::size_t bundles = data_.bundles.size();
     cost_.curves_s = data_.curves_s;

@@ -15,17 +15,6 @@ static_assert(real_count<kernel::RuleNode>() % 2 == 0, "std430 would put a gap b
 
 }  // namespace
 
-std::vector<Moments> TiledRun::compute(const Progress& progress) {
-  try {
-    return compute_tiles(progress);
-  } catch (const DeviceTimeout&) {
-    throw;
-  } catch (...) {
-    context_.stream.drain(context_.tile_timeout_s);  // the device still uses the buffers
-    throw;
-  }
-}
-
 InputBuffer& TiledRun::kept_input(std::size_t slot, std::uint32_t binding, std::size_t bytes, VkFormat texels) {
   std::optional<InputBuffer>& kept = context_.buffers.inputs[slot][binding];
   if (!kept || !kept->fits(bytes, texels)) kept.emplace(context_.device, bytes, context_.staged_uploads, texels);

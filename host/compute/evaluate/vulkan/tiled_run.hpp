@@ -45,8 +45,9 @@ class TiledRun {
   virtual ~TiledRun() = default;
   /// Creates the pipelines before the computation, so that the time for them is measured separately.
   virtual void create_pipelines() { context_.kernels.pipeline(variant_); }
-  /// Returns one result per entry of the request. Errors: DeviceError; Cancelled if `progress` returns false.
-  std::vector<Moments> compute(const Progress& progress);
+  /// Returns one result per entry of the request. Errors: DeviceError; Cancelled if `progress` returns false. After an
+  /// error the device may still use the buffers.
+  virtual std::vector<Moments> compute(const Progress& progress) = 0;
   const Work& cost() const { return cost_; }
   std::uint32_t tile_invocations() const { return pace_.invocations(); }
 
@@ -66,8 +67,6 @@ class TiledRun {
       : context_(context),
         packing_(precision == Precision::kDouble),
         pace_(options.tile_s, options.first_tile_invocations, options.max_tile_invocations) {}
-
-  virtual std::vector<Moments> compute_tiles(const Progress& progress) = 0;
 
   /// Adds a buffer for an input that all tiles read, or a buffer per tile in flight.
   void add_shared_input(std::uint32_t binding, std::size_t bytes, VkFormat texels = VK_FORMAT_UNDEFINED);

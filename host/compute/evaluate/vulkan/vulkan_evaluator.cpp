@@ -67,7 +67,15 @@ class VulkanEvaluator::Impl {
     const double pipelines_s = seconds_since(start);
     report.setup_s += pipelines_s;
     report.pipelines_s += pipelines_s;
-    std::vector<Moments> moments = run_->compute(progress);
+    std::vector<Moments> moments;
+    try {
+      moments = run_->compute(progress);
+    } catch (const vulkan::DeviceTimeout&) {
+      throw;
+    } catch (...) {
+      stream_.drain(options_.tile_timeout_s);  // the device still uses the buffers of the run
+      throw;
+    }
     report += run_->cost();
     note_precision(report.precision, request.precision == Precision::kDouble);
     run_.reset();

@@ -41,7 +41,7 @@ inline constexpr unsigned kRootBelow = 2;  ///< the integrand has a square root 
 /// The pieces of the slope axis of one direction; ThetaNode has their ends.
 struct Pieces {
   std::uint32_t count = 0;
-  std::array<std::uint8_t, DOLP_MAX_PIECES + 3> roots{};       ///< bits kRootAbove, kRootBelow of each end
+  std::array<std::uint8_t, DOLP_MAX_PIECES + 3> roots{};  ///< bits kRootAbove, kRootBelow of each end
   /// Largest number of nodes of an arc, per piece. Drivers may stop an invocation after 65,535 iterations of loops,
   /// without an error and with wrong sums. With these numbers, all invocations end earlier.
   std::array<std::uint8_t, DOLP_MAX_PIECES + 1> most_nodes{};

@@ -85,7 +85,7 @@ class Facets {
     if (e <= 0.0) return {};
     const double cos_alpha = 1.0 / std::sqrt(1.0 + point.t * point.t);
     const Vector<double> normal{side * point.t * cos_alpha, 0.0, cos_alpha};
-    const Vector<double> k = scaled(-1.0, toward_view(point, view_));
+    const Vector<double> k = -toward_view(point, view_);
     const Bounce<double> b = bounce(k, normal, {0.0, 1.0, 0.0});
     const FresnelCoefficients r = absorption_(e * cos_alpha);
     UnitLight light = unit_light(point, k);

@@ -71,15 +71,9 @@ Groove<double> make_groove(double t) {
   return {cos_alpha, t * cos_alpha};
 }
 
-double intensity(const Electric& e) { return std::norm(e[0]) + std::norm(e[1]) + std::norm(e[2]); }
-
 // U of reflected light toward the viewer, from the waves that leave when s or p light of amplitude 1 comes from there.
 // The sign changes, because s = k x z of the two directions of propagation points to opposite sides.
-double diagonal_light(const UnitLight& light) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < light.from_s.size(); ++i) sum += (light.from_s[i] * std::conj(light.from_p[i])).real();
-  return -sum;
-}
+double diagonal_light(const UnitLight& light) { return -light.from_p.dot(light.from_s).real(); }
 
 // Adds the fate of the light of `beam`. Returns the number of bounces.
 int follow(GrooveBeam<double> beam, const SlopePoint& point, const FacetOptics& constants, const SkyFunction* sky,
@@ -93,8 +87,8 @@ int follow(GrooveBeam<double> beam, const SlopePoint& point, const FacetOptics& 
     const double absorbed = 0.5 * (reflect(b, r, light.from_s) + reflect(b, r, light.from_p));
     total[kAbsorbed] += beam.flux() * absorbed;
     const double left = beam.reflect(b.k_out);
-    const double s = intensity(light.from_s);
-    const double p = intensity(light.from_p);
+    const double s = light.from_s.squaredNorm();
+    const double p = light.from_p.squaredNorm();
     total[kAlbedo] += left;
     total[kReflected] += left * 0.5 * (s + p);
     total[kPolarised] += left * 0.5 * (s - p);
@@ -125,8 +119,8 @@ std::uint64_t history(const SlopePoint& point, const Vector3& omega, Facet first
   GrooveBeam<double> beam(make_groove(point.t), omega, first);
   for (int count = 0; beam.flux() > 0.0 && count < kMostFollowed; ++count) {
     const Vector3 n = beam.normal();
-    const double cos_beta = -dot(beam.direction(), n);
-    const Vector3 out = sum(beam.direction(), scaled(2.0 * cos_beta, n));
+    const double cos_beta = -beam.direction().dot(n);
+    const Vector3 out = beam.direction() + 2.0 * cos_beta * n;
     const double left = beam.reflect(out);
     if (sky && left > 0.0) {
       const double zenith_deg = std::acos(std::clamp(out[2], 0.0, 1.0)) * 180.0 / pi;

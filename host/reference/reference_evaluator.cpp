@@ -14,7 +14,6 @@
 #include "base/stopwatch.hpp"
 #include "model/angles.hpp"
 #include "model/sky_basis.hpp"
-#include "reference/moments.hpp"
 #include "reference/mueller.hpp"
 
 namespace dolp {
@@ -161,19 +160,14 @@ ScatteringMatrix scattering_matrix(const ScatteringRequest& request, const Scatt
   const BeamAngles& angles = request.angles.at(entry.angles);
   const reference::Slopes slopes(request.distribution, request.shapes.at(entry.shape));
   const FacetOptics& index = request.optics.at(entry.index);
-  const BouncesSum f = request.scattering == Scattering::kMultiple
-                           ? reference_all_bounces(slopes, index, angles)
-                           : BouncesSum{reference_single_bounce(slopes, request.masking, index, angles), 0.0};
+  const reference::BouncesSum f =
+      request.scattering == Scattering::kMultiple
+          ? reference::all_bounces(slopes, index, angles)
+          : reference::BouncesSum{reference::single_bounce(slopes, request.masking, index, angles), 0.0};
   ScatteringMatrix matrix;
-  for (std::size_t i = 0; i < matrix.m.size(); ++i) matrix.m[i] = f.matrix[i / 4][i % 4];
+  std::ranges::copy(f.matrix.reshaped<Eigen::RowMajor>(), matrix.m.begin());
   matrix.error = f.error + kScatteringError * std::abs(matrix.m[0]);
   return matrix;
-}
-
-// Tolerance of the integrals: a hundredth of `requested`, within limits. If `requested` is 0, the one of `options`.
-double relative_tolerance(const ReferenceOptions& options, double requested) {
-  if (requested <= 0.0) return options.relative_tolerance;
-  return std::min(0.5 * requested, std::max(options.relative_tolerance, 0.01 * requested));
 }
 
 }  // namespace
@@ -190,7 +184,11 @@ TransmissionIntegral ReferenceEvaluator::transmission() const { return reference
 std::vector<Moments> ReferenceEvaluator::evaluate(const MomentsRequest& request, const Progress& progress) {
   check(request);
   const auto start = std::chrono::steady_clock::now();
-  const reference::Refinement refinement{relative_tolerance(options_, request.tolerance), options_.subdivisions};
+  reference::Refinement refinement = refinement_;
+  if (request.tolerance > 0.0) {
+    const double wanted = std::max(refinement_.relative_tolerance, 0.01 * request.tolerance);
+    refinement.relative_tolerance = std::min(0.5 * request.tolerance, wanted);
+  }
   std::vector<Moments> results(request.size());
   const auto compute = [&](std::size_t i) { results[i] = point_moments(request, request[i], refinement); };
   parallel_for(results.size(), kEntriesAtOnce, compute, progress);

@@ -65,7 +65,7 @@ std::vector<Case> hard_cases(Distribution distribution) {
 
 std::vector<Case> all_cases(Distribution distribution) {
   std::vector<Case> cases = hard_cases(distribution);
-  Draw draw(kSeed);
+  Draws draw(kSeed);
   for (int i = 0; i < kOrdinary + kCorners; ++i) {
     const bool is_ordinary = i < kOrdinary;
     const Domain domain = is_ordinary ? Domain::kOrdinary : Domain::kCorners;

@@ -25,15 +25,9 @@ constexpr double kTheta_deg = 40.0;
 constexpr OpticalConstants kPaint{1.5, 0.0};
 constexpr OpticalConstants kMetal{10.0, 60.0};
 
-Surface grooves(Distribution distribution, double sigma, double q) {
-  Surface surface;
-  surface.distribution = distribution;
-  surface.masking = Masking::kVCavity;
-  surface.scattering = Scattering::kMultiple;
-  surface.sigma = sigma;
-  surface.q = q;
-  return surface;
-}
+using reference::Mueller;
+
+const reference::Slopes kSlopes(Distribution::kCauchy, {0.4, 2.0});
 
 constexpr std::array<BeamAngles, 7> kPairs{{{0.0, 40.0, 20.0},
                                             {10.0, 62.0, 100.0},
@@ -45,36 +39,26 @@ constexpr std::array<BeamAngles, 7> kPairs{{{0.0, 40.0, 20.0},
 
 TEST(ReferenceBounces, FirstBounce_IsSingleScattering) {
   constexpr double kTolerance = 1e-12;
-  Surface surface = grooves(Distribution::kCauchy, 0.4, 2.0);
   for (const BeamAngles& a : kPairs) {
-    const ReferenceMueller once = reference_bounces(surface, kMetal, a.theta_i_deg, a.theta_r_deg, a.delta_phi_deg, 1);
-    surface.scattering = Scattering::kSingle;
-    const ReferenceMueller single =
-        reference_scattering(surface, kMetal, a.theta_i_deg, a.theta_r_deg, a.delta_phi_deg);
-    ASSERT_GT(single[0][0], 0.0);
-    for (std::size_t e = 0; e < 16; ++e) {
-      EXPECT_NEAR(once[e / 4][e % 4], single[e / 4][e % 4], kTolerance * single[0][0]) << a.theta_i_deg << " " << e;
-    }
+    const Mueller once = reference::light_of_bounces(kSlopes, kMetal, a, 1);
+    const Mueller single = reference::single_bounce(kSlopes, Masking::kVCavity, kMetal, a);
+    ASSERT_GT(single(0, 0), 0.0);
+    EXPECT_LE((once - single).cwiseAbs().maxCoeff(), kTolerance * single(0, 0)) << a.theta_i_deg;
   }
 }
 
 TEST(ReferenceBounces, EachNumber_IsReciprocal) {
   constexpr double kTolerance = 1e-12;
-  constexpr std::array<double, 4> kSign{1.0, 1.0, -1.0, 1.0};
-  const Surface surface = grooves(Distribution::kCauchy, 0.4, 2.0);
+  const Mueller signs = Eigen::Vector4d(1.0, 1.0, -1.0, 1.0).asDiagonal();
   std::array<double, 6> largest{};
   for (const BeamAngles& a : kPairs) {
     for (const int bounces : {1, 2, 3, 4, 5}) {
-      const ReferenceMueller f =
-          reference_bounces(surface, kMetal, a.theta_i_deg, a.theta_r_deg, a.delta_phi_deg, bounces);
-      const ReferenceMueller back =
-          reference_bounces(surface, kMetal, a.theta_r_deg, a.theta_i_deg, -a.delta_phi_deg, bounces);
-      for (std::size_t e = 0; e < 16; ++e) {
-        const std::size_t row = e / 4, column = e % 4;
-        EXPECT_NEAR(f[row][column], kSign[row] * back[column][row] * kSign[column], kTolerance * f[0][0] + 1e-30);
-      }
+      const BeamAngles opposite{a.theta_r_deg, a.theta_i_deg, -a.delta_phi_deg};
+      const Mueller f = reference::light_of_bounces(kSlopes, kMetal, a, bounces);
+      const Mueller back = reference::light_of_bounces(kSlopes, kMetal, opposite, bounces);
+      EXPECT_LE((f - signs * back.transpose() * signs).cwiseAbs().maxCoeff(), kTolerance * f(0, 0) + 1e-30);
       double& most = largest.at(static_cast<std::size_t>(bounces));
-      most = std::max(most, f[0][0]);
+      most = std::max(most, f(0, 0));
     }
   }
   for (const int bounces : {1, 2, 3, 4, 5}) EXPECT_GT(largest.at(static_cast<std::size_t>(bounces)), 0.0) << bounces;
@@ -82,7 +66,7 @@ TEST(ReferenceBounces, EachNumber_IsReciprocal) {
 
 // Smallest over largest eigenvalue of Cloude's coherency matrix. A realisable Mueller matrix has no negative
 // eigenvalue.
-double smallest_eigenvalue(const ReferenceMueller& m) {
+double smallest_eigenvalue(const Mueller& m) {
   using Complex = std::complex<double>;
   const Complex i(0.0, 1.0);
   std::array<Eigen::Matrix2cd, 4> pauli;
@@ -94,7 +78,8 @@ double smallest_eigenvalue(const ReferenceMueller& m) {
   for (std::size_t a = 0; a < 4; ++a) {
     for (std::size_t b = 0; b < 4; ++b) {
       for (int e = 0; e < 16; ++e) {
-        coherency(e / 4, e % 4) += m[a][b] * pauli[a](e / 8, e / 2 % 2) * std::conj(pauli[b](e / 4 % 2, e % 2));
+        coherency(e / 4, e % 4) +=
+            m.data()[4 * a + b] * pauli[a](e / 8, e / 2 % 2) * std::conj(pauli[b](e / 4 % 2, e % 2));
       }
     }
   }
@@ -104,12 +89,12 @@ double smallest_eigenvalue(const ReferenceMueller& m) {
 
 TEST(ReferenceBounces, Sum_IsPhysical) {
   constexpr double kRounding = 1e-13;
-  const Surface surface = grooves(Distribution::kCauchy, 0.9, 1.7);
+  const reference::Slopes slopes(Distribution::kCauchy, {0.9, 1.7});
   for (const OpticalConstants index : {kPaint, kMetal}) {
     for (const BeamAngles& a : kPairs) {
-      const BouncesSum sum = reference_all_bounces(surface, index, a.theta_i_deg, a.theta_r_deg, a.delta_phi_deg);
+      const reference::BouncesSum sum = reference::all_bounces(slopes, index, a);
       EXPECT_GE(smallest_eigenvalue(sum.matrix), -kRounding) << a.theta_i_deg << " " << a.theta_r_deg;
-      EXPECT_LE(sum.error, 1e-6 * sum.matrix[0][0]);
+      EXPECT_LE(sum.error, 1e-6 * sum.matrix(0, 0));
     }
   }
 }
@@ -117,13 +102,12 @@ TEST(ReferenceBounces, Sum_IsPhysical) {
 // The pBRDF diverges in the mirror direction: at every azimuth of grooves there is a slope that sends light into this
 // direction after two bounces. For light at zenith 0 this slope is 45 degrees, and the pBRDF diverges as well.
 TEST(ReferenceBounces, MirrorDirection_IsWhereTwoBouncesDiverge) {
-  const Surface surface = grooves(Distribution::kCauchy, 0.4, 2.0);
-  const auto twice = [&](double theta_r_deg, double delta_phi_deg) {
-    return reference_bounces(surface, kPaint, kTheta_deg, theta_r_deg, delta_phi_deg, 2)[0][0];
+  const auto twice = [](double theta_r_deg, double delta_phi_deg) {
+    return reference::light_of_bounces(kSlopes, kPaint, {kTheta_deg, theta_r_deg, delta_phi_deg}, 2)(0, 0);
   };
   EXPECT_TRUE(std::isnan(twice(kTheta_deg, 180.0)));
-  EXPECT_TRUE(std::isnan(reference_scattering(surface, kPaint, kTheta_deg, kTheta_deg, 180.0)[0][0]));
-  EXPECT_TRUE(std::isnan(reference_scattering(surface, kPaint, 0.0, 0.0, 90.0)[0][0]));
+  EXPECT_TRUE(std::isnan(reference::all_bounces(kSlopes, kPaint, {kTheta_deg, kTheta_deg, 180.0}).matrix(0, 0)));
+  EXPECT_TRUE(std::isnan(reference::all_bounces(kSlopes, kPaint, {0.0, 0.0, 90.0}).matrix(0, 0)));
   EXPECT_NEAR(twice(kTheta_deg + 1e-4, 180.0) / twice(kTheta_deg + 1e-3, 180.0), 10.0, 1e-2);
   EXPECT_NEAR(twice(kTheta_deg + 1e-3, 0.0) / twice(kTheta_deg, 0.0), 1.0, 1e-3);
   EXPECT_GT(twice(kTheta_deg, 0.0), 0.0);
@@ -138,14 +122,13 @@ TEST(ReferenceBounces, ScatterOfTheEvaluator_IsTheSum) {
   request.optics = {kMetal};
   request.entries = {{}};
   const ScatteringMatrix matrix = ReferenceEvaluator().scatter(request, {}).at(0);
-  const ReferenceMueller f = reference_scattering(grooves(Distribution::kCauchy, 0.4, 2.0), kMetal, 60.0, 60.0, 0.0);
-  for (std::size_t e = 0; e < 16; ++e) EXPECT_EQ(matrix.m[e], f[e / 4][e % 4]);
+  EXPECT_EQ(Mueller(matrix.m.data()), reference::all_bounces(kSlopes, kMetal, {60.0, 60.0, 0.0}).matrix);
 }
 
-// Integrates the elements 00 and 01 of reference_scattering(), which is the pBRDF times both cosines, over the
+// Integrates the elements 00 and 01 of all_bounces(), which is the pBRDF times both cosines, over the
 // horizontal components x and y of the direction of reflection. The solid angle is dx dy / cos(theta_r). The polar
 // coordinates in the plane of x and y have their centre at the mirror direction, where the pBRDF diverges.
-std::complex<double> hemispherical(const Surface& surface, const OpticalConstants& index, double theta_deg) {
+std::complex<double> hemispherical(const reference::Slopes& slopes, const OpticalConstants& index, double theta_deg) {
   constexpr int kSectors = 12, kRings = 3;
   const double centre = -std::sin(theta_deg * kRadPerDeg);
   std::complex<double> total;
@@ -159,9 +142,9 @@ std::complex<double> hemispherical(const Surface& surface, const OpticalConstant
           const double x = centre + distance * std::cos(chi), across = distance * std::sin(chi);
           const double sine = std::hypot(x, across);
           const double cosine = std::sqrt((1.0 - sine) * (1.0 + sine));
-          const ReferenceMueller f = reference_scattering(
-              surface, index, theta_deg, std::atan2(sine, cosine) / kRadPerDeg, std::atan2(across, x) / kRadPerDeg);
-          return std::complex(f[0][0], f[0][1]) / cosine * distance * reach * 2.0 * (1.0 - y);
+          const BeamAngles angles{theta_deg, std::atan2(sine, cosine) / kRadPerDeg, std::atan2(across, x) / kRadPerDeg};
+          const Mueller f = reference::all_bounces(slopes, index, angles).matrix;
+          return std::complex(f(0, 0), f(0, 1)) / cosine * distance * reach * 2.0 * (1.0 - y);
         };
         return gauss<double, 7>::integrate(at, static_cast<double>(ring) / kRings, (ring + 1.0) / kRings);
       };
@@ -174,15 +157,14 @@ std::complex<double> hemispherical(const Surface& surface, const OpticalConstant
 TEST(ReferenceBounces, HemisphericalIntegral_IsTheMoments) {
   constexpr double kPlainTolerance = 1e-4;
   struct Row {
-    Surface surface;
+    reference::Slopes slopes;
     double theta_deg;
     OpticalConstants index;
   };
-  for (const Row& row : {Row{grooves(Distribution::kCauchy, 0.3, 2.0), 60.0, kPaint},
-                         Row{grooves(Distribution::kGaussian, 0.5, 2.0), 30.0, kMetal}}) {
-    const reference::Slopes slopes(row.surface.distribution, row.surface.sigma, row.surface.q);
-    const Moments m = reference::groove_moments(slopes, row.theta_deg, row.index, {.relative_tolerance = 1e-7});
-    const std::complex<double> plain = hemispherical(row.surface, row.index, row.theta_deg);
+  for (const Row& row : {Row{{Distribution::kCauchy, {0.3, 2.0}}, 60.0, kPaint},
+                         Row{{Distribution::kGaussian, {0.5, 2.0}}, 30.0, kMetal}}) {
+    const Moments m = reference::groove_moments(row.slopes, row.theta_deg, row.index, {.relative_tolerance = 1e-7});
+    const std::complex<double> plain = hemispherical(row.slopes, row.index, row.theta_deg);
     EXPECT_NEAR(plain.real(), m.r_i, kPlainTolerance * m.r_i);
     EXPECT_NEAR(plain.imag(), m.r_q, kPlainTolerance * m.r_i);
   }

@@ -16,8 +16,6 @@
 namespace dolp::elliptic_slopes_test {
 namespace {
 
-using reference::cross;
-using reference::dot;
 using std::numbers::pi;
 
 constexpr double kDegree = pi / 180.0;
@@ -36,13 +34,13 @@ Moments reference_moments(Masking masking, double theta_deg, const SlopeShape& s
 /// Adds the light of one facet. `weight`: projected area of the facets toward the viewer, per horizontal area.
 void add_facet(Moments& sum, Masking masking, double theta, const reference::Vector<double>& normal, double weight) {
   const reference::Vector<double> view{std::sin(theta), 0.0, std::cos(theta)};
-  const reference::Vector<double> s{0.0, -1.0, 0.0}, p = cross(view, s);
-  const double cos_beta = dot(view, normal);
+  const reference::Vector<double> s{0.0, -1.0, 0.0}, p = view.cross(s);
+  const double cos_beta = view.dot(normal);
   if (cos_beta <= 0.0) return;
-  const reference::Vector<double> facet_s = reference::unit(cross(view, normal));
+  const reference::Vector<double> facet_s = view.cross(normal).normalized();
   const auto r = reference::fresnel(kOptics, cos_beta);
   const double half = 0.5 * (std::norm(r.r_s) - std::norm(r.r_p)), mean = 0.5 * (std::norm(r.r_s) + std::norm(r.r_p));
-  const double chi = std::atan2(dot(facet_s, p), dot(facet_s, s));
+  const double chi = std::atan2(facet_s.dot(p), facet_s.dot(s));
   const double seen = weight * std::min(1.0, 2.0 * normal[2] * view[2] / cos_beta);
   sum.direct_i += seen * (1.0 - mean);
   sum.direct_q -= seen * half * std::cos(2.0 * chi);

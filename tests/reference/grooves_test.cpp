@@ -41,7 +41,7 @@ struct Point {
 };
 
 Moments moments(const Point& point, Scattering scattering, Masking masking = Masking::kVCavity,
-                ReferenceOptions options = {}) {
+                reference::Refinement options = {}) {
   MomentsRequest request;
   request.distribution = point.distribution;
   request.masking = masking;
@@ -52,7 +52,7 @@ Moments moments(const Point& point, Scattering scattering, Masking masking = Mas
   return ReferenceEvaluator(options).evaluate(request, {}).at(0);
 }
 
-Moments all_bounces(const Point& point, ReferenceOptions options = {}) {
+Moments all_bounces(const Point& point, reference::Refinement options = {}) {
   return moments(point, Scattering::kMultiple, Masking::kVCavity, options);
 }
 
@@ -216,7 +216,7 @@ TEST(ReferenceDirect, PlainQuadratureAroundTheView_Agrees) {
   constexpr unsigned kDepth = 9;
   constexpr double kTheta = 65.0 * kRadPerDeg;
   const OpticalConstants index{1.6, 0.4};
-  const reference::Slopes slopes(kCauchy, 0.5, 2.5);
+  const reference::Slopes slopes(kCauchy, {0.5, 2.5});
   for (const Masking masking : {Masking::kSmith, Masking::kVCavity}) {
     const double smith = 1.0 / (1.0 + reference::smith_lambda(slopes, zenith_from_deg(65.0)));
     const auto over_beta = [&](double beta, bool is_q) {

@@ -29,7 +29,7 @@ constexpr OpticalConstants kSteel{1.508, 0.0};
 constexpr std::array kMaskings{Masking::kNone, Masking::kVCavity, Masking::kIntegral, Masking::kSmith};
 
 Moments moments(Distribution distribution, Masking masking, double theta_deg, SlopeShape shape, OpticalConstants index,
-                ReferenceOptions options = {}) {
+                reference::Refinement options = {}) {
   MomentsRequest request;
   request.distribution = distribution;
   request.masking = masking;
@@ -99,15 +99,6 @@ TEST(ReferenceMoments, GrazingWithHeavyTails_DivergesBelowThreeHalves) {
   EXPECT_EQ(moments(Distribution::kCauchy, Masking::kVCavity, 90.0, {0.3, 1.2}, kSteel).r_i, 0.0);
 }
 
-Surface surface_of(Distribution distribution, Masking masking, double sigma, double q) {
-  Surface surface;
-  surface.distribution = distribution;
-  surface.masking = masking;
-  surface.sigma = sigma;
-  surface.q = q;
-  return surface;
-}
-
 // The azimuth Delta_phi at which v-cavity masking has a kink. There, with the angle of incidence beta on the facet,
 // cos^2(beta) = (cos(theta_i) + cos(theta_r)) min(cos(theta_i), cos(theta_r)). If theta_r is 3 theta_i - 180 degrees or
 // 60 + theta_i / 3 degrees, Delta_phi is 180 degrees. The test splits the integral over theta_r at these two zeniths.
@@ -125,26 +116,26 @@ TEST(ReferenceMoments, PlainQuadratureOfTheMuellerMatrix_Agrees) {
   constexpr unsigned kDepth = 8;
   constexpr double kTheta_deg = 65.0;
   const OpticalConstants index{1.6, 0.4};
+  const reference::Slopes slopes(Distribution::kCauchy, {0.5, 1.8});
   for (const Masking masking : kMaskings) {
-    const Surface surface = surface_of(Distribution::kCauchy, masking, 0.5, 1.8);
     const auto over_azimuth = [&](double theta_r_deg) {
       const auto elements = [&](double delta_phi_deg) {
-        const auto f = reference_pbrdf(surface, index, kTheta_deg, theta_r_deg, delta_phi_deg);
-        return std::complex(f[0][0], f[0][1]);
+        const auto f = reference::single_bounce(slopes, masking, index, {kTheta_deg, theta_r_deg, delta_phi_deg});
+        return std::complex(f(0, 0), f(0, 1));
       };
       const double bend = bend_deg(kTheta_deg, theta_r_deg);
       std::complex<double> sum;
       for (const auto& [from, to] : {std::pair(0.0, bend), std::pair(bend, 180.0)}) {
         if (from < to) sum += gauss_kronrod<double, 21>::integrate(elements, from, to, kDepth, kInner);
       }
-      return std::sin(2.0 * theta_r_deg * kRadPerDeg) * sum;
+      return 2.0 * std::sin(theta_r_deg * kRadPerDeg) * sum;
     };
     constexpr std::array kEnds{0.0, 3.0 * kTheta_deg - 180.0, kTheta_deg, 60.0 + kTheta_deg / 3.0, 90.0};
     std::complex<double> sum;
     for (std::size_t i = 0; i + 1 < kEnds.size(); ++i) {
       sum += gauss_kronrod<double, 21>::integrate(over_azimuth, kEnds[i], kEnds[i + 1], kDepth, kOuter);
     }
-    const std::complex<double> mean = sum * kRadPerDeg * kRadPerDeg * std::cos(kTheta_deg * kRadPerDeg);
+    const std::complex<double> mean = sum * kRadPerDeg * kRadPerDeg;
     const Moments m = moments(Distribution::kCauchy, masking, kTheta_deg, {0.5, 1.8}, index);
     EXPECT_NEAR(m.r_i, mean.real(), (kInner + kOuter) * m.r_i) << to_name(masking);
     EXPECT_NEAR(m.r_q, mean.imag(), (kInner + kOuter) * m.r_i) << to_name(masking);
@@ -156,7 +147,7 @@ TEST(ReferenceMoments, PlainQuadratureOfTheMuellerMatrix_Agrees) {
 // the values would scatter.
 TEST(ReferenceMoments, NextToGrazing_KeepTheirDigits) {
   constexpr double kTolerance = 1e-13;
-  const ReferenceOptions options{.relative_tolerance = kTolerance, .subdivisions = 2};
+  const reference::Refinement options{.relative_tolerance = kTolerance, .subdivisions = 2};
   for (const Masking masking : {Masking::kVCavity, Masking::kSmith}) {
     for (const SlopeShape shape : {SlopeShape{0.3, 2.0}, SlopeShape{0.01, 3.0}}) {
       for (const double gap_deg : {1e-11, 1e-12}) {

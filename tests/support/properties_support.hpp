@@ -51,15 +51,6 @@ inline std::string text_of(const Point& p) {
                      p.index.n, p.index.k);
 }
 
-struct Beams {
-  double theta_i_deg, theta_r_deg, delta_phi_deg;
-};
-
-inline std::string text_of(const Beams& beams) {
-  return fmt::format("theta_i {:.17g} theta_r {:.17g} delta_phi {:.17g}", beams.theta_i_deg, beams.theta_r_deg,
-                     beams.delta_phi_deg);
-}
-
 class Random : public Draws {
  public:
   using Draws::Draws;
@@ -93,8 +84,6 @@ class Random : public Draws {
     p.index = index();
     return p;
   }
-
-  Beams beams() { return {uniform(0.5, 89.5), uniform(0.5, 89.5), uniform(-180.0, 180.0)}; }
 
   std::vector<Point> points(const Model& model, std::size_t count) {
     std::vector<Point> drawn;

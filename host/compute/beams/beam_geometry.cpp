@@ -42,11 +42,7 @@ BeamGeometry beam_geometry(const BeamZeniths& zeniths, double delta_phi_deg) {
   const double flat_difference = sin_difference * sin_difference + product * half.sin * half.sin;
   const double height_sum = i.cos + r.cos;
 
-  BeamGeometry geometry;
-  geometry.cos_i = i.cos;
-  geometry.sin_i = i.sin;
-  geometry.cos_r = r.cos;
-  geometry.sin_r = r.sin;
+  BeamGeometry geometry{.i = i, .r = r};
   geometry.slope = std::sqrt(flat_sum) / height_sum;
   geometry.cos_beta = 0.5 * std::sqrt(height_sum * height_sum + flat_sum);
   geometry.sin2_beta = 0.25 * (cos_difference * cos_difference + flat_difference);
@@ -63,13 +59,9 @@ BeamGeometry beam_geometry(const BeamZeniths& zeniths, double delta_phi_deg) {
   const bool along_normal = i.sin == 0.0 && r.sin == 0.0;
   const double cos_azimuth = (half.cos - half.sin) * (half.cos + half.sin);
   // For beams along the normal, eta_r is 0, and eta_i is the angle between the planes of azimuth 0 and delta_phi.
-  const CosSin eta_i =
+  geometry.twice_eta_i =
       along_normal ? double_angle(-cos_azimuth, sin_azimuth) : double_angle(toward_i, r.sin * sin_azimuth);
-  const CosSin eta_r = double_angle(toward_r, i.sin * sin_azimuth);
-  geometry.cos_2eta_i = eta_i.cos;
-  geometry.sin_2eta_i = eta_i.sin;
-  geometry.cos_2eta_r = eta_r.cos;
-  geometry.sin_2eta_r = eta_r.sin;
+  geometry.twice_eta_r = double_angle(toward_r, i.sin * sin_azimuth);
   return geometry;
 }
 
@@ -82,8 +74,12 @@ double facet_azimuth(const BeamAngles& angles) {
 
 CosSin lower_direction(const BeamGeometry& beam) {
   // Compares tangents, because a cosine near 1 loses digits.
-  const bool is_incident = beam.cos_i * beam.sin_r < beam.cos_r * beam.sin_i;
-  return is_incident ? CosSin{beam.cos_i, beam.sin_i} : CosSin{beam.cos_r, beam.sin_r};
+  return beam.i.cos * beam.r.sin < beam.r.cos * beam.i.sin ? beam.i : beam.r;
+}
+
+double v_cavity_attenuation(const BeamGeometry& beam) {
+  const double sec = std::sqrt(1.0 + beam.slope * beam.slope);
+  return std::min(1.0, 2.0 * lower_direction(beam).cos / (sec * beam.cos_beta));
 }
 
 }  // namespace dolp

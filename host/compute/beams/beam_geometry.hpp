@@ -7,19 +7,13 @@ namespace dolp {
 
 /// The facet that reflects one beam into the other, and the frames of the beams.
 struct BeamGeometry {
-  double cos_i = 1.0;
-  double sin_i = 0.0;
-  double cos_r = 1.0;
-  double sin_r = 0.0;
+  CosSin i, r;            ///< zeniths of the incident and the reflected beam
   double slope = 0.0;     ///< tan(alpha) of the facet
   double cos_beta = 1.0;  ///< angle of incidence on the facet
   double sin2_beta = 0.0;
   // eta_i and eta_r are the angles from the s vector of each beam to the s vector of the facet. A positive angle turns
   // s toward p. The angles have the sign of sin(delta_phi), and are 0 in the retro direction.
-  double cos_2eta_i = 1.0;
-  double sin_2eta_i = 0.0;
-  double cos_2eta_r = 1.0;
-  double sin_2eta_r = 0.0;
+  CosSin twice_eta_i, twice_eta_r;
 };
 
 /// The part of a BeamGeometry that beams with equal zeniths share.
@@ -38,5 +32,8 @@ double facet_azimuth(const BeamAngles& angles);
 
 /// Cosine and sine of the zenith of the direction nearer to the horizon.
 CosSin lower_direction(const BeamGeometry& beam);
+
+/// G of the masking v-cavity.
+double v_cavity_attenuation(const BeamGeometry& beam);
 
 }  // namespace dolp

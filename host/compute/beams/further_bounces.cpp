@@ -1,5 +1,3 @@
-#include "beams/further_bounces.hpp"
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -9,6 +7,7 @@
 #include <numbers>
 
 #include "beams/beam_geometry.hpp"
+#include "beams/scattering.hpp"
 #include "model/angles.hpp"
 #include "model/slopes.hpp"
 

@@ -42,12 +42,10 @@ InPlaneMasking::InPlaneMasking(Distribution distribution, Masking masking, const
 
 double InPlaneMasking::attenuation(const BeamGeometry& beam) {
   if (masking_ == Masking::kIntegral) return 1.0 - shadowed(beam);
-  return 1.0 / (1.0 + lambda(beam.cos_i, beam.sin_i, lambda_i_) + lambda(beam.cos_r, beam.sin_r, lambda_r_));
+  return 1.0 / (1.0 + lambda(beam.i, lambda_i_) + lambda(beam.r, lambda_r_));
 }
 
-double InPlaneMasking::smith_toward(double cosine, double sine) {
-  return 1.0 / (1.0 + lambda(cosine, sine, lambda_i_));
-}
+double InPlaneMasking::smith_toward(const CosSin& zenith) { return 1.0 / (1.0 + lambda(zenith, lambda_i_)); }
 
 double InPlaneMasking::density(double slope) const {
   const double u = slope / m_;
@@ -123,8 +121,8 @@ InPlaneMasking::Integrals InPlaneMasking::between(double from, double to) const 
 }
 
 /// At 90 degrees Lambda is so large that G is 0.
-double InPlaneMasking::lambda(double cosine, double sine, Lambda& last) const {
-  const double cotangent = std::max(cosine / std::max(sine, kSmallestSine), kSmallestCotangent);
+double InPlaneMasking::lambda(const CosSin& zenith, Lambda& last) const {
+  const double cotangent = std::max(zenith.cos / std::max(zenith.sin, kSmallestSine), kSmallestCotangent);
   if (cotangent != last.cotangent) last = {cotangent, between(cotangent, kInfinity).height / cotangent};
   return last.value;
 }

@@ -17,7 +17,7 @@ class InPlaneMasking {
 
   double attenuation(const BeamGeometry& beam);
   /// G1 of smith: the share of each facet that one direction sees.
-  double smith_toward(double cosine, double sine);
+  double smith_toward(const CosSin& zenith);
 
  private:
   /// Integrals over slopes tau. p: density of the slopes in the plane of incidence; g: 1 for smith, 1 / sqrt(1 + tau^2)
@@ -39,7 +39,7 @@ class InPlaneMasking {
     double cotangent = 0.0;
     double value = 0.0;
   };
-  double lambda(double cosine, double sine, Lambda& last) const;
+  double lambda(const CosSin& zenith, Lambda& last) const;
   double shadowed(const BeamGeometry& beam) const;
 
   Distribution distribution_;

@@ -14,7 +14,6 @@
 
 #include "base/parallel_ranges.hpp"
 #include "beams/beam_geometry.hpp"
-#include "beams/further_bounces.hpp"
 #include "beams/in_plane_masking.hpp"
 #include "model/films.hpp"
 #include "model/slopes.hpp"
@@ -45,26 +44,24 @@ double exact_w_squared(const BeamAngles& angles, const OpticalConstants& index) 
   return static_cast<double>((n - k) * (n + k) - (1 - cos_2beta) / 2);
 }
 
-// Mueller matrix of a facet in its own frame: m00 = (R_s + R_p) / 2, m01 = (R_s - R_p) / 2, cross = conj(r_s) r_p.
-struct FacetReflection {
-  double m00 = 0.0;
-  double m01 = 0.0;
-  std::complex<double> cross;
-};
+double re_n_squared(const OpticalConstants& index) { return (index.n - index.k) * (index.n + index.k); }
 
-// Computes R_s and R_p as shaders/physics/fresnel.glsl does. With c = cos(beta), the complex index N,
+Complex n_squared_minus_1(const OpticalConstants& index) {
+  return {(index.n - 1.0) * (index.n + 1.0) - index.k * index.k, 2.0 * index.n * index.k};
+}
+
+// Re(N^2 - sin^2(beta)) can be computed in two forms. The form with the smaller terms loses fewer digits.
+double w_squared(const OpticalConstants& index, double c, double sin2) {
+  return sin2 < 0.5 ? re_n_squared(index) - sin2 : n_squared_minus_1(index).real() + c * c;
+}
+
+// Computes R_s and R_p as shaders/physics/fresnel.glsl does. `w2` is Re(w^2). With c = cos(beta), the complex index N,
 // w^2 = N^2 - sin^2(beta) and a of the code, conj(r_s) r_p = a (sin^2(beta) - c w) / (conj(c + w) (N^2 c + w)).
-FacetReflection bare_reflection(const BeamAngles& angles, const BeamGeometry& geometry, const OpticalConstants& index) {
-  const double n2_re = (index.n - index.k) * (index.n + index.k);
-  const Complex n2m1((index.n - 1.0) * (index.n + 1.0) - index.k * index.k, 2.0 * index.n * index.k);
-  const double c = geometry.cos_beta;
-  const double sin2 = geometry.sin2_beta;
-  // Re(w^2) can be computed in two forms. The form with the smaller terms loses fewer digits.
-  double w2 = sin2 < 0.5 ? n2_re - sin2 : n2m1.real() + c * c;
-  if (std::hypot(w2, n2m1.imag()) <= kCritical * std::max(std::abs(n2_re), sin2)) w2 = exact_w_squared(angles, index);
+FacetReflection bare_reflection(const OpticalConstants& index, double c, double sin2, double w2) {
+  const Complex n2m1 = n_squared_minus_1(index);
   const Complex w = std::sqrt(Complex(w2, n2m1.imag()));
   const Complex s_sum = c + w;
-  const Complex p_sum = Complex(n2_re, n2m1.imag()) * c + w;
+  const Complex p_sum = Complex(re_n_squared(index), n2m1.imag()) * c + w;
   const double a = std::norm(n2m1) / std::max(std::norm(s_sum), kSmallestSquare);  // avoids 0/0 for N = 1 at 90 degrees
   const double r_s = a / std::max(std::norm(s_sum), kSmallestSquare);
   const double p_norm = std::max(std::norm(p_sum), kSmallestSquare);
@@ -72,18 +69,14 @@ FacetReflection bare_reflection(const BeamAngles& angles, const BeamGeometry& ge
   return {r_s - m01, m01, r_s * (sin2 - c * w) * s_sum * std::conj(p_sum) / p_norm};
 }
 
-// Measured reflectances have no phase, so conj(r_s) r_p is set to 0.
-FacetReflection covered_reflection(const BeamGeometry& geometry, const FacetOptics& optics) {
-  const double c = std::max(geometry.cos_beta, kSmallestFacetCosine);
-  const SmoothAbsorptance absorbed = smooth_absorptance(optics, c);
-  const double m01 = 0.5 * absorbed.split * geometry.sin2_beta;
-  if (optics.measured) return {1.0 - absorbed.s - m01, m01, 0.0};
-  const FilmReflection r = film_reflection(optics, c);
-  return {r.r_s - m01, m01, r.cross};
-}
-
-FacetReflection facet_reflection(const BeamAngles& angles, const BeamGeometry& geometry, const FacetOptics& optics) {
-  return optics.is_bare() ? bare_reflection(angles, geometry, optics.index) : covered_reflection(geometry, optics);
+FacetReflection beam_reflection(const BeamAngles& angles, const BeamGeometry& geometry, const FacetOptics& optics) {
+  const double c = geometry.cos_beta, sin2 = geometry.sin2_beta;
+  const OpticalConstants& index = optics.index;
+  const double w2 = w_squared(index, c, sin2);
+  const double scale = std::max(std::abs(re_n_squared(index)), sin2);
+  const bool is_critical = std::hypot(w2, n_squared_minus_1(index).imag()) <= kCritical * scale;
+  if (!optics.is_bare() || !is_critical) return facet_reflection(optics, c, sin2);
+  return bare_reflection(index, c, sin2, exact_w_squared(angles, index));
 }
 
 /// The matrix of the facet (see FacetReflection) between turns by eta_i and -eta_r. A turn by eta maps (Q, U) to
@@ -92,7 +85,8 @@ FacetReflection facet_reflection(const BeamAngles& angles, const BeamGeometry& g
 /// sign of eta.
 std::array<double, 16> turned(const FacetReflection& facet, const BeamGeometry& g) {
   const double a = facet.m00, b = facet.m01, c = facet.cross.real(), s = facet.cross.imag();
-  const double cos_i = g.cos_2eta_i, sin_i = g.sin_2eta_i, cos_r = g.cos_2eta_r, sin_r = g.sin_2eta_r;
+  const auto [cos_i, sin_i] = g.twice_eta_i;
+  const auto [cos_r, sin_r] = g.twice_eta_r;
   return {a,
           b * cos_i,
           b * sin_i,
@@ -126,10 +120,6 @@ void check_entries(const ScatteringRequest& request) {
 
 bool needs_integrals(Masking masking) { return masking == Masking::kIntegral || masking == Masking::kSmith; }
 
-double v_cavity_attenuation(const BeamGeometry& g) {
-  return std::min(1.0, 2.0 * lower_direction(g).cos / (std::sqrt(1.0 + g.slope * g.slope) * g.cos_beta));
-}
-
 /// The positions of the entries, with equal slope distributions side by side.
 std::vector<std::size_t> order_by_shape(const ScatteringRequest& request) {
   std::vector<std::size_t> order(request.entries.size());
@@ -162,7 +152,7 @@ ScatteringMatrix beam_matrix(const ScatteringRequest& request, const ScatteringE
   const double azimuth = is_elliptic(shape) ? facet_azimuth(request.angles[entry.angles]) : 0.0;
   const double density = std::exp(log_density(request.distribution, shape, geometry.slope, azimuth));
   ScatteringMatrix matrix;
-  matrix.m = turned(facet_reflection(request.angles[entry.angles], geometry, request.optics[entry.index]), geometry);
+  matrix.m = turned(beam_reflection(request.angles[entry.angles], geometry, request.optics[entry.index]), geometry);
   for (double& element : matrix.m) element *= density * attenuation;
   matrix.error = kScatteringError * std::abs(matrix.m[0]);
   if (request.scattering == Scattering::kMultiple) add_further_bounces(matrix, request, entry);
@@ -170,6 +160,16 @@ ScatteringMatrix beam_matrix(const ScatteringRequest& request, const ScatteringE
 }
 
 }  // namespace
+
+FacetReflection facet_reflection(const FacetOptics& optics, double cosine, double sin2) {
+  if (optics.is_bare()) return bare_reflection(optics.index, cosine, sin2, w_squared(optics.index, cosine, sin2));
+  const double c = std::max(cosine, kSmallestFacetCosine);
+  const SmoothAbsorptance absorbed = smooth_absorptance(optics, c);
+  const double m01 = 0.5 * absorbed.split * sin2;
+  if (optics.measured) return {1.0 - absorbed.s - m01, m01, 0.0};
+  const FilmReflection r = film_reflection(optics, c);
+  return {r.r_s - m01, m01, r.cross};
+}
 
 std::vector<ScatteringMatrix> scattering_matrices(const ScatteringRequest& request, const Progress& progress) {
   check_entries(request);

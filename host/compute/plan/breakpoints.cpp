@@ -64,14 +64,6 @@ void add_line_breakpoints(std::vector<Breakpoint>& points, double theta_deg, con
   points.push_back({a.cos > 0.0 ? tan_deg(30.0 + theta_deg * 2.0 / 3.0) : kNoEnd, kRootBelow});
 }
 
-// With direct emission the slopes have no upper end, because facets emit even if their reflected ray does not leave.
-void add_direct_breakpoints(std::vector<Breakpoint>& points, const CosSin& a, Masking masking, double& last) {
-  last = kNoEnd;
-  points.push_back({last, 0});
-  if (a.sin > 0.0) points.push_back({a.cos / a.sin, kRootAbove});
-  if (masking == Masking::kVCavity) points.push_back({std::sqrt(3.0), 0});
-}
-
 void add_v_cavity_breakpoints(std::vector<Breakpoint>& points, double theta_deg, const CosSin& a) {
   points.push_back({tan_deg(30.0 - theta_deg / 3.0), kRootAbove});
   if (theta_deg < 45.0) {
@@ -169,15 +161,17 @@ std::vector<Breakpoint> breakpoints(double theta_deg, const MomentsRequest& requ
   const Masking masking = request.masking;
   const bool is_multiple = request.scattering == Scattering::kMultiple;
   const double horizon = a.cos > 0.0 ? (1.0 + a.sin) / a.cos : kNoEnd;
+  // With direct emission the slopes have no upper end, because facets emit even if their reflected ray does not leave.
+  const bool has_end = !is_multiple && !request.wants_direct;
+  const double last = has_end ? horizon : kNoEnd;
   std::vector<Breakpoint> points;
-  double last = horizon;
+  if (!has_end) points.push_back({last, 0});
   if (is_multiple) {
     add_groove_breakpoints(points, theta_deg, splits);
-    last = kNoEnd;
-    points.push_back({last, 0});
   } else {
-    points = {{a.cos / (1.0 + a.sin), kRootAbove}, {horizon, kRootBelow}};
-    if (request.wants_direct) add_direct_breakpoints(points, a, masking, last);
+    points.insert(points.end(), {{a.cos / (1.0 + a.sin), kRootAbove}, {horizon, kRootBelow}});
+    if (request.wants_direct && a.sin > 0.0) points.push_back({a.cos / a.sin, kRootAbove});
+    if (request.wants_direct && masking == Masking::kVCavity) points.push_back({std::sqrt(3.0), 0});
   }
   if (masking == Masking::kIntegral && a.cos > 0.0) points.push_back({a.sin / a.cos, kRootBelow});
   if (variant.has_line) add_line_breakpoints(points, theta_deg, a, masking);

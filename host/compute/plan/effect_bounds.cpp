@@ -88,11 +88,10 @@ Range beam_range(const Surface& surface, const BeamAngles& angles, const Entries
   const double sec2 = 1.0 + g.slope * g.slope;
   Range masking{1.0, 1.0};
   if (surface.masking == Masking::kIntegral) masking.least = 0.5;
-  if (surface.masking == Masking::kVCavity)
-    masking.least = masking.most = std::min(1.0, 2.0 * std::min(g.cos_i, g.cos_r) / (std::sqrt(sec2) * g.cos_beta));
+  if (surface.masking == Masking::kVCavity) masking.least = masking.most = v_cavity_attenuation(g);
   if (surface.masking == Masking::kSmith)
-    masking.least = 1.0 / (1.0 + most_lambda(surface.distribution, extent.roughest, {g.cos_i, g.sin_i}) +
-                           most_lambda(surface.distribution, extent.roughest, {g.cos_r, g.sin_r}));
+    masking.least = 1.0 / (1.0 + most_lambda(surface.distribution, extent.roughest, g.i) +
+                           most_lambda(surface.distribution, extent.roughest, g.r));
   const Range density = slope_density(surface.distribution, extent, g.slope);
   const Range reflected = reflectance(indices, g.cos_beta);
   const double jacobian = 0.25 * sec2 * sec2;

@@ -10,7 +10,9 @@
 #include <map>
 #include <numbers>
 #include <stdexcept>
+#include <tuple>
 #include <unordered_map>
+#include <utility>
 
 #include "base/numbers.hpp"
 #include "base/parallel_ranges.hpp"
@@ -102,13 +104,8 @@ std::uint8_t most_nodes(const KernelData& data, const Loops& loops) {
   return static_cast<std::uint8_t>(most);
 }
 
-struct DirectionNode {
-  kernel::ThetaNode theta;
-  Pieces pieces;
-};
-
-DirectionNode direction_node(const KernelData& data, const MomentsRequest& request, double theta_deg,
-                             const DirectionVariant& variant) {
+std::pair<kernel::ThetaNode, Pieces> direction_node(const KernelData& data, const MomentsRequest& request,
+                                                    double theta_deg, const DirectionVariant& variant) {
   const CosSin a = cos_sin_deg(theta_deg);
   kernel::ThetaNode node{};
   node.c = a.cos;
@@ -273,11 +270,9 @@ void add_directions(KernelData& data, const MomentsRequest& request) {
   data.pieces.resize(keys.size());
   parallel_for(keys.size(), kDirectionsAtOnce, [&](std::size_t i) {
     const auto& [direction, critical_cos, line, kinks] = keys[i];
-    const auto [theta, pieces] =
-        direction_node(data, request, request.theta_deg[static_cast<std::size_t>(direction)],
-                       {critical_cos, line != 0.0, data.kinks_deg[static_cast<std::size_t>(kinks)]});
-    data.thetas[i] = theta;
-    data.pieces[i] = pieces;
+    const double theta_deg = request.theta_deg[static_cast<std::size_t>(direction)];
+    std::tie(data.thetas[i], data.pieces[i]) = direction_node(
+        data, request, theta_deg, {critical_cos, line != 0.0, data.kinks_deg[static_cast<std::size_t>(kinks)]});
   });
 }
 
@@ -373,25 +368,6 @@ KernelData kernel_data(const MomentsRequest& request, const RuleModel& model, Ta
   data.has_total_reflection =
       std::ranges::any_of(data.indices, [](const kernel::IndexNode& index) { return index.critical_cos > 0.0; });
   return data;
-}
-
-double worst_iterations(const KernelData& data) {
-  double worst = 0.0;
-  for (std::size_t i = 0; i < data.bundles.size(); ++i) {
-    const std::uint32_t index = data.bundles[i].index;
-    const DirectionVariant variant{.critical_cos = data.indices[index].critical_cos,
-                                   .kinks_deg = data.kinks_deg[kinks_number(data, index)]};
-    for (const std::uint32_t shape : data.bundle_shapes(i)) {
-      const std::uint32_t direction = data.entry(i, shape).theta;
-      const Pieces& pieces = data.pieces[direction];
-      const kernel::ThetaNode& theta = data.thetas[direction];
-      for (std::uint32_t piece = 0; piece < pieces.count; ++piece) {
-        const Loops loops = slope_loops(data, variant, theta.end[piece], theta.end[piece + 1]);
-        worst = std::max(worst, iterations(data, loops, pieces.most_nodes[piece]));
-      }
-    }
-  }
-  return worst;
 }
 
 }  // namespace dolp

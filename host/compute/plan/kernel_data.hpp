@@ -41,8 +41,10 @@ inline constexpr unsigned kRootBelow = 2;  ///< the integrand has a square root 
 /// The pieces of the slope axis of one direction; ThetaNode has their ends.
 struct Pieces {
   std::uint32_t count = 0;
-  std::array<std::uint8_t, DOLP_MAX_PIECES + 3> roots{};       ///< bits kRootAbove, kRootBelow of each end
-  std::array<std::uint8_t, DOLP_MAX_PIECES + 1> most_nodes{};  ///< largest number of nodes of an arc, per piece
+  std::array<std::uint8_t, DOLP_MAX_PIECES + 3> roots{};  ///< bits kRootAbove, kRootBelow of each end
+  /// Largest number of nodes of an arc, per piece. Drivers may stop an invocation after 65,535 iterations of loops,
+  /// without an error and with wrong sums. With these numbers, all invocations end earlier.
+  std::array<std::uint8_t, DOLP_MAX_PIECES + 1> most_nodes{};
   /// One number per piece. Pieces with equal numbers have equal loop bounds, see kLockstep in vulkan/tiles.hpp.
   std::array<std::uint16_t, DOLP_MAX_PIECES> lockstep{};
   bool has_split_line = false;  ///< a kink of the masking splits the pieces (DirectionVariant::has_line)
@@ -162,8 +164,5 @@ Moments moments_from_kernel(const kernel::MomentsNode& node, const KernelData& d
 
 /// False if, in this direction, the masking table is too coarse for a slope distribution as narrow as `shape`.
 bool table_resolves(const kernel::ShapeNode& shape, double cos_theta, double sin_theta);
-
-/// Most loop iterations of one invocation. Drivers may stop it after 65,535, without an error and with wrong sums.
-double worst_iterations(const KernelData& data);
 
 }  // namespace dolp

@@ -25,45 +25,44 @@ using Columns = Eigen::ArrayXXd;  // a row for each entry, a column for each res
 
 /// The responses of some entries.
 struct Responses {
+  struct Part {
+    Columns value;
+    Columns apart;  ///< ColumnMoments::i_apart or q_apart
+  };
   Responses(std::span<const Moments* const> moments, std::size_t responses) {
     const auto entries = static_cast<Eigen::Index>(moments.size());
-    for (Columns* const part : {&i, &q, &i_apart, &q_apart, &error})
+    for (Columns* const part : {&i.value, &q.value, &i.apart, &q.apart, &error})
       *part = Columns::Zero(entries, static_cast<Eigen::Index>(responses));
     relative_error = Eigen::ArrayXd::Zero(entries);
     for (Eigen::Index row = 0; row < entries; ++row) {
       const std::vector<ColumnMoments>& columns = moments[static_cast<std::size_t>(row)]->columns;
       for (Eigen::Index j = 0; j < static_cast<Eigen::Index>(columns.size()); ++j) {
         const ColumnMoments& column = columns[static_cast<std::size_t>(j)];
-        i(row, j) = column.i;
-        q(row, j) = column.q;
-        i_apart(row, j) = column.i_apart;
-        q_apart(row, j) = column.q_apart;
+        i.value(row, j) = column.i;
+        q.value(row, j) = column.q;
+        i.apart(row, j) = column.i_apart;
+        q.apart(row, j) = column.q_apart;
         error(row, j) = column.error;
       }
       if (!columns.empty()) relative_error(row) = columns.front().relative_error;
     }
   }
-  Columns i, q, i_apart, q_apart, error;
+  Part i, q;
+  Columns error;
   Eigen::ArrayXd relative_error;  ///< ColumnMoments::relative_error of each entry
 };
 
 /// A weighted sum of responses for each entry. The error bounds cover the errors of the responses, but not the
 /// difference between a reflectance curve and its sum of polynomials.
 struct Sums {
-  Sums(const Responses& responses, Columns Responses::*values, Columns Responses::*apart, const Columns& weights)
-      : value(weighted_row_sums(weights, responses.*values)),
-        error(weighted_row_sums(weights, responses.*apart).abs() + weighted_row_sums(weights.abs(), responses.error) +
+  Sums(const Responses& responses, const Responses::Part& part, const Columns& weights)
+      : value(weighted_row_sums(weights, part.value)),
+        error(weighted_row_sums(weights, part.apart).abs() + weighted_row_sums(weights.abs(), responses.error) +
               responses.relative_error * value.abs()) {}
-  static Sums i(const Responses& responses, const Columns& weights) {
-    return {responses, &Responses::i, &Responses::i_apart, weights};
-  }
-  static Sums q(const Responses& responses, const Columns& weights) {
-    return {responses, &Responses::q, &Responses::q_apart, weights};
-  }
   /// For the difference of two reflectance curves. If its sign changes, terms of a sum cancel. So relative errors refer
   /// to an upper bound of the sum: response 0, whose polynomial is 1, times the sum of all |weights|.
   void add_cancellation(const Responses& responses, const Columns& weights) {
-    const Eigen::ArrayXd largest = responses.relative_error * responses.i.col(0);
+    const Eigen::ArrayXd largest = responses.relative_error * responses.i.value.col(0);
     error += weighted_row_sums(weights.abs(), largest.replicate(1, weights.cols()));
   }
   Eigen::ArrayXd value, error;
@@ -118,15 +117,13 @@ class Combination {
 
   void add_reflected(std::span<Moments* const> entries) const {
     const Responses& all = block_.responses.front();
-    const Sums i = Sums::i(all, reflected_);
-    const Sums q = Sums::q(all, split_);
+    const Sums i(all, all.i, reflected_), q(all, all.q, split_);
     // There are two ways to the moments of an index: a sum for its whole reflectance curve, or the moments of the
     // reference index plus a sum for the difference of the curves. The second is more accurate if the curves are
     // similar or if little light is absorbed.
     const Columns absorbed_apart = absorbed_.rowwise() - reference_weights_.absorbed.transpose().array();
     const Columns split_apart = split_.rowwise() - reference_weights_.split.transpose().array();
-    Sums more_absorbed = Sums::i(all, absorbed_apart);
-    Sums more_split = Sums::q(all, split_apart);
+    Sums more_absorbed(all, all.i, absorbed_apart), more_split(all, all.q, split_apart);
     more_absorbed.add_cancellation(all, absorbed_apart);
     more_split.add_cancellation(all, split_apart);
     const auto passes = static_cast<double>(block_.responses.size());
@@ -162,10 +159,9 @@ class Combination {
 
   void add_direct(std::size_t pass, std::span<Moments* const> entries) const {
     const Responses& all = block_.responses[pass];
-    const Sums i = Sums::i(all, absorbed_);
-    const Sums q = Sums::q(all, split_);
+    const Sums i(all, all.i, absorbed_), q(all, all.q, split_);
     for_all(pass, entries, [&](Moments& sum, const ResponseWeights& own, const Moments& from, Eigen::Index row) {
-      const double projection = all.i(row, 0) + all.error(row, 0);
+      const double projection = all.i.value(row, 0) + all.error(row, 0);
       sum.direct_i = i.value(row);
       sum.direct_q = -q.value(row);
       const double whole_error = from.direct_i_error * std::max(sum.direct_i / from.direct_i, 0.0);
@@ -176,8 +172,7 @@ class Combination {
 
   void add_sky(std::size_t pass, std::size_t function, std::span<Moments* const> entries) const {
     const Responses& all = block_.responses[pass];
-    const Sums i = Sums::i(all, reflected_);
-    const Sums q = Sums::q(all, split_);
+    const Sums i(all, all.i, reflected_), q(all, all.q, split_);
     for_all(pass, entries, [&](Moments& sum, const ResponseWeights& own, const Moments& from, Eigen::Index row) {
       // Light cancels, because the sky's function changes its sign. So relative errors refer to r_i, not to the sum.
       const double relative = all.relative_error(row) * std::abs(sum.r_i);

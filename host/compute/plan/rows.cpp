@@ -57,71 +57,61 @@ BundleChunks bundle_chunks(const KernelData& data, std::span<const std::uint32_t
   return chunks;
 }
 
-class RowMaker {
- public:
-  RowMaker(const KernelData& data, std::uint32_t width) : data_(data) {
-    rows_.width = width;
-    for (std::uint32_t bundle = 0; bundle < data.bundles.size(); ++bundle) add_bundle(bundle);
-    order_rows();
+/// Orders the rows, so that neighbouring invocations of the kernel read the same data.
+void order_rows(Rows& rows, const KernelData& data) {
+  std::vector<std::uint32_t> order(rows.rows.size()), new_number(order.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::sort(order, {}, [&](std::uint32_t i) {
+    const Bundle& bundle = data.bundles[rows.rows[i].bundle];
+    return std::tuple(rows.rows[i].chunk, bundle.index, bundle.direction, i);
+  });
+  std::vector<Row> ordered;
+  for (const std::uint32_t i : order) {
+    new_number[i] = static_cast<std::uint32_t>(ordered.size());
+    ordered.push_back(rows.rows[i]);
   }
-  Rows take() { return std::move(rows_); }
+  rows.rows = std::move(ordered);
+  for (RowEntry& entry : rows.entries) entry.row = new_number[entry.row];
+}
 
- private:
-  void add_bundle(std::uint32_t number) {
-    const Bundle& bundle = data_.bundles[number];
-    const std::span<const std::uint32_t> shapes = data_.bundle_shapes(number);
-    if (number == 0 || bundle.first != data_.bundles[number - 1].first ||
-        bundle.count != data_.bundles[number - 1].count) {
-      chunks_ = bundle_chunks(data_, shapes, rows_.width);
-      numbers_.clear();
-      for (const std::vector<std::uint32_t>& chunk : chunks_) numbers_.push_back(chunk_number(chunk, shapes));
+Rows rows_of_width(const KernelData& data, std::uint32_t width) {
+  Rows rows{.width = width};
+  std::unordered_map<std::vector<std::uint32_t>, std::uint32_t, boost::hash<std::vector<std::uint32_t>>> known;
+  const auto add_chunk = [&](const std::vector<std::uint32_t>& positions) {
+    const auto [chunk, is_new] = known.try_emplace(positions, static_cast<std::uint32_t>(rows.chunks.size()));
+    if (!is_new) return chunk->second;
+    const std::size_t first = rows.shapes.size();
+    rows.chunks.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(positions.size())});
+    rows.shape_positions.insert(rows.shape_positions.end(), positions.begin(), positions.end());
+    for (const std::uint32_t shape : positions) rows.shapes.push_back(data.shapes[shape]);
+    unite(std::span(rows.shapes).subspan(first));
+    return chunk->second;
+  };
+  BundleChunks chunks;                 // those that the last bundle has
+  std::vector<std::uint32_t> numbers;  // their positions in rows.chunks
+  for (std::uint32_t number = 0; number < data.bundles.size(); ++number) {
+    const Bundle& bundle = data.bundles[number];
+    const std::span<const std::uint32_t> shapes = data.bundle_shapes(number);
+    if (number == 0 || bundle.first != data.bundles[number - 1].first ||
+        bundle.count != data.bundles[number - 1].count) {
+      chunks = bundle_chunks(data, shapes, width);
+      numbers.clear();
+      for (std::vector<std::uint32_t> positions : chunks) {
+        for (std::uint32_t& i : positions) i = shapes[i];
+        numbers.push_back(add_chunk(positions));
+      }
     }
-    rows_.entries.resize(bundle.first_entry + bundle.count);
-    for (std::size_t i = 0; i < chunks_.size(); ++i) {
-      const auto row = static_cast<std::uint32_t>(rows_.rows.size());
-      rows_.rows.push_back({number, numbers_[i]});
-      for (std::uint32_t place = 0; place < chunks_[i].size(); ++place)
-        rows_.entries[bundle.first_entry + chunks_[i][place]] = {row, place};
+    rows.entries.resize(bundle.first_entry + bundle.count);
+    for (std::size_t i = 0; i < chunks.size(); ++i) {
+      const auto row = static_cast<std::uint32_t>(rows.rows.size());
+      rows.rows.push_back({number, numbers[i]});
+      for (std::uint32_t place = 0; place < chunks[i].size(); ++place)
+        rows.entries[bundle.first_entry + chunks[i][place]] = {row, place};
     }
   }
-
-  std::uint32_t chunk_number(const std::vector<std::uint32_t>& chunk, std::span<const std::uint32_t> shapes) {
-    std::vector<std::uint32_t> positions;
-    for (const std::uint32_t i : chunk) positions.push_back(shapes[i]);
-    const auto [known, is_new] = known_.try_emplace(positions, static_cast<std::uint32_t>(rows_.chunks.size()));
-    if (!is_new) return known->second;
-    const std::size_t first = rows_.shapes.size();
-    rows_.chunks.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(positions.size())});
-    for (const std::uint32_t shape : positions) {
-      rows_.shape_positions.push_back(shape);
-      rows_.shapes.push_back(data_.shapes[shape]);
-    }
-    unite(std::span(rows_.shapes).subspan(first));
-    return known->second;
-  }
-
-  void order_rows() {
-    std::vector<std::uint32_t> order(rows_.rows.size()), new_number(order.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::ranges::sort(order, {}, [&](std::uint32_t i) {
-      const Bundle& bundle = data_.bundles[rows_.rows[i].bundle];
-      return std::tuple(rows_.rows[i].chunk, bundle.index, bundle.direction, i);
-    });
-    std::vector<Row> ordered;
-    for (const std::uint32_t i : order) {
-      new_number[i] = static_cast<std::uint32_t>(ordered.size());
-      ordered.push_back(rows_.rows[i]);
-    }
-    rows_.rows = std::move(ordered);
-    for (RowEntry& entry : rows_.entries) entry.row = new_number[entry.row];
-  }
-
-  const KernelData& data_;
-  Rows rows_;
-  BundleChunks chunks_;                 // those that the last added bundle has
-  std::vector<std::uint32_t> numbers_;  // their positions in rows_.chunks
-  std::unordered_map<std::vector<std::uint32_t>, std::uint32_t, boost::hash<std::vector<std::uint32_t>>> known_;
-};
+  order_rows(rows, data);
+  return rows;
+}
 
 }  // namespace
 
@@ -130,7 +120,7 @@ Rows make_rows(const MomentsRequest& request, const KernelData& data, std::uint3
   std::iota(all.begin(), all.end(), 0U);
   const double places = static_cast<double>(widest) * static_cast<double>(bundle_chunks(data, all, widest).size());
   const bool is_filled = !request.has_lone_entries && static_cast<double>(all.size()) > kLeastRowUse * places;
-  return RowMaker(data, is_filled ? widest : 1).take();
+  return rows_of_width(data, is_filled ? widest : 1);
 }
 
 std::vector<RowPiece> row_pieces(const Rows& rows, const KernelData& data, std::uint32_t first, std::uint32_t count) {

@@ -11,7 +11,6 @@
 
 #include "beams/beam_geometry.hpp"
 #include "beams/scattering.hpp"
-#include "calibrate/random_entries.hpp"
 #include "evaluate/cpu/cpu_evaluator.hpp"
 #include "model/angles.hpp"
 #include "mueller_support.hpp"
@@ -37,7 +36,7 @@ bool needs_masking_integral(Masking masking) { return masking == Masking::kInteg
 
 // Every second point gets another width across, with a quotient of 1/3 to 3.
 void make_elliptic(std::vector<ScatteringPoint>& points) {
-  Draw draw(kSeed);
+  Draws draw(kSeed);
   for (std::size_t i = 0; i < points.size(); i += 2) {
     points[i].shape.sigma_cross = points[i].shape.sigma * draw.log_uniform(1.0 / 3.0, 3.0);
     points[i].shape.azimuth_deg = draw.uniform(-180.0, 180.0);

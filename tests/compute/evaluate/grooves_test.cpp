@@ -11,7 +11,6 @@
 #include <vector>
 
 #include <dolp/status.hpp>
-#include "beams/further_bounces.hpp"
 #include "beams/scattering.hpp"
 #include "calibrate/random_entries.hpp"
 #include "model/angles.hpp"
@@ -138,7 +137,7 @@ TEST_P(Grooves, WithoutAndWithTheDirectEmission_TheOtherMomentsAgree) {
 }
 
 std::vector<Point> drawn(Domain domain, Distribution distribution, Masking masking, std::uint64_t seed) {
-  Draw draw(seed);
+  Draws draw(seed);
   std::vector<Point> points;
   for (int i = 0; i < 20; ++i) {
     const MomentsPoint entry = random_entry(draw, domain, distribution, masking);

@@ -116,7 +116,7 @@ TEST_P(SlopeOrders, Sea_EmitsDifferentlyUpwindAndCrosswind) {
 /// Entries with widths along and across whose quotient is 1/3 to 3.
 MomentsRequest random_entries(Distribution distribution, const Light& light, std::size_t count) {
   constexpr std::uint64_t kEntrySeed = 20270301;
-  Draw draw(kEntrySeed + static_cast<std::uint64_t>(distribution));
+  Draws draw(kEntrySeed + static_cast<std::uint64_t>(distribution));
   MomentsRequest request = empty_request(distribution, light);
   for (std::size_t i = 0; i < count; ++i) {
     MomentsPoint entry = random_entry(draw, Domain::kOrdinary, distribution, light.masking);

@@ -69,14 +69,16 @@ Radiance model_radiance(const SceneValues& scene, double theta_i_deg) {
   const double rho_q = surface.specular * moments.r_q / cos_v;
   const double emitted = planck_radiance(kWavelength_um, scene.emission->temperature_K);
   const double surroundings = planck_radiance(kWavelength_um, scene.surroundings->temperature_K);
-  const ReferenceMueller f = reference_pbrdf(surface, surface.material.constant, theta_i_deg,
-                                             scene.geometry.view_zenith_deg, scene.geometry.relative_azimuth_deg);
+  const BeamAngles angles{theta_i_deg, scene.geometry.view_zenith_deg, scene.geometry.relative_azimuth_deg};
+  const reference::Slopes slopes(surface.distribution, {surface.sigma, surface.q});
+  const reference::Mueller f =
+      reference::single_bounce(slopes, surface.masking, surface.material.constant, angles) / (cos_i * cos_v);
   const double beam = scene.source->irradiance * cos_i;
   const double diffuse = surface.diffuse / std::numbers::pi * std::pow(cos_i * cos_v, c);
   const double k_s = surface.specular;
-  Radiance l = {emitted * (1.0 - rho_i) + surroundings * rho_i + beam * (k_s * f[0][0] + diffuse),
-                -emitted * rho_q + surroundings * rho_q + beam * k_s * f[1][0], beam * k_s * f[2][0],
-                beam * k_s * f[3][0]};
+  Radiance l = {emitted * (1.0 - rho_i) + surroundings * rho_i + beam * (k_s * f(0, 0) + diffuse),
+                -emitted * rho_q + surroundings * rho_q + beam * k_s * f(1, 0), beam * k_s * f(2, 0),
+                beam * k_s * f(3, 0)};
   if (scene.path) {
     const double tau = scene.path->transmittance;
     l = {tau * l.i + *scene.path->radiance, tau * l.q, tau * l.u, tau * l.v};

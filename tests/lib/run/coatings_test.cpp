@@ -15,7 +15,6 @@
 #include "model/films.hpp"
 #include "model/smooth_surface.hpp"
 #include "properties_support.hpp"
-#include "reference/film_spread.hpp"
 #include "reference/fresnel.hpp"
 #include "reference/reference_evaluator.hpp"
 #include "run/scene_remarks.hpp"

@@ -42,7 +42,7 @@ TEST(HardCases, References_AreAsGoodAsStated) {
   }
 }
 
-Moments recomputed(const StoredCase& c, const ReferenceOptions& options) {
+Moments recomputed(const StoredCase& c, const reference::Refinement& options) {
   const MomentsRequest request = request_of({c.distribution, c.masking}, {{c.theta_deg, c.shape, c.index}}, 0.0);
   return ReferenceEvaluator(options).evaluate(request, {}).at(0);
 }

@@ -83,11 +83,11 @@ double error_over_bound(const Moments& stated, const Moments& exact) {
 }
 
 /// Multiplies the distance of `value` from `low` by a random factor between e^-width and e^width.
-double moved(Draw& draw, double value, double low, double width) {
+double moved(Draws& draw, double value, double low, double width) {
   return low + (value - low) * std::exp(width * draw.uniform(-1.0, 1.0));
 }
 
-MomentsPoint neighbour(Draw& draw, const MomentsPoint& entry, Domain domain, double q_end, double width) {
+MomentsPoint neighbour(Draws& draw, const MomentsPoint& entry, Domain domain, double q_end, double width) {
   MomentsPoint next = entry;
   const double largest_deg = domain == Domain::kOrdinary ? 85.0 : 90.0;
   next.theta_deg = std::clamp(largest_deg - moved(draw, largest_deg - entry.theta_deg, 0.0, width), 0.0, largest_deg);
@@ -105,7 +105,7 @@ bool is_in(Domain domain, const MomentsPoint& entry, double q_end) {
          entry.shape.q <= q_end + 10.0 && entry.index.index.n >= 1.1;
 }
 
-CheckedEntry climbed(const Check& check, Draw& draw, CheckedEntry best, Domain domain, double q_end) {
+CheckedEntry climbed(const Check& check, Draws& draw, CheckedEntry best, Domain domain, double q_end) {
   double width = 0.3;
   for (std::size_t step = 0; step < kClimbSteps; ++step) {
     std::vector<MomentsPoint> entries;
@@ -128,7 +128,7 @@ CheckedEntry climbed(const Check& check, Draw& draw, CheckedEntry best, Domain d
 
 HoldOut hold_out(const MomentsRequest& model, const HoldOutOptions& options) {
   const auto [distribution, masking] = std::pair(model.distribution, model.masking);
-  Draw draw(options.seed * 8 + 2 * static_cast<std::uint64_t>(masking) + static_cast<std::uint64_t>(distribution));
+  Draws draw(options.seed * 8 + 2 * static_cast<std::uint64_t>(masking) + static_cast<std::uint64_t>(distribution));
   const Check check(model, options);
   std::vector<MomentsPoint> entries;
   for (std::size_t i = 0; i < options.entries; ++i) {

@@ -6,7 +6,7 @@
 namespace dolp {
 namespace {
 
-MomentsPoint ordinary_entry(Draw& draw, double q_end) {
+MomentsPoint ordinary_entry(Draws& draw, double q_end) {
   MomentsPoint entry;
   entry.theta_deg = draw.chance(0.1) ? 5.0 * std::floor(draw.uniform(0.0, 17.0)) : draw.uniform(0.0, 85.0);
   entry.shape = {draw.log_uniform(0.01, 2.0), draw.chance(0.1) ? 2.0 : q_end + draw.log_uniform(0.1, 10.0)};
@@ -16,14 +16,14 @@ MomentsPoint ordinary_entry(Draw& draw, double q_end) {
   return entry;
 }
 
-double corner_theta_deg(Draw& draw) {
+double corner_theta_deg(Draws& draw) {
   const double kind = draw.uniform(0.0, 1.0);
   if (kind < 0.05) return 0.0;
   if (kind < 0.15) return draw.log_uniform(1e-3, 5.0);
   return kind < 0.45 ? 90.0 - draw.log_uniform(1e-4, 5.0) : draw.uniform(0.0, 90.0);
 }
 
-OpticalConstants corner_index(Draw& draw, double theta_deg) {
+OpticalConstants corner_index(Draws& draw, double theta_deg) {
   const double kind = draw.uniform(0.0, 1.0);
   if (kind < 0.1) {  // near the critical angle
     const double beside = (draw.chance(0.5) ? 1.0 : -1.0) * draw.log_uniform(1e-6, 0.1);
@@ -37,7 +37,7 @@ OpticalConstants corner_index(Draw& draw, double theta_deg) {
   return {draw.log_uniform(0.2, 100.0), draw.log_uniform(0.1, 100.0)};
 }
 
-MomentsPoint corner_entry(Draw& draw, double q_end) {
+MomentsPoint corner_entry(Draws& draw, double q_end) {
   MomentsPoint entry;
   entry.theta_deg = corner_theta_deg(draw);
   entry.shape.sigma = draw.log_uniform(draw.chance(0.3) ? 1e-3 : 0.01, 10.0);
@@ -48,13 +48,11 @@ MomentsPoint corner_entry(Draw& draw, double q_end) {
 
 }  // namespace
 
-double Draw::log_uniform(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
-
 double least_q(Distribution distribution, Masking masking) {
   return masking == Masking::kSmith && distribution == Distribution::kCauchy ? 1.5 : 1.0;
 }
 
-MomentsPoint random_entry(Draw& draw, Domain domain, Distribution distribution, Masking masking) {
+MomentsPoint random_entry(Draws& draw, Domain domain, Distribution distribution, Masking masking) {
   const double q_end = least_q(distribution, masking);
   return domain == Domain::kOrdinary ? ordinary_entry(draw, q_end) : corner_entry(draw, q_end);
 }

@@ -2,9 +2,7 @@
 // same entries on every machine.
 #pragma once
 
-#include <cstdint>
-#include <random>
-
+#include "draws.hpp"
 #include "model/moments.hpp"
 
 namespace dolp {
@@ -14,18 +12,7 @@ enum class Domain {
   kCorners,   ///< theta near 0 or 90 degrees, total reflection, n near 1, q near its lower limit; sigma up to 10
 };
 
-class Draw {
- public:
-  explicit Draw(std::uint64_t seed) : engine_(seed) {}
-  double uniform(double low, double high) { return low + (high - low) * std::generate_canonical<double, 53>(engine_); }
-  double log_uniform(double low, double high);
-  bool chance(double probability) { return uniform(0.0, 1.0) < probability; }
-
- private:
-  std::mt19937_64 engine_;
-};
-
-MomentsPoint random_entry(Draw& draw, Domain domain, Distribution distribution, Masking masking);
+MomentsPoint random_entry(Draws& draw, Domain domain, Distribution distribution, Masking masking);
 
 /// The lower limit of q: 1.5 for the Cauchy distribution with smith masking, otherwise 1.
 double least_q(Distribution distribution, Masking masking);

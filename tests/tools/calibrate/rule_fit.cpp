@@ -33,7 +33,7 @@ constexpr int kMostLevels = 8;
 constexpr double kLeastTolerance = 1e-13;
 
 MomentsRequest random_request(MomentsRequest request, const RuleFitOptions& options) {
-  Draw draw(options.seed);
+  Draws draw(options.seed);
   for (std::size_t i = 0; i < options.entries; ++i) {
     const Domain domain = draw.chance(kCornerShare) ? Domain::kCorners : Domain::kOrdinary;
     request.append(random_entry(draw, domain, request.distribution, request.masking));

@@ -37,8 +37,8 @@ constexpr double kClosedFormRounding = 16.0 * std::numeric_limits<double>::epsil
 /// Two settings of the reference evaluator, which computes each case twice. If a moment has no closed form, the program
 /// writes the value computed with `fine`. The error in the file is at least the difference of the two values.
 struct Refinements {
-  dolp::ReferenceOptions coarse;
-  dolp::ReferenceOptions fine;
+  dolp::reference::Refinement coarse;
+  dolp::reference::Refinement fine;
 };
 // Finer settings would not help: the results with these two settings differ only by rounding in double.
 constexpr Refinements kForHardCases{{.relative_tolerance = 3e-13, .subdivisions = 1},

@@ -87,7 +87,7 @@ void add_neglected(Moments& moments, const AtAzimuth& at) {
 Moments direct_part(const Moments& facets, const KernelData& data, const MomentsEntry& entry) {
   const kernel::ThetaNode& theta = data.thetas[entry.theta];
   const SlopeShape shape = in_view_plane(data.slopes[entry.shape]);
-  const double masking = InPlaneMasking(data.distribution, Masking::kSmith, shape).smith_toward(theta.c, theta.s);
+  const double masking = InPlaneMasking(data.distribution, Masking::kSmith, shape).smith_toward({theta.c, theta.s});
   Moments moments{.deficit = theta.c, .evaluations = facets.evaluations};
   for (const auto member :
        {&Moments::direct_i, &Moments::direct_q, &Moments::direct_u, &Moments::direct_i_error, &Moments::direct_q_error})

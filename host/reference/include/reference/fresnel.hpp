@@ -2,6 +2,8 @@
 
 #include <boost/math/constants/constants.hpp>
 #include <complex>
+#include <utility>
+#include <vector>
 
 #include "model/facet_optics.hpp"
 #include "reference/vectors.hpp"
@@ -17,6 +19,11 @@ struct FresnelCoefficients {
 
 /// beta is the angle of incidence on the facet. At normal incidence r_p = -r_s.
 FresnelCoefficients fresnel(const FacetOptics& optics, double cos_beta);
+
+/// The stack at single thicknesses of its films, for light with this angle of incidence, with weights whose sum is 1. A
+/// mean over the normal distributions of the thicknesses is the weighted sum of values at these stacks. Equation:
+/// Gauss-Legendre panels, at least six for each fringe, between 8 spreads below (but not below 0) and above.
+std::vector<std::pair<FacetOptics, double>> single_stacks(const FacetOptics& optics, double cos_beta);
 
 /// Reflection amplitudes of a medium under films. Source: Born and Wolf, Principles of Optics, section 1.6.2.
 /// Equation: a layer of index N has q = sqrt(N^2 - sin^2(beta)). Its admittance y is q for s, q / N^2 for p. The

@@ -25,7 +25,7 @@ class GrooveBeam {
  public:
   /// `omega`: unit vector toward the source, omega[2] > 0.
   GrooveBeam(const Groove<Real>& groove, const Vector<Real>& omega, Facet first)
-      : groove_(groove), side_(first == Facet::kA ? Real(-1) : Real(1)), k_(scaled(Real(-1), omega)) {
+      : groove_(groove), side_(first == Facet::kA ? Real(-1) : Real(1)), k_(-omega) {
     // The ray to the apex crosses the aperture at u = to_apex. Rays with a smaller u meet facet A first.
     const Real to_apex = groove.sin_alpha * omega[0] / omega[2];
     const Real inside = std::clamp<Real>(to_apex, -groove.cos_alpha, groove.cos_alpha);
@@ -55,24 +55,24 @@ class GrooveBeam {
   // Follows the edge of the beam to the facet on `side_`. Returns the flux of a beam that covers it from rim to edge.
   Real land() {
     const Vector<Real> n = normal();
-    const Real cos_beta = -dot(k_, n);
+    const Real cos_beta = -k_.dot(n);
     if (cos_beta <= 0) return 0;
     const Vector<Real> rim{side_ * groove_.cos_alpha, Real(0), Real(0)};
     const Vector<Real> down{-side_ * groove_.cos_alpha, Real(0), -groove_.sin_alpha};
     Real depth = 1;  // distance along the facet from its rim to the edge of the beam
     if (!meets_apex_) {
-      const Vector<Real> from_rim = sum(edge_, scaled(Real(-1), rim));
-      const Vector<Real> hit = sum(from_rim, scaled(Real(dot(from_rim, n) / cos_beta), k_));
-      depth = std::clamp<Real>(dot(hit, down), Real(0), Real(1));
+      const Vector<Real> from_rim = edge_ - rim;
+      const Vector<Real> hit = from_rim + Real(from_rim.dot(n) / cos_beta) * k_;
+      depth = std::clamp<Real>(hit.dot(down), Real(0), Real(1));
     }
-    edge_ = sum(rim, scaled(depth, down));
+    edge_ = rim + depth * down;
     return depth * cos_beta;
   }
 
   Groove<Real> groove_;
   Real side_;  ///< -1 on facet A, 1 on facet B
   Vector<Real> k_;
-  Vector<Real> edge_{};
+  Vector<Real> edge_ = Vector<Real>::Zero();
   Real flux_;
   bool meets_apex_;
 };

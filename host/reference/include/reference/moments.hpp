@@ -13,8 +13,9 @@ namespace dolp::reference {
 
 /// Accuracy of the quadratures. Two computations with different settings have nearly independent errors.
 struct Refinement {
-  double relative_tolerance = 1e-9;  ///< of r_i, the albedo and the absorbed part; the error of r_q is relative to r_i
-  int subdivisions = 1;              ///< initial number of panels between two neighbouring break points
+  /// Tolerance of r_i, the albedo and the absorbed part, relative to each of them. For r_q it is relative to r_i.
+  double relative_tolerance = 1e-9;
+  int subdivisions = 1;  ///< initial number of panels between two neighbouring break points
 };
 
 /// Functions of cos(beta) within [-1, 1]. In integrals each replaces (R_s + R_p) / 2 and (R_s - R_p) / (2 sin^2(beta)).

@@ -5,15 +5,9 @@
 #include "model/evaluator.hpp"
 #include "model/moments.hpp"
 #include "model/scattering.hpp"
+#include "reference/moments.hpp"
 
 namespace dolp {
-
-struct ReferenceOptions {
-  /// Tolerance of each integral, relative to the integral. For r_q it is relative to r_i.
-  double relative_tolerance = 1e-9;
-  /// Initial number of panels between two neighbouring break points of a quadrature. Another number gives other nodes.
-  int subdivisions = 1;
-};
 
 /// An evaluator that is slow and independent of the shaders. It computes moments by nested adaptive Gauss-Kronrod
 /// quadrature in double, over zenith and azimuth of reflection. For V-grooves with all bounces and for direct emission,
@@ -21,14 +15,14 @@ struct ReferenceOptions {
 /// Equation: (4), (7), (9)-(13), (15), (16) of Wang, Li, Wang 2025.
 /// Accuracy: the returned errors. They are the estimated errors of the quadratures plus rounding errors (test
 /// ReferenceMoments_CoarseQuadrature_StaysWithinItsErrors). The tolerance of the integrals is a hundredth of the
-/// request's tolerance, but at least ReferenceOptions::relative_tolerance, and at most half of the request's tolerance.
+/// request's tolerance, but at least Refinement::relative_tolerance, and at most half of the request's tolerance.
 /// Domain: theta in [0, 90] degrees; sigma >= 0; cauchy q > 1, with smith masking q > 3/2; n > 0, k >= 0. Multiple
 /// scattering needs v-cavity masking, direct emission v-cavity or smith. At 90 degrees the moments are limits. Slopes
 /// that differ along and across need masking none or v-cavity; their density is integrated over slopes and azimuths as
 /// it is.
 class ReferenceEvaluator final : public ModelEvaluator {
  public:
-  explicit ReferenceEvaluator(ReferenceOptions options = {}) : options_(options) {}
+  explicit ReferenceEvaluator(reference::Refinement refinement = {}) : refinement_(refinement) {}
   std::vector<Moments> evaluate(const MomentsRequest& request, const Progress& progress) override;
   /// Computes pBRDFs with explicit vectors (reference/mueller.hpp). Accuracy: kScatteringError.
   std::vector<ScatteringMatrix> scatter(const ScatteringRequest& request, const Progress& progress) override;
@@ -40,7 +34,7 @@ class ReferenceEvaluator final : public ModelEvaluator {
  private:
   void note(double seconds);
 
-  ReferenceOptions options_;
+  reference::Refinement refinement_;
   EvaluationReport report_;
 };
 

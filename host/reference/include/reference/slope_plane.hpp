@@ -31,7 +31,7 @@ struct SlopePoint {
 
 inline SlopePoint slope_point(double t, double chi_rad) { return {t, std::sin(chi_rad), std::cos(chi_rad)}; }
 
-using Electric = std::array<std::complex<double>, 3>;
+using Electric = Vector<std::complex<double>>;
 
 /// Unit vector toward the viewer in the axes of a groove: u across the groove (azimuth phi), v along the groove, z up.
 inline Vector<double> toward_view(const SlopePoint& point, const Zenith& view) {
@@ -46,8 +46,7 @@ struct UnitLight {
 
 inline UnitLight unit_light(const SlopePoint& point, const Vector<double>& k) {
   const Vector<double> s{point.cos_chi, point.sin_chi, 0.0};
-  const Vector<double> p = cross(k, s);
-  return {{s[0], s[1], s[2]}, {p[0], p[1], p[2]}};
+  return {s.cast<std::complex<double>>(), k.cross(s).cast<std::complex<double>>()};
 }
 
 /// Reflects the electric vector `e` at a facet, in place. Returns the intensity that the facet absorbs.

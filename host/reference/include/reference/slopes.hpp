@@ -19,7 +19,6 @@ struct MirrorWeights {
 class Slopes {
  public:
   /// Domain: sigma > 0; cauchy q > 1.
-  Slopes(Distribution distribution, double sigma, double q);
   Slopes(Distribution distribution, const SlopeShape& shape);
 
   /// Weight of a facet whose normal is tilted toward the azimuth phi, counter-clockwise from the viewer; 1 if

@@ -56,15 +56,8 @@ const SkyProfile* scene_profile(const SceneModel& scene) {
 
 double source_irradiance(const SceneModel& scene, double wavelength_um, double emitted) {
   const Source& source = *scene.source;
-  switch (source.kind) {
-    case Source::Kind::kFlat:
-      return source.scale * source.irradiance;
-    case Source::Kind::kRelative:
-      return source.scale * source.relative_irradiance * emitted;
-    case Source::Kind::kTabulated:
-      return source.scale * source.table.at(wavelength_um);
-  }
-  return 0.0;
+  if (source.relative_irradiance) return source.scale * *source.relative_irradiance * emitted;
+  return source.scale * (source.table ? source.table->at(wavelength_um) : source.irradiance);
 }
 
 double path_exitance(const Path& path, double wavelength_um) {
@@ -173,9 +166,9 @@ SampledScene::SampledScene(const SceneModel& scene) : model(scene) {
 
 std::vector<FineNode> fine_nodes(SampledScene& scene, double from_um, double to_um) {
   const std::optional<Source>& source = scene.model.source;
-  const bool tabulated = source && source->kind == Source::Kind::kTabulated;
   const SkyProfile* profile = scene_profile(scene.model);
-  const std::vector<double> source_wavelengths = tabulated ? source->table.wavelength_um : std::vector<double>{};
+  const std::vector<double> source_wavelengths =
+      source && source->table ? source->table->wavelength_um : std::vector<double>{};
   const std::vector<double> profile_breaks = profile ? profile->breaks_um() : std::vector<double>{};
   const std::vector<double> response_rows = response_rows_um(scene.model.spectrum);
   const std::vector<double> ends = segment_ends(from_um, to_um, {&source_wavelengths, &profile_breaks, &response_rows});

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "base/parallel_ranges.hpp"
-#include "spectrum/thinned_rule.hpp"
 
 namespace dolp {
 namespace {

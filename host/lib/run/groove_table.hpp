@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "model/further_light.hpp"
+#include "model/scattering.hpp"
 #include "model/scene_entry.hpp"
 #include "plan/weighted_sums.hpp"
 #include "scene/scene.hpp"

@@ -1,6 +1,4 @@
 // A thinned rule against the rule from which it comes: sums at other angles than those that choose the samples.
-#include "spectrum/thinned_rule.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "spectrum/spectral_rules.hpp"
+#include "spectrum/spectral_rule.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -9,7 +9,7 @@
 #include "model/scene_entry.hpp"
 #include "plan/weighted_sums.hpp"
 #include "scene/scene.hpp"
-#include "spectrum/spectral_rules.hpp"
+#include "spectrum/spectral_rule.hpp"
 
 namespace dolp {
 

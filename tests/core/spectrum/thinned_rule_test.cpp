@@ -10,7 +10,7 @@
 #include "model/smooth_surface.hpp"
 #include "scene/material_data.hpp"
 #include "scene/sky_profile.hpp"
-#include "spectrum/spectral_rules.hpp"
+#include "spectrum/spectral_rule.hpp"
 
 namespace thinned_rule_test {
 

@@ -49,7 +49,6 @@ SceneValues steel_scene(Masking masking, const GridSize& size) {
   scene.surface.diffuse_exponent = -0.1;
   scene.emission = Emission{298.15, EmissionModel::kMoments};
   Source source;
-  source.kind = Source::Kind::kRelative;
   source.relative_irradiance = 0.6;
   scene.source = source;
   scene.spectrum.min_um = scene.spectrum.max_um = 10.6;

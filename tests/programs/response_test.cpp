@@ -37,7 +37,7 @@ TEST_F(Response, SceneWithoutAMaterial_HasOneForEachMasking) {
     const Outcome outcome = succeeded(response("--quiet --strict --set surface.masking=" + masking));
     EXPECT_EQ(outcome.out + outcome.err, "");
     const TableReader reader(at("r.nc"));
-    const TableBox all{{}, reader.head().counts()};
+    const GridBox all{{}, reader.head().counts()};
     const TableValues table = reader.read(all);
     reader.check_hash(reader.value_sums(table, all));
     ASSERT_EQ(table.size(), 12U);

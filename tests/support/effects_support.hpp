@@ -83,7 +83,6 @@ class RandomScenes {
       scene.source = Source{};
       scene.source->irradiance = random_.log_uniform(1e-9, 1e6);
       if (scene.emission && coin()) {
-        scene.source->kind = Source::Kind::kRelative;
         scene.source->relative_irradiance = random_.log_uniform(1e-7, 1e3);
       }
     }
@@ -117,7 +116,8 @@ inline std::string scene_text(const SceneValues& s) {
       s.geometry.relative_azimuth_deg, s.accuracy.tolerance);
   if (s.emission) text += fmt::format(", emission {:.9g} K {}", s.emission->temperature_K, to_name(s.emission->model));
   if (s.surroundings) text += fmt::format(", surroundings {:.9g} K", s.surroundings->temperature_K);
-  if (s.source) text += fmt::format(", source {:.4g} or {:.4g}", s.source->irradiance, s.source->relative_irradiance);
+  if (s.source)
+    text += fmt::format(", source {:.4g} or {:.4g}", s.source->irradiance, s.source->relative_irradiance.value_or(0.0));
   if (s.path)
     text += fmt::format(", path {:.3g} radiance {:.4g}", s.path->transmittance, s.path->radiance.value_or(0.0));
   return text;

@@ -118,7 +118,7 @@ inline std::unique_ptr<ModelEvaluator> make_evaluator(Kernel kernel, VulkanOptio
   const Precision precision = is_double(kernel) ? Precision::kDouble : Precision::kFloat;
   if (kernel == Kernel::kCpuFloat || kernel == Kernel::kCpuDouble) return std::make_unique<FixedPrecision>(precision);
   options.needs_double = is_double(kernel);
-  options.validation = ValidationMode::kOn;
+  options.has_validation = true;
   return std::make_unique<FixedPrecision>(precision, std::make_unique<VulkanEvaluator>(options));
 }
 

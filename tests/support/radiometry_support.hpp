@@ -71,8 +71,8 @@ inline PrintedStokes printed_stokes(const SceneValues& scene, Real wavelength_um
   if (scene.source) {
     const Source& source = *scene.source;
     Real irradiance = source.irradiance;
-    if (source.kind == Source::Kind::kRelative) irradiance = source.relative_irradiance * emitted;
-    if (source.kind == Source::Kind::kTabulated) irradiance = source.table.at(static_cast<double>(wavelength_um));
+    if (source.relative_irradiance) irradiance = *source.relative_irradiance * emitted;
+    if (source.table) irradiance = source.table->at(static_cast<double>(wavelength_um));
     incident += source.scale * irradiance * c;
   }
   PrintedStokes stokes{emitted * (1.0L - rho_i) + incident * rho_i, (incident - emitted) * rho_q};
@@ -151,8 +151,8 @@ class RandomScenes {
     scene.surroundings->temperature_K = uniform(0.0, 400.0);
     scene.source = Source{};
     scene.source->irradiance = uniform(0.0, 30.0);
-    scene.source->relative_irradiance = uniform(0.0, 3.0);
-    scene.source->kind = coin() ? Source::Kind::kFlat : Source::Kind::kRelative;
+    const double relative_irradiance = uniform(0.0, 3.0);
+    if (!coin()) scene.source->relative_irradiance = relative_irradiance;
     scene.source->scale = uniform(0.1, 2.0);
     scene.path = Path{uniform(0.0, 1.0), std::nullopt, std::nullopt};
     if (coin()) {
@@ -171,7 +171,7 @@ class RandomScenes {
     if (coin()) scene.path.reset();
     if (coin()) scene.source.reset();
     const bool needed = !scene.surroundings && !scene.path && !scene.source;
-    if (!needed && scene.source && scene.source->kind != Source::Kind::kRelative && coin()) scene.emission.reset();
+    if (!needed && scene.source && !scene.source->relative_irradiance && coin()) scene.emission.reset();
   }
   std::mt19937_64 generator_;
 };
@@ -196,7 +196,7 @@ inline std::vector<double> corners(const SceneValues& scene) {
   };
   add(scene.surface.material.n);
   add(scene.surface.material.k);
-  if (scene.source) add(scene.source->table);
+  if (scene.source && scene.source->table) add(*scene.source->table);
   std::ranges::sort(points);
   return points;
 }

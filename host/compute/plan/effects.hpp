@@ -13,7 +13,6 @@
 #include "scene/scene.hpp"
 #include "spectrum/sky_factors.hpp"
 #include "spectrum/spectral_rule.hpp"
-#include "spectrum/spectral_rules.hpp"
 
 namespace dolp {
 

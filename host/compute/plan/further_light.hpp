@@ -2,7 +2,7 @@
 
 #include "model/choices.hpp"
 #include "model/facet_optics.hpp"
-#include "model/further_light.hpp"
+#include "model/scattering.hpp"
 #include "model/slopes.hpp"
 
 namespace dolp {

@@ -32,6 +32,14 @@ struct MeasuredReflectance {
   std::size_t row_above(double angle_deg) const;  ///< the first row beyond the angle; the last row if there is none
 };
 
+/// Absorptances of a smooth surface, s = 1 - R_s and p = 1 - R_p.
+struct SmoothAbsorptance {
+  double s = 1.0;
+  double p = 1.0;
+  double error = 0.0;  ///< bound of the rounding errors of s and p that is not relative to them; 0 for a bare medium
+  double split = 0.0;  ///< (R_s - R_p) / sin^2(angle of incidence)
+};
+
 /// The material of a facet: a bare medium, a medium under films, or a surface with measured reflectances.
 struct FacetOptics {
   OpticalConstants index;   ///< n and k of the medium

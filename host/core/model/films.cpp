@@ -109,6 +109,10 @@ Ratio ratio(const Fields& fields, double cosine) {
   return {cosine * fields.field - fields.flux, cosine * fields.field + fields.flux};
 }
 
+FilmReflection products(Complex r_s, Complex r_p) {
+  return {std::norm(r_s), std::norm(r_p), product(std::conj(r_s), r_p)};
+}
+
 /// A stack at one angle of incidence.
 class Stack {
  public:
@@ -131,15 +135,16 @@ class Stack {
 
   FilmReflection reflection() const {
     const BothFields outside = fields();
-    return reflection(ratio(outside.s, cosine_), ratio(outside.p, cosine_));
+    const Ratio s = ratio(outside.s, cosine_), p = ratio(outside.p, cosine_);
+    return products(quotient(s.top, s.bottom), quotient(p.top, p.bottom));
   }
 
-  FilmAbsorptance absorptance() const {
+  SmoothAbsorptance absorptance() const {
     // Each film adds a few roundings of the fields. Where light is nearly all reflected, their net flux is a
     // difference.
     const double rounding = kFilmRounding * static_cast<double>(1 + waves_.size());
     const BothFields outside = fields();
-    FilmAbsorptance absorbed;
+    SmoothAbsorptance absorbed;
     const auto take = [&](const Fields& f) {
       const Ratio r = ratio(f, cosine_);
       const double reflected = std::norm(r.top) / std::norm(r.bottom);
@@ -153,11 +158,6 @@ class Stack {
     absorbed.s = take(outside.s);
     absorbed.p = take(outside.p);
     return absorbed;
-  }
-
-  static FilmReflection reflection(const Ratio& s, const Ratio& p) {
-    const Complex r_s = quotient(s.top, s.bottom), r_p = quotient(p.top, p.bottom);
-    return {std::norm(r_s), std::norm(r_p), product(std::conj(r_s), r_p)};
   }
 
   double cosine() const { return cosine_; }
@@ -196,8 +196,7 @@ class FilmSeries {
     const auto r = [&](std::size_t i) {
       return first_[i] + quotient(product(amplitude_[i], z), 1.0 - product(fall_[i], z));
     };
-    const Complex r_s = r(0), r_p = r(1);
-    return {std::norm(r_s), std::norm(r_p), product(std::conj(r_s), r_p)};
+    return products(r(0), r(1));
   }
 
   /// Products of the amplitudes at a thickness, without the terms z^m conj(z)^n with |m - n| > `most`. Domain: |z| so
@@ -341,7 +340,7 @@ FilmReflection film_reflection(const FacetOptics& optics, double cosine) {
   });
 }
 
-FilmAbsorptance film_absorptance(const FacetOptics& optics, double cosine) {
+SmoothAbsorptance film_absorptance(const FacetOptics& optics, double cosine) {
   // With a spread, absorptance / cosine is a straight line in the cosine below kGrazing. Above, 1 - R has enough
   // digits.
   constexpr double kGrazing = 1e-6;
@@ -349,12 +348,12 @@ FilmAbsorptance film_absorptance(const FacetOptics& optics, double cosine) {
     return Stack(optics, cosine).absorptance();
   const auto difference = [&](double at) {
     const FilmReflection r = film_reflection(optics, at);
-    return FilmAbsorptance{std::max(1.0 - r.r_s, 0.0), std::max(1.0 - r.r_p, 0.0), kFilmRounding};
+    return SmoothAbsorptance{std::max(1.0 - r.r_s, 0.0), std::max(1.0 - r.r_p, 0.0), kFilmRounding};
   };
   if (cosine >= kGrazing) return difference(cosine);
-  const FilmAbsorptance near = difference(kGrazing), far = difference(2.0 * kGrazing);
+  const SmoothAbsorptance near = difference(kGrazing), far = difference(2.0 * kGrazing);
   const double share = cosine / kGrazing;
-  FilmAbsorptance absorbed{0.0, 0.0, 4.0 * share * kFilmRounding};
+  SmoothAbsorptance absorbed{0.0, 0.0, 4.0 * share * kFilmRounding};
   const auto extrapolated = [&](double at, double beyond) {
     const double bend = 0.5 * beyond - at;
     if (at > 0.0) absorbed.error = std::max(absorbed.error, share * (4.0 * kFilmRounding + 4.0 * bend * bend / at));

@@ -25,16 +25,10 @@ struct FilmReflection {
 /// Accuracy: 1e-14 without a spread, 1e-9 with one, 4e-6 if the mean thickness is below 5 spreads (tests FilmSpread).
 FilmReflection film_reflection(const FacetOptics& optics, double cosine);
 
-struct FilmAbsorptance {
-  double s = 0.0;      ///< 1 - R_s
-  double p = 0.0;      ///< 1 - R_p
-  double error = 0.0;  ///< bound of the rounding errors of both
-};
-
-/// Absorptances of a medium under films, from the net flux of energy. They and their error are proportional to the
-/// cosine at grazing incidence, where 1 - R would lose its digits. Domain: as film_reflection(). Accuracy: with a
-/// spread, 1e-9 on top of `error`.
-FilmAbsorptance film_absorptance(const FacetOptics& optics, double cosine);
+/// Absorptances of a medium under films, from the net flux of energy, without SmoothAbsorptance::split. They and their
+/// error are proportional to the cosine at grazing incidence, where 1 - R would lose its digits. Domain: as
+/// film_reflection(). Accuracy: with a spread, 1e-9 on top of `error`.
+SmoothAbsorptance film_absorptance(const FacetOptics& optics, double cosine);
 
 inline constexpr std::size_t kMostVariedFilms = 2;
 

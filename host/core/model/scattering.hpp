@@ -65,6 +65,12 @@ struct Scattered {
   double error = 0.0;  ///< bound of the absolute error of i, q, u and v
 };
 
+/// The light that leaves a V-groove after two or more bounces, divided by the light that meets a second facet.
+struct FurtherLight {
+  double i = 0.0;  ///< the part of the light that leaves, if the light comes in unpolarised
+  double q = 0.0;  ///< as rho_Q is to rho_I: half the difference of this part for s and for p polarisation
+};
+
 /// The accuracy of a request for a run with a tolerance: the error of a beam is at most a tenth of the tolerance.
 inline double scattering_accuracy(Scattering scattering, double tolerance) {
   constexpr double kLeastAccuracy = 1e-5;  // however large the tolerance

@@ -7,11 +7,11 @@ namespace dolp {
 namespace {
 
 // A grid is cut along theta first, because kernels share work among the entries of one direction.
-constexpr std::array kCuttingOrder = {Axis::kViewZenith,    Axis::kRelativeAzimuth, Axis::kTheta, Axis::kMaterial,
-                                      Axis::kBand,          Axis::kWavelength,      Axis::kN,     Axis::kK,
-                                      Axis::kTemperature,   Axis::kSigma,           Axis::kQ,     Axis::kSigmaCross,
-                                      Axis::kSurfaceAzimuth};
-static_assert(kCuttingOrder.size() == kAxisCount);
+constexpr std::array<Axis, kAxisCount> kCuttingOrder = {
+    Axis::kViewZenith,    Axis::kRelativeAzimuth, Axis::kTheta, Axis::kMaterial,
+    Axis::kBand,          Axis::kWavelength,      Axis::kN,     Axis::kK,
+    Axis::kTemperature,   Axis::kSigma,           Axis::kQ,     Axis::kSigmaCross,
+    Axis::kSurfaceAzimuth};
 
 /// The member of the entry, or of its variant, that has the value on an axis of numbers.
 double* value_at(SceneEntry& entry, SceneVariant& variant, Axis axis) {
@@ -57,13 +57,33 @@ Axes make_axes(std::vector<double> theta_deg, std::vector<double> sigma, std::ve
   return axes;
 }
 
-Axes axes_part(const Axes& axes, const PerAxis& first, const PerAxis& count) {
+Axes axes_part(const Axes& axes, const GridBox& box) {
   Axes part;
   for (const Axis axis : kAllAxes) {
-    const auto begin = axes[axis].begin() + static_cast<std::ptrdiff_t>(first[axis]);
-    if (!axes[axis].empty()) part[axis] = {begin, begin + static_cast<std::ptrdiff_t>(count[axis])};
+    const auto begin = axes[axis].begin() + static_cast<std::ptrdiff_t>(box.first[axis]);
+    if (!axes[axis].empty()) part[axis] = {begin, begin + static_cast<std::ptrdiff_t>(box.count[axis])};
   }
   return part;
+}
+
+std::vector<GridBox> grid_boxes(const PerAxis& counts, std::size_t most, const std::array<Axis, kAxisCount>& order) {
+  std::vector<GridBox> boxes;
+  const std::function<void(GridBox, std::size_t)> cut_along = [&](GridBox box, std::size_t number) {
+    const Axis axis = order[number];
+    const std::size_t entries_per_value = grid_size(box.count) / box.count[axis];
+    const std::size_t fit = std::clamp<std::size_t>(most / entries_per_value, 1, counts[axis]);
+    for (std::size_t i = 0; i < counts[axis]; i += fit) {
+      box.first[axis] = i;
+      box.count[axis] = std::min(fit, counts[axis] - i);
+      if (entries_per_value > most && number + 1 < order.size()) {
+        cut_along(box, number + 1);
+      } else {
+        boxes.push_back(box);
+      }
+    }
+  };
+  if (grid_size(counts) > 0) cut_along({{}, counts}, 0);
+  return boxes;
 }
 
 PerAxis positions_on_axes(std::size_t position, const PerAxis& counts) {
@@ -156,11 +176,11 @@ SceneEntry SceneEntries::grid_entry(const PerAxis& at) const {
   return result;
 }
 
-SceneEntries SceneEntries::part(const PerAxis& first, const PerAxis& count) const {
-  SceneEntries part = grid(axes_part(axes_, first, count), index_, slopes_);
+SceneEntries SceneEntries::part(const GridBox& box) const {
+  SceneEntries part = grid(axes_part(axes_, box), index_, slopes_);
   part.whole_ = whole_;
   part.whole_axes_ = whole_axes_;
-  for (const Axis axis : kAllAxes) part.first_[axis] = first_[axis] + first[axis];
+  for (const Axis axis : kAllAxes) part.first_[axis] = first_[axis] + box.first[axis];
   return part;
 }
 
@@ -189,7 +209,7 @@ std::vector<OpticalConstants> SceneEntries::own_indices() const {
 }
 
 void SceneEntries::for_each_run(const SceneEntries& whole, const std::function<void(const GridRun&)>& use) const {
-  if (is_grid_) dolp::for_each_run(first_in(whole), counts_, whole.counts_, use);
+  if (is_grid_) dolp::for_each_run({first_in(whole), counts_}, whole.counts_, use);
   if (!is_grid_) use({0, first_point_ - whole.first_point_, size()});
 }
 
@@ -214,22 +234,21 @@ PerAxis SceneEntries::first_in(const SceneEntries& whole) const {
 }
 
 bool SceneEntries::has_values(Axis axis) const {
+  const bool is_index = axis == Axis::kN || axis == Axis::kK;
+  if (is_grid_) return is_index ? has_own_index() : describe(axis).is_required || !axes_[axis].empty();
+  const auto all_have = [&](const auto member) {
+    return std::ranges::all_of(points_, [&](const SceneEntry& point) { return (point.*member).has_value(); });
+  };
   switch (axis) {
     case Axis::kN:
     case Axis::kK:
-      return is_grid_ ? has_own_index()
-                      : std::ranges::all_of(points_, [](const SceneEntry& point) { return point.index.has_value(); });
+      return all_have(&SceneEntry::index);
     case Axis::kViewZenith:
+      return all_have(&SceneEntry::view_zenith_deg);
     case Axis::kRelativeAzimuth:
-      return is_grid_ ? !axes_[axis].empty() : std::ranges::all_of(points_, [&](const SceneEntry& point) {
-        return (axis == Axis::kViewZenith ? point.view_zenith_deg : point.relative_azimuth_deg).has_value();
-      });
+      return all_have(&SceneEntry::relative_azimuth_deg);
     case Axis::kSigmaCross:
-      return is_grid_
-                 ? !axes_[axis].empty()
-                 : std::ranges::any_of(points_, [](const SceneEntry& point) { return point.shape.sigma_cross > 0.0; });
-    case Axis::kSurfaceAzimuth:
-      return !is_grid_ || !axes_[axis].empty();
+      return has_own_cross_slopes();
     case Axis::kWavelength:
       return variants_.front().wavelength_um.has_value();
     case Axis::kTemperature:
@@ -299,23 +318,7 @@ std::vector<SceneEntries> SceneEntries::parts(std::size_t most) const {
     parts.back().whole_points_ = whole_size();
   }
   if (!is_grid_) return parts;
-  const std::function<void(PerAxis, PerAxis, std::size_t)> cut_along = [&](PerAxis first, PerAxis count,
-                                                                           std::size_t number) {
-    const Axis axis = kCuttingOrder[number];
-    const std::size_t entries_per_value = grid_size(count) / count[axis];
-    const std::size_t fit = std::clamp<std::size_t>(most / entries_per_value, 1, count[axis]);
-    const std::size_t all = count[axis];
-    for (std::size_t i = 0; i < all; i += fit) {
-      first[axis] = i;
-      count[axis] = std::min(fit, all - i);
-      if (entries_per_value > most && number + 1 < kCuttingOrder.size()) {
-        cut_along(first, count, number + 1);
-      } else {
-        parts.push_back(part(first, count));
-      }
-    }
-  };
-  cut_along({}, counts_, 0);
+  for (const GridBox& box : grid_boxes(counts_, most, kCuttingOrder)) parts.push_back(part(box));
   return parts;
 }
 
@@ -332,8 +335,8 @@ const SceneEntry& EntryReader::operator[](std::size_t position) {
   return entry_;
 }
 
-void for_each_run(const PerAxis& first, const PerAxis& count, const PerAxis& whole,
-                  const std::function<void(const GridRun&)>& use) {
+void for_each_run(const GridBox& part, const PerAxis& whole, const std::function<void(const GridRun&)>& use) {
+  const PerAxis& count = part.count;
   // Entries that differ only on `slowest` or later axes are consecutive: the part has all values of the later axes.
   std::size_t slowest = count.size() - 1;
   while (slowest > 0 && count[slowest] == whole[slowest]) --slowest;
@@ -342,7 +345,7 @@ void for_each_run(const PerAxis& first, const PerAxis& count, const PerAxis& who
       std::accumulate(count.begin() + from, count.end(), std::size_t{1}, std::multiplies<>());
   const std::size_t runs = grid_size(count) / entries_per_run;
   for (std::size_t run = 0; run < runs; ++run) {
-    PerAxis at = first;
+    PerAxis at = part.first;
     for (std::size_t i = slowest, rest = run; i-- > 0;) {
       at[i] += rest % count[i];
       rest /= count[i];

@@ -23,8 +23,20 @@ namespace dolp {
 Axes make_axes(std::vector<double> theta_deg, std::vector<double> sigma, std::vector<double> q,
                std::vector<double> wavelength_um = {}, std::vector<double> n = {}, std::vector<double> k = {});
 
-/// Cuts each axis to count[axis] values, from position first[axis] on. Empty axes stay empty.
-Axes axes_part(const Axes& axes, const PerAxis& first, const PerAxis& count);
+/// A part of a grid: on each axis, `count` values from position `first`.
+struct GridBox {
+  PerAxis first = {};
+  PerAxis count = {};
+};
+
+/// Cuts each axis to the values of the box. Empty axes stay empty.
+Axes axes_part(const Axes& axes, const GridBox& box);
+
+/// Cuts a grid into boxes of at most `most` entries, but at least one. A box has all values of the last axes of
+/// `order`, some values of one axis before them, and one value of each earlier axis. By default the boxes are in the
+/// grid's order.
+std::vector<GridBox> grid_boxes(const PerAxis& counts, std::size_t most,
+                                const std::array<Axis, kAxisCount>& order = kAllAxes);
 
 /// The position on each axis of entry number `position` in a table. `counts`: number of values on each axis.
 PerAxis positions_on_axes(std::size_t position, const PerAxis& counts);
@@ -141,7 +153,7 @@ class SceneEntries {
   SceneEntries chosen(std::span<const std::size_t> positions) const;
   /// Cuts the entries into parts of at most `most` entries. The parts of a grid are grids, too.
   std::vector<SceneEntries> parts(std::size_t most) const;
-  SceneEntries part(const PerAxis& first, const PerAxis& count) const;
+  SceneEntries part(const GridBox& box) const;
   const PerAxis& first() const { return first_; }     ///< position of the part's first value on each axis of the grid
   PerAxis first_in(const SceneEntries& whole) const;  ///< like first(), but relative to `whole`, a larger part
   const PerAxis& whole() const { return whole_; }     ///< number of values on each axis of the whole grid
@@ -185,9 +197,7 @@ class EntryReader {
   SceneEntry entry_;
 };
 
-/// Calls `use` for each GridRun of a part of a grid. The grid has whole[axis] values on each axis. The part has
-/// count[axis] of these values, beginning with number first[axis].
-void for_each_run(const PerAxis& first, const PerAxis& count, const PerAxis& whole,
-                  const std::function<void(const GridRun&)>& use);
+/// Calls `use` for each GridRun of a part of a grid. The grid has whole[axis] values on each axis.
+void for_each_run(const GridBox& part, const PerAxis& whole, const std::function<void(const GridRun&)>& use);
 
 }  // namespace dolp

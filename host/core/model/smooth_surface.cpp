@@ -63,8 +63,7 @@ SmoothAbsorptance between_rows(const MeasuredReflectance& measured, std::size_t 
 
 SmoothAbsorptance covered_absorptance(const FacetOptics& optics, double cosine) {
   if (optics.measured) return between_rows(*optics.measured, optics.measured->row_above(beta_deg_at(cosine)), cosine);
-  const auto [s, p, error] = film_absorptance(optics, cosine);
-  return {s, p, error};
+  return film_absorptance(optics, cosine);
 }
 
 /// Adds `split`, (R_s - R_p) / sin^2(beta), to absorptances. Near normal incidence, where it is 0 / 0, it is

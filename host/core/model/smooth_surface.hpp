@@ -9,14 +9,6 @@
 
 namespace dolp {
 
-/// Absorptances of a smooth surface, s = 1 - R_s and p = 1 - R_p.
-struct SmoothAbsorptance {
-  double s = 1.0;
-  double p = 1.0;
-  double error = 0.0;  ///< bound of the rounding errors of s and p that is not relative to them; 0 for a bare medium
-  double split = 0.0;  ///< (R_s - R_p) / sin^2(angle of incidence)
-};
-
 /// Equation: a bare medium has 1 - R_s = 4 c Re(w) / |c + w|^2 and 1 - R_p = 4 c Re(conj(N^2) w) / |N^2 c + w|^2, where
 /// c is the cosine and w = sqrt(N^2 - 1 + c^2). Under films they are film_absorptance().
 /// Domain: cosine c in (0, 1], n > 0, k >= 0. Total reflection (n < 1, k = 0) gives exactly 0.

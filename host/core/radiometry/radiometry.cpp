@@ -141,8 +141,8 @@ Stokes grazing_stokes(const SceneModel& scene, const SpectralRule& rule, std::sp
 }
 
 bool is_isothermal(const SpectralRule& rule) {
-  return std::ranges::all_of(rule.samples,
-                             [](const SpectralSample& sample) { return sample.excess == 0.0 && sample.sky.empty(); });
+  return std::ranges::all_of(
+      rule.samples, [](const SpectralSample& sample) { return sample.excess == 0.0 && sample.sky.size() == 0; });
 }
 
 PointResult grazing_limit(const SceneModel& scene, const SpectralRule& rule, std::span<const SkyWeights> sky,
@@ -229,11 +229,8 @@ Radiometry::Radiometry(const SceneModel& scene, SpectralRule rule, const Radiome
 Radiometry::Optics Radiometry::optics_with(std::vector<FacetOptics> facets) const {
   Optics optics;
   for (const FacetOptics& facet : facets) optics.diffuse.emplace_back(scene_.surface, facet, settings_.transmission);
-  for (std::size_t j = 0; scene_.surface.diffuse > 0.0 && j < sky_.size(); ++j) {
-    const std::vector<double>& sky = kept_rule_.samples[j].sky;
-    const Eigen::Map<const Eigen::VectorXd> values(sky.data(), static_cast<Eigen::Index>(sky.size()));
-    optics.diffuse_beyond_mean.push_back(optics.diffuse[j].sky_mean(basis_->nodes(), values));
-  }
+  for (std::size_t j = 0; scene_.surface.diffuse > 0.0 && j < sky_.size(); ++j)
+    optics.diffuse_beyond_mean.push_back(optics.diffuse[j].sky_mean(basis_->nodes(), kept_rule_.samples[j].sky));
   optics.facets = std::move(facets);
   return optics;
 }

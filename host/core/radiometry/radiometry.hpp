@@ -5,7 +5,6 @@
 
 #include <dolp/results.hpp>
 #include "model/direction.hpp"
-#include "model/further_light.hpp"
 #include "model/moments.hpp"
 #include "model/scattering.hpp"
 #include "radiometry/diffuse.hpp"

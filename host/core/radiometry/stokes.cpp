@@ -74,17 +74,6 @@ void add_emitting_sample(Stokes& sum, const SpectralSample& sample, const Reflec
                  rounding * (std::abs(sample.emitted * e.u) + std::abs(incident * r.rho_u));
 }
 
-struct Span {
-  double middle = 0.0;
-  double half = 0.0;
-};
-
-Span value_span(const std::vector<double>& values) {
-  if (values.empty()) return {};
-  const auto [least, most] = std::ranges::minmax(values);
-  return {0.5 * (least + most), 0.5 * (most - least)};
-}
-
 }  // namespace
 
 Stokes stokes_sum(const SpectralRule& rule, std::span<const Reflectance> reflectances,
@@ -220,15 +209,17 @@ Bracket bracket(const SceneModel& scene, const SpectralRule& rule, std::span<con
   double error = sky.q_error;
   for (std::size_t j = 0; j < reflectances.size(); ++j) {
     const SpectralSample& sample = rule.samples[j];
-    const Span beyond_mean = value_span(sample.sky);
-    const double net = sample.irradiance * cos_theta + sample.excess + beyond_mean.middle;
+    const double least = sample.sky.size() > 0 ? sample.sky.minCoeff() : 0.0;
+    const double most = sample.sky.size() > 0 ? sample.sky.maxCoeff() : 0.0;
+    const double middle = 0.5 * (least + most);  // of the sky, beyond its mean
+    const double net = sample.irradiance * cos_theta + sample.excess + middle;
     const double rest = std::max(reflectances[j].absorbed - direct[j].i, 0.0);
-    q -= net * direct[j].q + beyond_mean.middle * reflectances[j].rho_q;
+    q -= net * direct[j].q + middle * reflectances[j].rho_q;
     unknown += std::abs(net) * rest;
-    unreached += beyond_mean.half * rest;
+    unreached += 0.5 * (most - least) * rest;
     reflected += net * rest;
     error += std::abs(net) * (reflectances[j].absorbed_error + direct[j].i_error + direct[j].q_error) +
-             std::abs(beyond_mean.middle) * reflectances[j].rho_q_error;
+             std::abs(middle) * reflectances[j].rho_q_error;
   }
   for (const double Emissivity::*part : {&Emissivity::i, &Emissivity::q}) {
     error += panel_error(rule, [&](std::size_t j, std::size_t m) {

@@ -1,8 +1,8 @@
-#include "scene/dispersion.hpp"
-
 #include <cmath>
 #include <limits>
 #include <span>
+
+#include "scene/scene.hpp"
 
 namespace dolp {
 namespace {

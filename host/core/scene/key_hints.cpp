@@ -1,5 +1,3 @@
-#include "scene/key_hints.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>

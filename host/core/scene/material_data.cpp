@@ -24,27 +24,27 @@ enum IndexColumn : std::size_t { kIndexName = 0, kWavelength = 1, kN = 2, kK = 3
 
 enum SourceColumn : std::size_t { kName = 0, kSource = 6, kKind = 7, kSourceColumns = 8 };
 
-std::vector<Material> read_sources() {
-  std::vector<Material> materials;
-  CsvReader row(embedded_materials_sources_csv(), "materials_sources.csv (built in)");
-  row.next();  // names
-  while (row.next()) {
-    if (row.cells().size() != kSourceColumns) row.fail("8 columns are expected");
-    materials.push_back({std::string(row.cells()[kName]), std::string(row.cells()[kSource]), {}, {}, {}});
-  }
-  return materials;
-}
-
 std::vector<Material> read_built_in_materials() {
-  std::vector<Material> materials = read_sources();
+  std::vector<Material> materials;
+  CsvReader source(embedded_materials_sources_csv(), "materials_sources.csv (built in)");
+  source.next();  // names
+  while (source.next()) {
+    const std::vector<std::string_view>& cells = source.cells();
+    if (cells.size() != kSourceColumns) source.fail("8 columns are expected");
+    Material& material = materials.emplace_back();
+    material.name = cells[kName];
+    material.source = cells[kSource];
+    material.kind = cells[kKind];
+  }
   CsvReader row(embedded_materials_csv(), "materials.csv (built in)");
   row.next();  // names
   while (row.next()) {
     if (row.cells().size() != kIndexColumns) row.fail("4 columns are expected");
     const auto material = std::ranges::find(materials, row.cells()[kIndexName], &Material::name);
     if (material == materials.end()) row.fail("the material has no source");
-    append_index(*material, row.number(kWavelength, "wavelength_um"), row.number(kN, "n"), row.number(kK, "k"),
-                 row.where());
+    const double wavelength_um = row.number(kWavelength, "wavelength_um");
+    append_row(material->n, wavelength_um, {"n", row.number(kN, "n"), kNRange}, row.where());
+    append_row(material->k, wavelength_um, {"k", row.number(kK, "k"), kKRange}, row.where());
   }
   return materials;
 }
@@ -96,14 +96,6 @@ std::vector<std::string> similar_names(std::string_view name) {
 }
 
 }  // namespace
-
-std::string material_kind(std::string_view name) {
-  CsvReader row(embedded_materials_sources_csv(), "materials_sources.csv (built in)");
-  while (row.next()) {
-    if (row.cells()[kName] == name) return std::string(row.cells()[kKind]);
-  }
-  return {};
-}
 
 const std::vector<Material>& built_in_materials() {
   static const std::vector<Material> materials = read_built_in_materials();
@@ -184,12 +176,6 @@ std::vector<double> Surface::optics_rows_um() const {
   return rows;
 }
 
-void append_index(Material& material, double wavelength_um, std::optional<double> n, std::optional<double> k,
-                  const std::string& where) {
-  if (n) append_row(material.n, wavelength_um, {"n", *n, kNRange}, where);
-  if (k) append_row(material.k, wavelength_um, {"k", *k, kKRange}, where);
-}
-
 Spectrum known_range(const Material& material) {
   const std::vector<double>& n_um = material.n.wavelength_um;
   const std::vector<double>& k_um = material.k.wavelength_um.empty() ? n_um : material.k.wavelength_um;
@@ -226,8 +212,10 @@ Material fit_to_spectrum(const Material& material, const Spectrum& spectrum, con
   check_covers(material, spectrum, prefix);
   check_formula(material, spectrum, prefix);
   if (spectrum.is_band()) return material;
-  return {
-      material.name, material.source, material.at(spectrum.min_um), {}, {}, std::make_shared<const Material>(material)};
+  return {.name = material.name,
+          .source = material.source,
+          .constant = material.at(spectrum.min_um),
+          .tabulated = std::make_shared<const Material>(material)};
 }
 
 }  // namespace dolp

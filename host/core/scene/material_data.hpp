@@ -12,8 +12,6 @@ namespace dolp {
 /// The materials of host/data/materials.csv with their sources, in the order of host/data/materials_sources.csv.
 const std::vector<Material>& built_in_materials();
 
-std::string material_kind(std::string_view name);  ///< kind of a built-in material: "metal", "polymer", ...
-
 /// The built-in material with this name. If there is none: the one whose name begins with the words `name`. If there is
 /// none: the one whose name contains them. Null if no material or several materials fit.
 const Material* match_material(std::string_view name);
@@ -33,10 +31,6 @@ Material find_material(std::string_view name, const Spectrum& spectrum, const st
 /// n - ik. Rows with NaN are left out.
 /// Errors: InputError with file and line. If the file cannot be opened, the message begins with `prefix`.
 Material read_material_file(const std::string& path, const Spectrum& spectrum, const std::string& prefix);
-
-/// Checks n, k or both at one wavelength and appends them to the material's tables. Messages begin with `where`.
-void append_index(Material& material, double wavelength_um, std::optional<double> n, std::optional<double> k,
-                  const std::string& where);
 
 /// The range of wavelengths in which a tabulated material has both n and k.
 Spectrum known_range(const Material& material);

@@ -22,20 +22,18 @@ constexpr std::size_t kMostPointsBytes = 1U << 30U;
 
 using FilmColumn = std::pair<std::size_t, FilmValue::Part>;
 
-/// A column of points: values on an axis, values of a film, or theta_i, theta_r or delta_phi, which are required.
+/// A column of points: values on an axis or of a film.
 struct ColumnRule {
   std::string name;
   NumberRange range;
-  std::variant<Axis, Points::Column Points::*, FilmColumn> column;
+  std::variant<Axis, FilmColumn> column;
+  bool is_required = false;
   bool is_wind = false;  ///< the column has winds; value() turns them into sigmas
 
   double value(double number) const { return is_wind ? sigma_of_wind(number) : number; }
-  bool is_required() const { return column.index() == 1; }
-  CsvColumn in_file() const { return {name, range, is_required()}; }
   Points::Column& of(Points& points) const {
-    if (const FilmColumn* film = std::get_if<FilmColumn>(&column)) return points.films[*film];
     const Axis* axis = std::get_if<Axis>(&column);
-    return axis ? points[*axis] : points.*std::get<1>(column);
+    return axis ? points[*axis] : points.films[std::get<FilmColumn>(column)];
   }
 };
 
@@ -60,9 +58,9 @@ std::vector<ColumnRule> column_rules(PointsKind kind, const std::vector<std::str
   std::vector<ColumnRule> rules;
   const bool has_pairs = kind == PointsKind::kGeometries;
   if (has_pairs) {
-    rules.push_back({"theta_i_deg", kZenithDegRange, &Points::theta_i_deg});
-    rules.push_back({"theta_r_deg", kZenithDegRange, &Points::theta_r_deg});
-    rules.push_back({"delta_phi_deg", kAzimuthDegRange, &Points::delta_phi_deg});
+    rules.push_back({"theta_i_deg", kZenithDegRange, Axis::kTheta, true});
+    rules.push_back({"theta_r_deg", kZenithDegRange, Axis::kViewZenith, true});
+    rules.push_back({"delta_phi_deg", kAzimuthDegRange, Axis::kRelativeAzimuth, true});
   }
   for (const Axis axis : kColumnOrder) {
     constexpr std::array kOfPairs = {Axis::kSigma, Axis::kQ,          Axis::kN,
@@ -70,14 +68,14 @@ std::vector<ColumnRule> column_rules(PointsKind kind, const std::vector<std::str
     if (has_pairs && std::ranges::find(kOfPairs, axis) == kOfPairs.end()) continue;
     rules.push_back({describe(axis).column, describe(axis).range, axis});
   }
-  rules.push_back({kWind.column, kWind.range, Axis::kSigma, true});
+  rules.push_back({kWind.column, kWind.range, Axis::kSigma, false, true});
   append_film_rules(rules, names);
   return rules;
 }
 
 std::vector<CsvColumn> csv_columns(const std::vector<ColumnRule>& rules) {
   std::vector<CsvColumn> columns;
-  for (const ColumnRule& rule : rules) columns.push_back(rule.in_file());
+  for (const ColumnRule& rule : rules) columns.push_back({rule.name, rule.range, rule.is_required});
   return columns;
 }
 
@@ -99,13 +97,6 @@ std::vector<std::string> header_words(std::string_view text) {
   return words;
 }
 
-const ColumnRule& find_rule(const std::vector<ColumnRule>& rules, std::string_view name, const Points& points) {
-  const auto found = std::ranges::find(rules, name, &ColumnRule::name);
-  if (found == rules.end())
-    throw InputError(fmt::format("{}: {}", points.where(), unknown_column(name, csv_columns(rules))));
-  return *found;
-}
-
 std::vector<double>& add_column(Points& points, const ColumnRule& rule) {
   if (rule.of(points)) {
     const bool is_other = rule.is_wind != points.has_winds && std::holds_alternative<Axis>(rule.column) &&
@@ -120,7 +111,7 @@ std::vector<double>& add_column(Points& points, const ColumnRule& rule) {
 void check_required(Points& points, const std::vector<ColumnRule>& rules) {
   std::vector<std::string> missing;
   for (const ColumnRule& rule : rules) {
-    if (rule.is_required() && !rule.of(points))
+    if (rule.is_required && !rule.of(points))
       missing.push_back(fmt::format("column \"{}\" is missing, a number in {}", rule.name, rule.range.text()));
   }
   if (!missing.empty()) throw InputError(fmt::format("{}: {}", points.where(), fmt::join(missing, "; ")));
@@ -219,7 +210,10 @@ Points make_points(std::span<const Column> columns, std::size_t count, PointsKin
   points.name = "points";
   points.count = count;
   for (const Column& column : columns) {
-    const ColumnRule& rule = find_rule(rules, column.name, points);
+    const auto found = std::ranges::find(rules, column.name, &ColumnRule::name);
+    if (found == rules.end())
+      throw InputError(fmt::format("{}: {}", points.where(), unknown_column(column.name, csv_columns(rules))));
+    const ColumnRule& rule = *found;
     const std::span<const double> values = column.values;
     if (values.size() != 1 && values.size() != count) {
       throw InputError(

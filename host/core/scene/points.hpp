@@ -17,8 +17,8 @@ namespace dolp {
 enum class PointsKind {
   /// For the commands `eval` and `lookup`. At least one column: an axis (theta_deg, sigma, n, ...) or a film's value.
   kDirections,
-  /// For the command `mueller`. Required columns: theta_i_deg, theta_r_deg, delta_phi_deg. Optional columns: sigma or
-  /// wind_m_s, q, n, k, and values of films.
+  /// For the command `mueller`. Required columns: theta_i_deg, theta_r_deg, delta_phi_deg, which are values on the axes
+  /// theta, view zenith and relative azimuth. Optional columns: sigma or wind_m_s, q, n, k, and values of films.
   kGeometries,
 };
 
@@ -35,10 +35,9 @@ struct Points {
   AxisLabels labels;
   /// Columns such as "surface.coating.1.thickness_um". Map key: the layer (0 for coating.1), and n, k or thickness.
   std::map<std::pair<std::size_t, FilmValue::Part>, Column> films;
-  bool has_winds = false;                          ///< true if the points have winds instead of sigmas
-  Column theta_i_deg, theta_r_deg, delta_phi_deg;  ///< only for kGeometries, which have no theta_deg and wavelength_um
-  std::size_t header_line = 0;                     ///< line of the header in the file; 0 for arrays
-  std::vector<std::uint32_t> row_lines;            ///< line of each row in the file; empty for arrays
+  bool has_winds = false;                ///< true if the points have winds instead of sigmas
+  std::size_t header_line = 0;           ///< line of the header in the file; 0 for arrays
+  std::vector<std::uint32_t> row_lines;  ///< line of each row in the file; empty for arrays
   std::size_t size() const { return count; }
   Column& operator[](Axis axis) { return coordinates[axis]; }
   const Column& operator[](Axis axis) const { return coordinates[axis]; }

@@ -12,10 +12,24 @@
 #include "model/facet_optics.hpp"
 #include "model/scattering.hpp"
 #include "model/scene_entry.hpp"
-#include "scene/dispersion.hpp"
 #include "scene/sky_profile.hpp"
 
 namespace dolp {
+
+inline constexpr int kDispersionFormulas = 9;
+
+/// A refractive index n as a function of wavelength: one of nine formulas, with the coefficients C1, C2, …
+/// Source: M. Polyanskiy, "Dispersion formulas", in the refractiveindex.info database, which numbers the formulas.
+/// Accuracy: reproduces published indices to their last digit (test Dispersion_Formulas_*).
+struct Dispersion {
+  int number = 0;                    ///< number of the formula, 1 to kDispersionFormulas; 0 means no formula
+  std::vector<double> coefficients;  ///< C1, C2, …; coefficient_counts() says how many are allowed
+
+  double at(double wavelength_um) const;  ///< n; NaN if the formula gives a negative n^2
+};
+
+/// The numbers of coefficients that a formula may have. Coefficients missing at the end are zero.
+std::vector<std::size_t> coefficient_counts(int number);
 
 /// A quantity over strictly ascending wavelengths, interpolated between them or given by a `formula`.
 struct SpectralTable {
@@ -31,6 +45,7 @@ struct SpectralTable {
 struct Material {
   std::string name;    ///< empty if the scene gives n and k as numbers
   std::string source;  ///< where the values come from; empty if the scene gives n and k as numbers
+  std::string kind;    ///< kind of a built-in material: "metal", "polymer", ...
   OpticalConstants constant;
   SpectralTable n, k;
   std::shared_ptr<const Material> tabulated = {};  ///< the whole table, if `constant` was taken from it; else null
@@ -93,12 +108,10 @@ struct Emission {
 
 /// Irradiance E0 of the source at normal incidence. A scene gives it in one of three ways.
 struct Source {
-  enum class Kind { kFlat, kRelative, kTabulated };
-  Kind kind = Kind::kFlat;
-  double irradiance = 0.0;           ///< for kFlat: W m-2 um-1, constant over a band
-  double relative_irradiance = 0.0;  ///< for kRelative: E0 / (pi B(T)) at each wavelength, T = emission.temperature_K
-  SpectralTable table;               ///< for kTabulated: W m-2 um-1
-  double scale = 1.0;                ///< E0 is multiplied by this
+  double irradiance = 0.0;                    ///< W m-2 um-1, constant over a band
+  std::optional<double> relative_irradiance;  ///< E0 / (pi B(T)) at each wavelength, T = emission.temperature_K
+  std::shared_ptr<const SpectralTable> table = nullptr;  ///< W m-2 um-1; null if E0 is a number
+  double scale = 1.0;                                    ///< E0 is multiplied by this
 };
 
 struct Surroundings {
@@ -145,13 +158,16 @@ struct Accuracy {
   bool may_interpolate = true;  ///< if false, the program integrates every entry and interpolates none
 };
 
-/// Names and paths as a scene gives them; empty if absent. Loading a built-in material makes `material` the full name.
-struct SceneNames {
-  struct OfLayer {
-    std::string material, material_file;
-  };
-  std::string material, material_file, reflectance_file, diffuse_file;
-  std::vector<OfLayer> coating;
+/// Name and path of a material as a scene gives them. Loading a built-in material makes `material` the full name.
+struct MaterialNames {
+  std::string material, material_file;
+  friend bool operator==(const MaterialNames&, const MaterialNames&) = default;
+};
+
+/// Names and paths as a scene gives them; empty if absent.
+struct SceneNames : MaterialNames {
+  std::string reflectance_file, diffuse_file;
+  std::vector<MaterialNames> coating;
   std::string source_preset, source_file;
   std::string profile;  ///< name of a built-in sky, or path of a file
   std::string response_file;

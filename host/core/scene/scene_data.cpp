@@ -1,4 +1,4 @@
-#include "scene/scene_data.hpp"
+#include "scene/scene_reader.hpp"
 
 #include <fmt/format.h>
 
@@ -21,10 +21,9 @@ std::string resolve_path(const std::string& file, const std::string& scene_path)
   return is_as_given ? file : scene_path.substr(0, slash + 1) + file;
 }
 
-/// The data of the scene's table, if the table's scene has the same name for them; else null. In a table, `name` of
-/// SceneNames names the data.
-const KnownData* stored_data(const SceneValues& scene, const auto& name) {
-  return scene.known && name(*scene.known->names) == name(scene.names) ? scene.known.get() : nullptr;
+/// The data of the scene's table, if the table's scene has the same name for them; else null.
+const KnownData* stored_data(const SceneValues& scene, std::string SceneNames::*name) {
+  return scene.known && (*scene.known->names).*name == scene.names.*name ? scene.known.get() : nullptr;
 }
 
 /// Reads a file that a scene names. If the scene comes from a table and the table's scene names the file too (`known`),
@@ -48,7 +47,7 @@ auto read_scene_file(SceneValues& scene, const std::string& file, const std::str
 template <class Data, class Read>
 Data stored_or_read(SceneValues& scene, std::string SceneNames::*name, std::optional<Data> KnownData::*stored,
                     const std::string& prefix, const Read& read) {
-  const KnownData* const known = stored_data(scene, [name](const SceneNames& all) { return all.*name; });
+  const KnownData* const known = stored_data(scene, name);
   if (known && known->*stored) return *(known->*stored);
   return read_scene_file(scene, scene.names.*name, prefix, known, read);
 }
@@ -80,18 +79,18 @@ bool is_built_in(const std::string& name, const Material& stored) {
   return true;
 }
 
-/// The place of a material in a scene: its table in the text, its names, and the material stored in the scene's table.
+/// The place of a material in a scene.
 struct MaterialPlace {
-  std::string table;
-  std::string& name;
-  const std::string& file;
-  const KnownData* known = nullptr;
-  const Material* stored = nullptr;
+  std::string table;  ///< TOML table
+  MaterialNames& names;
+  const MaterialNames* known_names = nullptr;       ///< names in the scene of KnownData; null if it lacks the place
+  const std::optional<Material>* stored = nullptr;  ///< material in KnownData; null if it lacks the place
 };
 
 /// Loads the material of the surface or of a film. Built-in data replace equal stored data, which may have one row.
 void load_material(SceneValues& scene, const SceneDocument& document, const MaterialPlace& place, Material& material) {
-  const auto& [table, name, file, known, found] = place;
+  const std::string& table = place.table;
+  auto& [name, file] = place.names;
   const bool is_file = document.find(table + ".material_file") != nullptr;
   if (!is_file && !document.find(table + ".material")) return;
   const std::string prefix = document.prefix(table + (is_file ? ".material_file" : ".material"));
@@ -103,13 +102,15 @@ void load_material(SceneValues& scene, const SceneDocument& document, const Mate
       check_formula(known_everywhere, {um, um}, prefix);
     }
   };
-  const Material* const stored = found && (is_file || !is_built_in(name, *found)) ? found : nullptr;
-  if (stored) {
-    material = *stored;
+  const bool is_known = place.known_names && *place.known_names == place.names;
+  const bool is_stored = is_known && place.stored && *place.stored;
+  if (is_stored && (is_file || !is_built_in(name, **place.stored))) {
+    material = **place.stored;
     material.name = is_file ? file : name;
     if (material.is_constant()) return;
     material = fit_to_spectrum(material, scene.spectrum, prefix);
   } else if (is_file) {
+    const KnownData* const known = is_known ? scene.known.get() : nullptr;
     material = read_scene_file(scene, file, prefix, known, [&](const std::string& path) {
       Material read = read_material_file(path, scene.spectrum, prefix);
       check_axis(read);
@@ -174,26 +175,17 @@ void load_axis_materials(SceneValues& scene, const SceneDocument& document) {
 
 void load_materials(SceneValues& scene, const SceneDocument& document) {
   Surface& surface = scene.surface;
-  SceneNames& names = scene.names;
-  const auto is_same = [](const SceneNames::OfLayer& a, const SceneNames::OfLayer& b) {
-    return a.material == b.material && a.material_file == b.material_file;
-  };
-  const KnownData* known =
-      stored_data(scene, [](const SceneNames& all) { return std::pair(all.material, all.material_file); });
+  const KnownData* const known = scene.known.get();
   load_axis_materials(scene, document);
-  load_material(
-      scene, document,
-      {"surface", names.material, names.material_file, known, known && known->material ? &*known->material : nullptr},
-      surface.material);
+  MaterialPlace medium{"surface", scene.names};
+  if (known) medium.known_names = &*known->names;
+  if (known) medium.stored = &known->material;
+  load_material(scene, document, medium, surface.material);
   for (std::size_t i = 0; i < surface.coating.size(); ++i) {
-    SceneNames::OfLayer& layer = names.coating[i];
-    const bool has_table = scene.known && i < scene.known->names->coating.size();
-    known = has_table && is_same(scene.known->names->coating[i], layer) ? scene.known.get() : nullptr;
-    const bool is_stored = known && i < known->layers.size() && known->layers[i];
-    load_material(scene, document,
-                  {fmt::format("surface.coating.{}", i + 1), layer.material, layer.material_file, known,
-                   is_stored ? &*known->layers[i] : nullptr},
-                  surface.coating[i].material);
+    MaterialPlace layer{fmt::format("surface.coating.{}", i + 1), scene.names.coating[i]};
+    if (known && i < known->names->coating.size()) layer.known_names = &known->names->coating[i];
+    if (known && i < known->layers.size()) layer.stored = &known->layers[i];
+    load_material(scene, document, layer, surface.coating[i].material);
   }
   if (!document.find("surface.reflectance_file")) return;
   const std::string prefix = document.prefix("surface.reflectance_file");
@@ -230,20 +222,19 @@ void load_source(SceneValues& scene, const SceneDocument& document) {
   const bool is_preset = document.find("source.preset") != nullptr;
   if (!is_preset && !document.find("source.file")) return;
   const std::string prefix = document.prefix(is_preset ? "source.preset" : "source.file");
-  Source& source = *scene.source;
-  source.kind = Source::Kind::kTabulated;
-  const KnownData* const known =
-      stored_data(scene, [](const SceneNames& all) { return std::pair(all.source_preset, all.source_file); });
+  SpectralTable table;
+  const KnownData* const known = stored_data(scene, is_preset ? &SceneNames::source_preset : &SceneNames::source_file);
   if (known && known->irradiance) {
-    source.table = *known->irradiance;
-    if (is_preset) source.table.interpolation = SpectralTable::Interpolation::kLogLog;
+    table = *known->irradiance;
+    if (is_preset) table.interpolation = SpectralTable::Interpolation::kLogLog;
   } else if (is_preset) {
-    source.table = sun_irradiance();
+    table = sun_irradiance();
   } else {
     const auto read = [&](const std::string& path) { return parse_irradiance(read_named_file(path, prefix), path); };
-    source.table = read_scene_file(scene, scene.names.source_file, prefix, known, read);
+    table = read_scene_file(scene, scene.names.source_file, prefix, known, read);
   }
-  check_covers(source.table, all_wavelengths(scene), prefix);
+  check_covers(table, all_wavelengths(scene), prefix);
+  scene.source->table = std::make_shared<const SpectralTable>(std::move(table));
 }
 
 void load_profile(SceneValues& scene, const SceneDocument& document) {
@@ -253,7 +244,7 @@ void load_profile(SceneValues& scene, const SceneDocument& document) {
       document.find("surroundings.vapour_cm") ? "surroundings.vapour_cm" : "surroundings.air_temperature_K";
   std::optional<SkyProfile> profile = built_in_sky(scene.names.profile, scene.surroundings->air,
                                                    document.find(air_key) ? document.prefix(air_key) : prefix);
-  const KnownData* const known = stored_data(scene, [](const SceneNames& all) { return all.profile; });
+  const KnownData* const known = stored_data(scene, &SceneNames::profile);
   if (!profile && known && known->profile) profile = known->profile;
   std::error_code unknown;
   const std::filesystem::file_status file =

@@ -146,10 +146,8 @@ SceneDocument::SceneDocument(const std::string& text, const std::string& path_na
     throw InputError(fmt::format("{}:{}: nested deeper than {}", name_, line, kMostDepth));
   }
   try {
-    root_ = toml::parse(std::string_view(text));
-    Lines lines;
-    add_lines(lines, "", root_);
-    lines_ = std::make_shared<const Lines>(std::move(lines));
+    text_ = toml::parse(std::string_view(text));
+    root_ = text_;
   } catch (const toml::parse_error& error) {
     throw InputError(fmt::format("{}:{}: {}", name_, error.source().begin.line, toml_fault(text, error)));
   }
@@ -164,6 +162,11 @@ bool is_removal(const Setting& setting) {
 
 void SceneDocument::apply(const Setting& setting) {
   const std::string& key = setting.key;
+  const SceneKey* const known = find_scene_key(key);
+  const std::vector<std::string> tables = scene_tables();
+  const bool is_known = known || is_coating(key) || std::ranges::find(tables, key) != tables.end();
+  if (is_removal(setting) && !is_known)
+    throw InputError(fmt::format("{}: unknown key; the nearest known key is {}", one_line(key), key_hint(key)));
   const std::string value = setting.value.text();
   const std::string origin = setting.origin.empty() ? one_line(key + " = " + value) : setting.origin;
   std::vector<std::string_view> path = split(key, '.');
@@ -179,7 +182,6 @@ void SceneDocument::apply(const Setting& setting) {
   path.pop_back();
   toml::table& table = create_table(path, origin);
   drop_other_alternatives(key);
-  const SceneKey* known = find_scene_key(key);
   const auto insert = [&](const auto& v) { table.insert_or_assign(leaf, v); };
   if (const auto* text = std::get_if<std::string>(&setting.value.content())) {
     insert(*text);  // this text need not be UTF-8, unlike TOML
@@ -238,8 +240,8 @@ void SceneDocument::erase(const std::string& key) {
   std::erase_if(origins_, [&](const auto& entry) { return entry.first == key || entry.first.starts_with(key + '.'); });
 }
 
-const toml::node* SceneDocument::find(std::string_view key) const {
-  const toml::node* node = &root_;
+const toml::node* SceneDocument::find_in(const toml::table& root, std::string_view key) {
+  const toml::node* node = &root;
   for (const std::string_view part : split(key, '.')) {
     if (const toml::array* list = node->as_array()) {
       node = list->get(list_position(part));
@@ -260,20 +262,10 @@ const std::string* SceneDocument::find_origin(std::string_view key) const {
   }
 }
 
-void SceneDocument::add_lines(Lines& lines, const std::string& key, const toml::node& node) {
-  lines[key] = node.source().begin.line;
-  const std::string before = key.empty() ? "" : key + '.';
-  if (const toml::table* table = node.as_table()) {
-    for (const auto& [name, value] : *table) add_lines(lines, before + std::string(name.str()), value);
-  } else if (const toml::array* list = node.as_array(); list && list->is_homogeneous<toml::table>()) {
-    for (std::size_t i = 0; i < list->size(); ++i) add_lines(lines, before + std::to_string(i + 1), *list->get(i));
-  }
-}
-
 unsigned SceneDocument::line_number(std::string_view key) const {
   for (; !key.empty(); key = table_part(key)) {
-    const auto found = lines_->find(key);
-    if (found != lines_->end() && found->second > 0) return found->second;
+    const toml::node* node = find_in(text_, key);
+    if (node && node->source().begin.line > 0) return node->source().begin.line;
   }
   return 1;
 }

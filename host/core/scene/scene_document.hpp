@@ -20,14 +20,17 @@ std::string toml_text(const toml::node& node, bool is_escaped = true);
 
 class SceneDocument {
  public:
+  SceneDocument(const SceneDocument&) = delete;
+  SceneDocument& operator=(const SceneDocument&) = delete;
+  SceneDocument(SceneDocument&&) = default;
   /// Errors: InputError for a syntax error, nesting deeper than 100, or a text longer than kMostTextBytes.
   SceneDocument(const std::string& text, const std::string& path_name);
 
-  /// Gives a key another value, or removes the key. Errors: InputError.
+  /// Gives a key another value, or removes the key. Errors: InputError, also for the removal of an unknown key.
   void apply(const Setting& setting);
 
   const toml::table& root() const { return root_; }
-  const toml::node* find(std::string_view key) const;
+  const toml::node* find(std::string_view key) const { return find_in(root_, key); }
   bool is_set(std::string_view key) const { return find_origin(key) != nullptr; }
 
   /// The first of `keys` that a setting gave, else the first of all. Messages blame it if `keys` contradict each other.
@@ -43,17 +46,15 @@ class SceneDocument {
   unsigned line_number(std::string_view key) const;
 
  private:
+  static const toml::node* find_in(const toml::table& root, std::string_view key);
   const std::string* find_origin(std::string_view key) const;
   toml::table& create_table(const std::vector<std::string_view>& path, const std::string& origin);
   void drop_other_alternatives(const std::string& key);
   void erase(const std::string& key);
 
-  using Lines = std::map<std::string, unsigned, std::less<>>;
-  static void add_lines(Lines& lines, const std::string& key, const toml::node& node);
-
   std::string name_;
   toml::table root_;
-  std::shared_ptr<const Lines> lines_;  // lines of the keys in the text; copies of nodes of toml++ have lost them
+  toml::table text_;  // without settings, for the lines of its keys; copies of nodes of toml++ have lost them
   std::map<std::string, std::string, std::less<>> origins_;  // key -> origin of the setting that gave it
 };
 

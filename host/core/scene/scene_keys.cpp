@@ -19,87 +19,68 @@ namespace {
 
 using Type = Key::Type;
 
-KeyValue to_key_value(double number) { return {.number = number}; }
-KeyValue to_key_value(bool flag) { return {.word = flag ? 1U : 0U, .text = flag ? "true" : "false"}; }
-KeyValue to_key_value(const std::string& text) { return {.text = text}; }
-KeyValue to_key_value(const std::vector<double>& numbers) { return {.numbers = numbers}; }
-KeyValue to_key_value(const std::vector<std::string>& names) { return {.names = names}; }
-template <class Choice>
-KeyValue to_key_value(Choice choice) requires std::is_enum_v<Choice> {
-  return {.word = static_cast<std::size_t>(choice), .text = to_name(choice)};
-}
-void assign(double& number, const KeyValue& v) { number = v.number; }
-void assign(std::optional<double>& number, const KeyValue& v) { number = v.number; }
-void assign(bool& flag, const KeyValue& v) { flag = v.word == 1; }
-void assign(std::string& text, const KeyValue& v) { text = v.text; }
-void assign(std::vector<double>& numbers, const KeyValue& v) { numbers = v.numbers; }
-void assign(std::vector<std::string>& names, const KeyValue& v) { names = v.names; }
-template <class Choice>
-void assign(Choice& choice, const KeyValue& v) requires std::is_enum_v<Choice> {
-  choice = static_cast<Choice>(v.word);
+template <class Content>
+void assign(Content& content, const KeyValue& value) {
+  if constexpr (std::is_enum_v<Content>) {
+    content = named<Content>(std::get<std::string>(value)).value();
+  } else if constexpr (std::is_same_v<Content, std::optional<double>>) {
+    content = std::get<double>(value);
+  } else {
+    content = std::get<Content>(value);
+  }
 }
 
 /// The value at `at`. nullopt for a null pointer, an empty text or list, and an absent number.
 template <class Content>
 std::optional<KeyValue> value_at(const Content* at) {
   if (!at) return std::nullopt;
-  if constexpr (std::is_same_v<Content, std::optional<double>>) {
-    return *at ? std::optional(to_key_value(**at)) : std::nullopt;
+  if constexpr (std::is_enum_v<Content>) {
+    return std::string(to_name(*at));
+  } else if constexpr (std::is_same_v<Content, std::optional<double>>) {
+    return *at ? std::optional<KeyValue>(**at) : std::nullopt;
   } else if constexpr (requires { at->empty(); }) {
-    return at->empty() ? std::nullopt : std::optional(to_key_value(*at));
+    return at->empty() ? std::nullopt : std::optional<KeyValue>(*at);
   } else {
-    return to_key_value(*at);
+    return *at;
   }
 }
 
 bool always(const SceneValues&) { return true; }
 
 /// Makes a key. `address(scene)`: pointer to the value, or null. `is_there(scene)`: true if the scene has the value.
-template <class Address, class IsThere>
-SceneKey key_at(Key description, Address address, IsThere is_there) {
+template <class Address, class IsThere = decltype(&always)>
+SceneKey key_at(Key description, Address address, IsThere is_there = always) {
   return {std::move(description), [address](SceneValues& s, const KeyValue& v) { assign(*address(s), v); },
           [address, is_there](const SceneValues& s) { return is_there(s) ? value_at(address(s)) : std::nullopt; }};
-}
-
-Key described(const std::string& key, Type type, const char* unit, const NumberRange& range, const char* fallback,
-              const char* meaning, std::vector<std::string> words = {}) {
-  return {key, type, unit, range, std::move(words), fallback, meaning};
-}
-
-SceneKey with_set(SceneKey key, std::function<void(SceneValues& scene, const KeyValue& value)> set) {
-  key.set = std::move(set);
-  return key;
 }
 
 template <class Address, class IsThere = decltype(&always)>
 SceneKey number(const std::string& key, const char* unit, const NumberRange& range, const char* fallback,
                 const char* meaning, Address address, IsThere is_there = always) {
-  return key_at(described(key, Type::kNumber, unit, range, fallback, meaning), address, is_there);
+  return key_at({key, Type::kNumber, unit, range, {}, fallback, meaning}, address, is_there);
 }
 
 template <class Choice, class Address>
 SceneKey choice(const char* key, Choice fallback, const char* meaning, Address address) {
   const auto words = choice_names(fallback);
-  return key_at(described(key, Type::kWord, "", {}, to_name(fallback), meaning, {words.begin(), words.end()}), address,
-                always);
+  return key_at({key, Type::kWord, "", {}, {words.begin(), words.end()}, to_name(fallback), meaning}, address);
 }
 
 template <class Address>
 SceneKey flag(const char* key, const char* meaning, Address address) {
-  return key_at(described(key, Type::kFlag, "", {}, "false", meaning, {"false", "true"}), address, always);
+  return key_at({key, Type::kFlag, "", {}, {"false", "true"}, "false", meaning}, address);
 }
 
 template <class Address, class IsThere = decltype(&always)>
 SceneKey text(const std::string& key, const char* meaning, Address address, IsThere is_there = always) {
-  return key_at(described(key, Type::kText, "", {}, "", meaning), address, is_there);
+  return key_at({key, Type::kText, "", {}, {}, "", meaning}, address, is_there);
 }
 
 SceneKey grid_axis(Axis axis, const char* fallback, const char* meaning) {
-  const AxisDescription& axis_description = describe(axis);
+  const AxisDescription& described = describe(axis);
   return key_at(
-      described(std::string("grid.") + axis_description.column, Type::kAxis, axis_description.units,
-                axis_description.range, fallback, meaning),
-      [axis](auto& s) { return &s.grid[axis]; }, always);
+      {std::string("grid.") + described.column, Type::kAxis, described.units, described.range, {}, fallback, meaning},
+      [axis](auto& s) { return &s.grid[axis]; });
 }
 
 template <class Element>
@@ -109,82 +90,6 @@ void append(std::vector<Element>& all, std::vector<Element> more) {
 
 bool has_own_index(const SceneValues& s) {
   return s.names.material.empty() && s.names.material_file.empty() && s.labels[Axis::kMaterial].empty();
-}
-
-void set_sigma(SceneValues& s, const KeyValue& v) {
-  s.surface.sigma = v.number;
-  s.surface.wind_m_s.reset();
-}
-
-/// Computes the slope widths of the winds, which the keys of the winds and of their model give in any order.
-void take_winds(SceneValues& s) {
-  const auto width = [&](double wind_m_s) { return sigma_in_wind(wind_m_s, s.surface.wind_model); };
-  if (s.surface.wind_m_s) s.surface.sigma = width(*s.surface.wind_m_s);
-  if (s.wind_m_s.empty()) return;
-  s.grid[Axis::kSigma].clear();
-  std::ranges::transform(s.wind_m_s, std::back_inserter(s.grid[Axis::kSigma]), width);
-}
-
-void set_wind(SceneValues& s, const KeyValue& v) {
-  s.surface.wind_m_s = v.number;
-  take_winds(s);
-}
-
-void set_wind_model(SceneValues& s, const KeyValue& v) {
-  assign(s.surface.wind_model, v);
-  take_winds(s);
-}
-
-/// Makes a key that gives E0. Its setter also sets the kind of the source.
-SceneKey source_number(const char* key, const char* unit, const char* meaning, Source::Kind kind,
-                       double Source::*number_member) {
-  const auto is_kind = [kind](const SceneValues& s) { return s.source && s.source->kind == kind; };
-  const auto set = [=](SceneValues& s, const KeyValue& v) {
-    s.source->kind = kind;
-    (*s.source).*number_member = v.number;
-  };
-  return with_set(
-      number(
-          key, unit, kNonNegativeRange, "", meaning, [=](auto& s) { return &((*s.source).*number_member); }, is_kind),
-      set);
-}
-
-/// Makes a key for a number of SkyAir. In a scene that has already been read, the key's setter computes the sky again.
-SceneKey air_number(const char* key, const char* unit, const NumberRange& range, const char* meaning,
-                    std::optional<double> SkyAir::*number_member) {
-  const auto set = [=](SceneValues& s, const KeyValue& v) {
-    s.surroundings->air.*number_member = v.number;
-    if (s.document)
-      s.surroundings->set_sky(built_in_sky(s.names.profile, s.surroundings->air, key + std::string(": ")).value());
-  };
-  return with_set(number(key, unit, range, "", meaning,
-                         [=](auto& s) { return s.surroundings ? &(s.surroundings->air.*number_member) : nullptr; }),
-                  set);
-}
-
-/// Makes a key for an end of a sky whose temperature is a straight line in the zenith.
-SceneKey sky_end(const char* key, const char* meaning, std::optional<double> Surroundings::*end_K) {
-  const auto set = [=](SceneValues& s, const KeyValue& v) {
-    Surroundings& sky = *s.surroundings;
-    sky.*end_K = v.number;
-    if (sky.zenith_K && sky.horizon_K)
-      sky.set_sky({.zenith_deg = {0.0, 90.0}, .values = {*sky.zenith_K, *sky.horizon_K}});
-  };
-  return with_set(number(key, "K", kBackgroundTemperatureRange, "", meaning,
-                         [=](auto& s) { return s.surroundings ? &((*s.surroundings).*end_K) : nullptr; }),
-                  set);
-}
-
-SceneKey wind_axis() {
-  const auto set = [](SceneValues& s, const KeyValue& v) {
-    s.wind_m_s = v.numbers;
-    take_winds(s);
-  };
-  return with_set(key_at(
-                      described("grid.wind_m_s", Type::kAxis, kWind.units, kWind.range, "",
-                                "winds of the table, instead of grid.sigma"),
-                      [](auto& s) { return &s.wind_m_s; }, always),
-                  set);
 }
 
 /// Layer number `layer` of the coating, counted from 1. Adds missing layers if the scene is not const.
@@ -207,7 +112,7 @@ std::vector<SceneKey> layer_keys(std::size_t layer) {
   const auto index_address = [=](auto OpticalConstants::*part) {
     return [=](auto& s) { return &(coating_layer(s, layer).material.constant.*part); };
   };
-  const auto name_address = [=](auto SceneNames::OfLayer::*name) {
+  const auto name_address = [=](auto MaterialNames::*name) {
     return [=](auto& s) {
       coating_layer(s, layer);
       return &(s.names.coating[layer - 1].*name);
@@ -219,9 +124,9 @@ std::vector<SceneKey> layer_keys(std::size_t layer) {
              index_address(&OpticalConstants::n), has_index),
       number(begin + "k", "1", kKRange, "0", "k of the film, with n", index_address(&OpticalConstants::k), has_index),
       text(begin + "material", "a built-in material by name, instead of the film's n and k",
-           name_address(&SceneNames::OfLayer::material), has_layer),
+           name_address(&MaterialNames::material), has_layer),
       text(begin + "material_file", "file with your own values of the film's n and k, instead of n and k",
-           name_address(&SceneNames::OfLayer::material_file), has_layer),
+           name_address(&MaterialNames::material_file), has_layer),
       number(
           begin + "thickness_um", "um", kThicknessUmRange, "required", "thickness of the film",
           [=](auto& s) { return &coating_layer(s, layer).thickness_um; }, has_layer),
@@ -256,20 +161,16 @@ std::vector<SceneKey> surface_keys() {
            [](auto& s) { return &s.names.reflectance_file; }),
       choice("surface.distribution", Surface().distribution, "slope distribution D",
              [](auto& s) { return &s.surface.distribution; }),
-      with_set(number("surface.sigma", "1", kSigmaRange, "required",
-                      "slope width sigma, with m^2 = 2 sigma^2; if absent, the first value of grid.sigma",
-                      [](auto& s) { return &s.surface.sigma; }),
-               set_sigma),
-      with_set(
-          number("surface.wind_m_s", "m s-1", kWindRange, "",
-                 "wind over a sea; sets sigma by 2 sigma^2 = 0.003 + 0.00512 wind; only with distribution gaussian",
-                 [](auto& s) { return &s.surface.wind_m_s; }),
-          set_wind),
-      with_set(choice("surface.wind_model", Surface().wind_model,
-                      "isotropic: the wind gives one slope width; directional: sigma^2 = 0.00316 wind along it, and "
-                      "0.003 + 0.00192 wind across (masking none or v-cavity; smith only with emission.model = direct)",
-                      [](auto& s) { return &s.surface.wind_model; }),
-               set_wind_model),
+      number("surface.sigma", "1", kSigmaRange, "required",
+             "slope width sigma, with m^2 = 2 sigma^2; if absent, the first value of grid.sigma",
+             [](auto& s) { return &s.surface.sigma; }),
+      number("surface.wind_m_s", "m s-1", kWindRange, "",
+             "wind over a sea; sets sigma by 2 sigma^2 = 0.003 + 0.00512 wind; only with distribution gaussian",
+             [](auto& s) { return &s.surface.wind_m_s; }),
+      choice("surface.wind_model", Surface().wind_model,
+             "isotropic: the wind gives one slope width; directional: sigma^2 = 0.00316 wind along it, and 0.003 + "
+             "0.00192 wind across (masking none or v-cavity; smith only with emission.model = direct)",
+             [](auto& s) { return &s.surface.wind_model; }),
       number(
           "surface.sigma_cross", "1", kSigmaCrossRange, "surface.sigma",
           "slope width across, along the surface's y axis, as of brushed metal; sigma is the width along x "
@@ -318,16 +219,22 @@ std::vector<SceneKey> radiation_keys() {
            "adds dolp_low and dolp_high, which enclose the DOLP that all bounces of light give (only masking smith "
            "or v-cavity)",
            [](auto& s) { return s.emission ? &s.emission->has_bracket : nullptr; }),
-      source_number("source.irradiance", "W m-2 um-1",
-                    "irradiance E0 of the source at normal incidence, constant over a band", Source::Kind::kFlat,
-                    &Source::irradiance),
-      source_number("source.relative_irradiance", "1",
-                    "E0/(pi B(T)) at each wavelength, with T = emission.temperature_K; instead of irradiance",
-                    Source::Kind::kRelative, &Source::relative_irradiance),
-      key_at(
-          described("source.preset", Type::kWord, "", {}, "",
-                    "E0 of the sun at the top of the atmosphere, instead of source.irradiance", {"sun"}),
-          [](auto& s) { return &s.names.source_preset; }, always),
+      number(
+          "source.irradiance", "W m-2 um-1", kNonNegativeRange, "",
+          "irradiance E0 of the source at normal incidence, constant over a band",
+          [](auto& s) { return s.source ? &s.source->irradiance : nullptr; },
+          [](const SceneValues& s) { return s.source && !s.source->relative_irradiance && !s.source->table; }),
+      number("source.relative_irradiance", "1", kNonNegativeRange, "",
+             "E0/(pi B(T)) at each wavelength, with T = emission.temperature_K; instead of irradiance",
+             [](auto& s) { return s.source ? &s.source->relative_irradiance : nullptr; }),
+      key_at({"source.preset",
+              Type::kWord,
+              "",
+              {},
+              {"sun"},
+              "",
+              "E0 of the sun at the top of the atmosphere, instead of source.irradiance"},
+             [](auto& s) { return &s.names.source_preset; }),
       text("source.file", "CSV file with your own E0 (columns wavelength_um, irradiance), instead of source.irradiance",
            [](auto& s) { return &s.names.source_file; }),
       number("source.scale", "1", kNonNegativeRange, "1", "factor that multiplies E0, however E0 is given",
@@ -340,23 +247,24 @@ std::vector<SceneKey> radiation_keys() {
           [](const SceneValues& s) {
             return s.names.profile.empty() && !(s.surroundings && s.surroundings->zenith_K);
           }),
-      sky_end("surroundings.zenith_temperature_K",
-              "brightness temperature of the sky in the zenith; between zenith and horizon it is a straight line in "
-              "the zenith angle",
-              &Surroundings::zenith_K),
-      sky_end("surroundings.horizon_temperature_K", "brightness temperature of the sky at the horizon",
-              &Surroundings::horizon_K),
+      number("surroundings.zenith_temperature_K", "K", kBackgroundTemperatureRange, "",
+             "brightness temperature of the sky in the zenith; between zenith and horizon it is a straight line in "
+             "the zenith angle",
+             [](auto& s) { return s.surroundings ? &s.surroundings->zenith_K : nullptr; }),
+      number("surroundings.horizon_temperature_K", "K", kBackgroundTemperatureRange, "",
+             "brightness temperature of the sky at the horizon",
+             [](auto& s) { return s.surroundings ? &s.surroundings->horizon_K : nullptr; }),
       text("surroundings.profile",
            "sky that changes with the zenith, instead of temperature_K: clear-sky, overcast, or your own CSV file "
            "(columns zenith_deg, temperature_K or radiance; wavelength_um if the sky depends on the wavelength)",
            [](auto& s) { return &s.names.profile; }),
-      air_number("surroundings.vapour_cm", "cm", kVapourRange,
-                 "precipitable water of the air of clear-sky or overcast; if absent, 1.27 cm, or all that the air "
-                 "holds if this is less",
-                 &SkyAir::vapour_cm),
-      air_number("surroundings.air_temperature_K", "K", kAirTemperatureRange,
-                 "temperature of the air at the ground under clear-sky or overcast; if absent, 288.15 K",
-                 &SkyAir::temperature_K),
+      number("surroundings.vapour_cm", "cm", kVapourRange, "",
+             "precipitable water of the air of clear-sky or overcast; if absent, 1.27 cm, or all that the air "
+             "holds if this is less",
+             [](auto& s) { return s.surroundings ? &s.surroundings->air.vapour_cm : nullptr; }),
+      number("surroundings.air_temperature_K", "K", kAirTemperatureRange, "",
+             "temperature of the air at the ground under clear-sky or overcast; if absent, 288.15 K",
+             [](auto& s) { return s.surroundings ? &s.surroundings->air.temperature_K : nullptr; }),
       number("path.transmittance", "1", kFractionRange, "1", "transmittance tau of the path to the sensor",
              [](auto& s) { return s.path ? &s.path->transmittance : nullptr; }),
       number("path.temperature_K", "K", kBackgroundTemperatureRange, "",
@@ -372,17 +280,17 @@ std::vector<SceneKey> radiation_keys() {
 std::vector<SceneKey> geometry_keys() {
   return {
       {{"spectrum.wavelength_um", Type::kNumber, "um", kWavelengthUmRange, {}, "", "a single wavelength lambda"},
-       [](SceneValues& s, const KeyValue& v) {
-         s.spectrum = {v.number, v.number};
-       },
+       [](SceneValues& s, const KeyValue& v) { s.spectrum.min_um = s.spectrum.max_um = std::get<double>(v); },
        [](const SceneValues& s) { return s.spectrum.is_band() ? std::nullopt : value_at(&s.spectrum.min_um); }},
       {{"spectrum.band_um", Type::kPair, "um", kWavelengthUmRange, {}, "", "band [lambda1, lambda2] to integrate over"},
        [](SceneValues& s, const KeyValue& v) {
-         s.spectrum = {v.numbers[0], v.numbers[1]};
+         const auto& ends_um = std::get<std::vector<double>>(v);
+         s.spectrum.min_um = ends_um[0];
+         s.spectrum.max_um = ends_um[1];
        },
        [](const SceneValues& s) -> std::optional<KeyValue> {
          if (!s.spectrum.is_band()) return std::nullopt;
-         return KeyValue{.numbers = {s.spectrum.min_um, s.spectrum.max_um}};
+         return std::vector{s.spectrum.min_um, s.spectrum.max_um};
        }},
       text("spectrum.response_file",
            "CSV file with the response of your camera (columns wavelength_um, response), instead of band_um",
@@ -411,14 +319,21 @@ std::vector<SceneKey> geometry_keys() {
                 "azimuths between source and view of a table in bistatic mode; the first one replaces a missing "
                 "geometry.relative_azimuth_deg"),
       grid_axis(Axis::kSigma, "surface.sigma", "slope widths sigma of the table"),
-      wind_axis(),
       key_at(
-          described("grid.material", Type::kNames, "", {}, "",
-                    "names of built-in materials for the table, or \"all\"; instead of n and k"),
-          [](auto& s) { return &s.labels[Axis::kMaterial]; }, always),
+          {"grid.wind_m_s", Type::kAxis, kWind.units, kWind.range, {}, "", "winds of the table, instead of grid.sigma"},
+          [](auto& s) { return &s.wind_m_s; }),
+      key_at({"grid.material",
+              Type::kNames,
+              "",
+              {},
+              {},
+              "",
+              "names of built-in materials for the table, or \"all\"; instead of n and k"},
+             [](auto& s) { return &s.labels[Axis::kMaterial]; }),
       {{"grid.band_um", Type::kPairs, "um", kWavelengthUmRange, {}, "", "bands of the table, instead of [spectrum]"},
        [](SceneValues& s, const KeyValue& v) {
-         for (std::size_t i = 0; i < v.numbers.size(); i += 2) s.bands.push_back({v.numbers[i], v.numbers[i + 1]});
+         const auto& ends_um = std::get<std::vector<double>>(v);
+         for (std::size_t i = 0; i < ends_um.size(); i += 2) s.bands.push_back({ends_um[i], ends_um[i + 1]});
        },
        [](const SceneValues& s) {
          std::vector<double> ends;
@@ -444,16 +359,16 @@ std::vector<SceneKey> geometry_keys() {
       choice("accuracy.precision", Accuracy().precision,
              "arithmetic of the kernels; auto takes float, and double for what float cannot compute to the tolerance",
              [](auto& s) { return &s.accuracy.precision; }),
-      {described(
-           "accuracy.interpolation", Type::kWord, "", {}, "auto",
-           "auto: within the tolerance the program may interpolate over a dense grid of sigma and q, or over many "
-           "points, and compute many indices in one pass; off: it integrates every entry",
-           {"auto", "off"}),
-       [](SceneValues& s, const KeyValue& v) { s.accuracy.may_interpolate = v.word == 0; },
-       [](const SceneValues& s) -> std::optional<KeyValue> {
-         const bool is_auto = s.accuracy.may_interpolate;
-         return KeyValue{.word = is_auto ? std::size_t{0} : 1, .text = is_auto ? "auto" : "off"};
-       }},
+      {{"accuracy.interpolation",
+        Type::kWord,
+        "",
+        {},
+        {"auto", "off"},
+        "auto",
+        "auto: within the tolerance the program may interpolate over a dense grid of sigma and q, or over many "
+        "points, and compute many indices in one pass; off: it integrates every entry"},
+       [](SceneValues& s, const KeyValue& v) { s.accuracy.may_interpolate = std::get<std::string>(v) == "auto"; },
+       [](const SceneValues& s) { return std::string(s.accuracy.may_interpolate ? "auto" : "off"); }},
   };
 }
 
@@ -505,7 +420,7 @@ const std::vector<KeyChoice>& key_choices() {
     for (std::size_t layer = 1; layer <= kMostLayers; ++layer) {
       const std::string table = fmt::format("surface.coating.{}", layer);
       const auto key = [&](const char* name) { return table + '.' + name; };
-      all.push_back({table, {{{key("n")}, {key("k")}}, {{key("material")}}, {{key("material_file")}}}, true, true});
+      all.push_back({table, {{{key("n")}, {key("k")}}, {{key("material")}}, {{key("material_file")}}}});
     }
     return all;
   }();
@@ -582,6 +497,20 @@ void add_effect(SceneValues& scene, std::string_view table) {
   if (table == "source") scene.source.emplace();
   if (table == "surroundings") scene.surroundings.emplace();
   if (table == "path") scene.path.emplace();
+}
+
+void follow_keys(SceneValues& scene) {
+  const auto width = [&](double wind_m_s) { return sigma_in_wind(wind_m_s, scene.surface.wind_model); };
+  if (scene.surface.wind_m_s) scene.surface.sigma = width(*scene.surface.wind_m_s);
+  std::vector<double>& sigmas = scene.grid[Axis::kSigma];
+  if (!scene.wind_m_s.empty()) sigmas.clear();
+  std::ranges::transform(scene.wind_m_s, std::back_inserter(sigmas), width);
+  if (!scene.surroundings) return;
+  Surroundings& sky = *scene.surroundings;
+  if (sky.zenith_K && sky.horizon_K)
+    sky.set_sky({.zenith_deg = {0.0, 90.0}, .values = {*sky.zenith_K, *sky.horizon_K}});
+  if (sky.profile && sky.profile->kind == SkyProfile::Kind::kLayers)
+    sky.set_sky(built_in_sky(scene.names.profile, sky.air, "surroundings.vapour_cm: ").value());
 }
 
 std::string Key::allowed() const {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "scene/scene_document.hpp"
@@ -11,17 +12,13 @@
 
 namespace dolp {
 
-/// A value of a key. Which members are set depends on Key::type.
-struct KeyValue {
-  double number = 0.0;
-  std::size_t word = 0;   ///< position in Key::words
-  std::string text = {};  ///< a text or a word; for a flag "true" or "false", but read_value() leaves it empty
-  std::vector<double> numbers = {};  ///< numbers of an axis, or ends of bands: from, to, from, to, ...
-  std::vector<std::string> names = {};
-};
+/// The value of a key, by Key::type: a number; a flag; a word or text; the numbers of an axis, or the ends of bands
+/// (from, to, from, to, ...); names.
+using KeyValue = std::variant<double, bool, std::string, std::vector<double>, std::vector<std::string>>;
 
 struct SceneKey {
   Key description;
+  /// Gives the value to a scene. After the last key of a scene, call follow_keys().
   std::function<void(SceneValues& scene, const KeyValue& value)> set;
   /// Reads the value from a scene. Nullopt if the scene lacks it, for example n of a named material.
   std::function<std::optional<KeyValue>(const SceneValues& scene)> value;
@@ -39,8 +36,7 @@ struct KeyAlternative {
 struct KeyChoice {
   std::string table;
   std::vector<KeyAlternative> alternatives;
-  bool is_required = true;   ///< a scene must choose one, unless `table` is an effect or a layer that the scene lacks
-  bool is_of_layer = false;  ///< `table` is a layer of a coating, so it may be absent
+  bool is_required = true;  ///< a scene must choose one, unless `table` is an effect or a layer that the scene lacks
 };
 
 inline constexpr std::size_t kMostLayers = 16;  ///< most layers of a coating
@@ -67,9 +63,17 @@ bool is_removed_by_none(std::string_view key);
 
 void add_effect(SceneValues& scene, std::string_view table);
 
-class SceneDocument;
+/// Computes what follows from keys: slope widths from winds, and skies from numbers. Errors: errors of built_in_sky().
+void follow_keys(SceneValues& scene);
 
 /// Reads the value of a key that the document has. Errors: the InputError of SceneDocument::fail.
 KeyValue read_value(const SceneDocument& document, const Key& description);
+
+/// The key that a user probably means by the unknown key `key`, for messages: by meaning, else the most similar name.
+std::string key_hint(std::string_view key);
+
+/// What a user probably means by a word that the key does not have, such as "ggx" for surface.distribution. Begins with
+/// a semicolon; empty if unknown.
+std::string word_hint(std::string_view key, std::string_view word);
 
 }  // namespace dolp

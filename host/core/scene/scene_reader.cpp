@@ -11,7 +11,6 @@
 
 #include "base/text.hpp"
 #include "model/films.hpp"
-#include "scene/key_hints.hpp"
 #include "scene/scene_keys.hpp"
 
 namespace dolp {
@@ -79,7 +78,7 @@ const std::string* chosen_key(const SceneDocument& document, const KeyChoice& ch
 void check_choice(const SceneDocument& document, const KeyChoice& choice) {
   const bool is_present = document.find(choice.table) != nullptr;
   if (chosen_key(document, choice) || !choice.is_required) return;
-  if (!is_present && (is_effect_table(choice.table) || choice.is_of_layer)) return;
+  if (!is_present && (is_effect_table(choice.table) || is_coating(choice.table))) return;
   std::vector<std::string> heads;
   for (const KeyAlternative& alternative : choice.alternatives) heads.push_back(alternative.heads.front());
   document.fail(heads.front(), fmt::format("missing; must be {}, or give one of {}",
@@ -90,7 +89,9 @@ struct Needs {
   bool are_met;
   const char* text;
 };
+/// Refuses a key of the document whose needs are not met.
 void check_needs(const SceneDocument& document, std::string_view key, const std::vector<Needs>& needs) {
+  if (!document.find(key)) return;
   std::vector<std::string> missing;
   for (const Needs& need : needs) {
     if (!need.are_met) missing.emplace_back(need.text);
@@ -101,7 +102,6 @@ void check_needs(const SceneDocument& document, std::string_view key, const std:
 void check_wind(const SceneValues& scene, const SceneDocument& document) {
   const bool is_gaussian = scene.surface.distribution == Distribution::kGaussian;
   for (const char* key : {"surface.wind_m_s", "grid.wind_m_s"}) {
-    if (!document.find(key)) continue;
     check_needs(document, key,
                 {{is_gaussian, "surface.distribution = \"gaussian\""},
                  {!document.find("surface.sigma"), "no surface.sigma beside it"},
@@ -158,6 +158,7 @@ SceneValues read_keys(const SceneDocument& document) {
       mistakes.of([&] { known->set(scene, read_value(document, known->description)); });
   }
   mistakes.tell();
+  follow_keys(scene);
   check_wind(scene, document);
   for (const KeyChoice& choice : key_choices()) mistakes.of([&] { check_choice(document, choice); });
   for (const Key& known : dolp::keys()) mistakes.of([&] { check_required(document, known); });
@@ -168,16 +169,13 @@ SceneValues read_keys(const SceneDocument& document) {
 /// If the scene gives a quantity only as an axis, stores the first value of the axis as the scene's value.
 void fill_from_grid(SceneValues& scene, const SceneDocument& document) {
   Axes& grid = scene.grid;
-  if (document.find("grid.temperature_K"))
-    check_needs(document, "grid.temperature_K", {{document.find("emission") != nullptr, "the table [emission]"}});
-  for (const char* key : {"grid.view_zenith_deg", "grid.relative_azimuth_deg"}) {
-    if (document.find(key))
-      check_needs(document, key, {{scene.geometry.mode == Mode::kBistatic, "geometry.mode = \"bistatic\""}});
-  }
+  check_needs(document, "grid.temperature_K", {{document.find("emission") != nullptr, "the table [emission]"}});
+  for (const char* key : {"grid.view_zenith_deg", "grid.relative_azimuth_deg"})
+    check_needs(document, key, {{scene.geometry.mode == Mode::kBistatic, "geometry.mode = \"bistatic\""}});
   for (const Axis axis : kAllAxes) {
     const SceneKey* const key = find_scene_key(describe(axis).key);
     const bool is_filled = key && !describe(axis).is_required && !grid[axis].empty();
-    if (is_filled && !document.find(describe(axis).key)) key->set(scene, {.number = grid[axis].front()});
+    if (is_filled && !document.find(describe(axis).key)) key->set(scene, grid[axis].front());
   }
   if (!scene.bands.empty()) scene.spectrum = scene.bands.front();
   for (const Spectrum& band : scene.bands) {
@@ -256,7 +254,7 @@ void check_cross_slopes(const SceneValues& scene, const SceneDocument& document)
   const bool reflects = scene.surroundings || scene.source;
   const bool has_bracket = scene.emission && scene.emission->has_bracket;
   for (const char* key : {"surface.sigma_cross", "grid.sigma_cross", "surface.wind_model"}) {
-    if (!document.find(key) || (key == std::string_view("surface.wind_model") && !is_directional)) continue;
+    if (key == std::string_view("surface.wind_model") && !is_directional) continue;
     check_needs(
         document, key,
         {{surface.masking != Masking::kIntegral, "surface.masking = \"none\", \"v-cavity\" or \"smith\""},
@@ -291,26 +289,21 @@ void check_radiation(const SceneValues& scene, const SceneDocument& document) {
   if (!scene.emission && !scene.source && !scene.surroundings) {
     document.fail("emission", "missing; nothing radiates without one of the tables emission, source, surroundings");
   }
-  if (scene.source && scene.source->kind == Source::Kind::kRelative && !scene.emission) {
-    document.fail("source.relative_irradiance", "needs the table [emission], whose temperature it is relative to");
-  }
+  check_needs(document, "source.relative_irradiance",
+              {{scene.emission.has_value(), "the table [emission], whose temperature it is relative to"}});
 }
 
-void apply(SceneDocument& document, const Setting& setting) {
-  const std::vector<std::string> tables = scene_tables();
-  const bool is_known =
-      find_scene_key(setting.key) || is_coating(setting.key) || std::ranges::find(tables, setting.key) != tables.end();
-  if (is_removal(setting) && !is_known) {
-    throw InputError(
-        fmt::format("{}: unknown key; the nearest known key is {}", one_line(setting.key), key_hint(setting.key)));
-  }
-  document.apply(setting);
-}
+}  // namespace
 
-SceneValues build_scene(const SceneDocument& document, const std::string& path_name, std::shared_ptr<KnownData> known) {
+SceneValues parse_scene(const std::string& text, const std::string& path_name, const std::vector<Setting>& settings,
+                        std::shared_ptr<KnownData> known) {
+  SceneDocument document(text, path_name);
+  for (const Setting& setting : settings) document.apply(setting);
   SceneValues scene = read_keys(document);
   fill_from_grid(scene, document);
   scene.path_name = path_name;
+  scene.text = text;
+  scene.settings = settings;
   scene.known = std::move(known);
   load_named_data(scene, document);
   fill_grid(scene, document);
@@ -320,19 +313,7 @@ SceneValues build_scene(const SceneDocument& document, const std::string& path_n
   check_scattering(scene, document);
   check_coating(scene, document);
   check_cross_slopes(scene, document);
-  scene.document = std::make_shared<const SceneDocument>(document);
-  return scene;
-}
-
-}  // namespace
-
-SceneValues parse_scene(const std::string& text, const std::string& path_name, const std::vector<Setting>& settings,
-                        std::shared_ptr<KnownData> known) {
-  SceneDocument document(text, path_name);
-  for (const Setting& setting : settings) apply(document, setting);
-  SceneValues scene = build_scene(document, path_name, std::move(known));
-  scene.text = text;
-  scene.settings = settings;
+  scene.document = std::make_shared<const SceneDocument>(std::move(document));
   return scene;
 }
 
@@ -347,19 +328,10 @@ SceneValues with_settings(const SceneValues& scene, const std::vector<Setting>& 
       return std::ranges::find(replaced, old.key) != replaced.end();
     });
   };
-  if (std::ranges::any_of(scene.settings, is_replaced)) {
-    std::vector<Setting> all;
-    std::ranges::remove_copy_if(scene.settings, std::back_inserter(all), is_replaced);
-    all.insert(all.end(), settings.begin(), settings.end());
-    return parse_scene(scene.text, scene.path_name, all, scene.known);
-  }
-  SceneDocument document = *scene.document;
-  for (const Setting& setting : settings) apply(document, setting);
-  SceneValues changed = build_scene(document, scene.path_name, scene.known);
-  changed.text = scene.text;
-  changed.settings = scene.settings;
-  changed.settings.insert(changed.settings.end(), settings.begin(), settings.end());
-  return changed;
+  std::vector<Setting> all;
+  std::ranges::remove_copy_if(scene.settings, std::back_inserter(all), is_replaced);
+  all.insert(all.end(), settings.begin(), settings.end());
+  return parse_scene(scene.text, scene.path_name, all, scene.known);
 }
 
 }  // namespace dolp

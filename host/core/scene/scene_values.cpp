@@ -8,8 +8,6 @@
 #include <functional>
 
 #include "base/text.hpp"
-#include "scene/key_hints.hpp"
-
 namespace dolp {
 namespace {
 
@@ -67,8 +65,7 @@ AxisRange read_axis_rule(const SceneDocument& document, const Key& description, 
   }
   if (rule.count == 1 && rule.from != rule.to)
     document.fail(document.first_set({begin + "count", begin + "from", begin + "to"}), "one value needs from = to");
-  for (const char* end : {"from", "to"}) {
-    const double value = std::string_view(end) == "from" ? rule.from : rule.to;
+  for (const auto& [end, value] : {std::pair("from", rule.from), {"to", rule.to}}) {
     if (rule.is_logarithmic && value <= 0.0)
       document.fail(document.first_set({begin + end, begin + "spacing"}),
                     "spacing = \"log\" needs from > 0 and to > 0");
@@ -141,14 +138,11 @@ std::vector<std::string> read_names(const SceneDocument& document, const Key& de
   return names;
 }
 
-KeyValue read_word(const SceneDocument& document, const Key& description, const toml::node& node) {
-  KeyValue value;
-  value.text = node.value_or(std::string());
-  const auto found = std::find(description.words.begin(), description.words.end(), value.text);
-  if (found == description.words.end())
-    document.fail(description.key, "must be " + description.allowed() + word_hint(description.key, value.text));
-  value.word = static_cast<std::size_t>(found - description.words.begin());
-  return value;
+std::string read_word(const SceneDocument& document, const Key& description, const toml::node& node) {
+  const std::string word = node.value_or(std::string());
+  if (std::ranges::find(description.words, word) == description.words.end())
+    document.fail(description.key, "must be " + description.allowed() + word_hint(description.key, word));
+  return word;
 }
 
 std::string list_hint(const Key& description) {
@@ -159,9 +153,9 @@ std::string list_hint(const Key& description) {
   return fmt::format("; several values are {} = [...]{}", axis, band);
 }
 
-KeyValue read_one_number(const SceneDocument& document, const Key& description, const toml::node& node) {
+double read_one_number(const SceneDocument& document, const Key& description, const toml::node& node) {
   const std::string hint = node.is_array() ? list_hint(description) : "";
-  return {.number = read_number(document, description.key, node, description.range, description.allowed() + hint)};
+  return read_number(document, description.key, node, description.range, description.allowed() + hint);
 }
 
 }  // namespace
@@ -175,18 +169,18 @@ KeyValue read_value(const SceneDocument& document, const Key& description) {
       return read_word(document, description, node);
     case Type::kFlag:
       if (!node.is_boolean()) document.fail(description.key, "must be " + description.allowed());
-      return {.word = node.value_or(false) ? 1U : 0U};
+      return node.value_or(false);
     case Type::kText:
       if (!node.is_string()) document.fail(description.key, "must be a text");
-      return {.text = node.value_or(std::string())};
+      return node.value_or(std::string());
     case Type::kPair:
-      return {.numbers = read_pair(document, description, node)};
+      return read_pair(document, description, node);
     case Type::kNames:
-      return {.names = read_names(document, description, node)};
+      return read_names(document, description, node);
     case Type::kPairs:
-      return {.numbers = read_pairs(document, description, node)};
+      return read_pairs(document, description, node);
     case Type::kAxis:
-      return {.numbers = read_axis(document, description, node)};
+      return read_axis(document, description, node);
   }
   return {};
 }

@@ -73,10 +73,6 @@ std::vector<SpectralRow> read_ecostress(std::string_view text, const std::string
   return rows;
 }
 
-bool covers(const SpectralTable& table, const Spectrum& spectrum) {
-  return table.wavelength_um.front() <= spectrum.min_um && spectrum.max_um <= table.wavelength_um.back();
-}
-
 constexpr double kLargestSplitAtNormal = 0.01;
 
 /// Refuses rows whose angles do not ascend from 0 to 90, or differ from the angles of `first`, the first wavelength.
@@ -99,18 +95,13 @@ void check_angles(std::span<const AngleRow> rows, std::span<const AngleRow> firs
 }  // namespace
 
 double SpectralTable::at(double asked_um) const {
-  const double clamped_um = std::clamp(asked_um, wavelength_um.front(), wavelength_um.back());
-  if (formula.number != 0) return formula.at(clamped_um);
-  const auto above = std::upper_bound(wavelength_um.begin(), wavelength_um.end(), clamped_um);
-  if (above == wavelength_um.end()) return value.back();
-  const auto i = static_cast<std::size_t>(above - wavelength_um.begin());
-  const double from_um = wavelength_um[i - 1];
-  const double to_um = wavelength_um[i];
-  if (interpolation == Interpolation::kLinear) {
-    return std::lerp(value[i - 1], value[i], (clamped_um - from_um) / (to_um - from_um));
-  }
-  const double weight = std::log(clamped_um / from_um) / std::log(to_um / from_um);
-  return value[i - 1] * std::pow(value[i] / value[i - 1], weight);
+  const double at_um = std::clamp(asked_um, wavelength_um.front(), wavelength_um.back());
+  if (formula.number != 0) return formula.at(at_um);
+  if (at_um == wavelength_um.back()) return value.back();
+  const auto [i, share] = between(wavelength_um, at_um);
+  if (interpolation == Interpolation::kLinear) return std::lerp(value[i], value[i + 1], share);
+  const double weight = std::log(at_um / wavelength_um[i]) / std::log(wavelength_um[i + 1] / wavelength_um[i]);
+  return value[i] * std::pow(value[i + 1] / value[i], weight);
 }
 
 SpectralTable parse_response(std::string_view text, const std::string& name) {
@@ -230,8 +221,8 @@ void append_rows(SpectralTable& table, std::vector<SpectralRow> rows, const Name
 }
 
 void check_covers(const SpectralTable& table, const Spectrum& spectrum, const std::string& prefix) {
-  if (covers(table, spectrum)) return;
   const std::vector<double>& known_um = table.wavelength_um;
+  if (known_um.front() <= spectrum.min_um && spectrum.max_um <= known_um.back()) return;
   throw InputError(fmt::format("{}known at {}, and the spectrum is {}", prefix,
                                wavelength_text(known_um.front(), known_um.back()),
                                wavelength_text(spectrum.min_um, spectrum.max_um)));
@@ -242,38 +233,25 @@ std::string wavelength_text(double min_um, double max_um) {
 }
 
 SceneModel at_wavelength(const SceneModel& scene, double wavelength_um) {
-  SceneModel at{.surface = scene.surface,
-                .emission = scene.emission,
-                .source = std::nullopt,  // set below, because copying its table may take long
-                .surroundings = scene.surroundings,
-                .path = scene.path,
-                .spectrum = {wavelength_um, wavelength_um},
-                .geometry = scene.geometry,
-                .accuracy = scene.accuracy};
+  SceneModel at = scene;
+  at.spectrum = {wavelength_um, wavelength_um};
   const auto take_constant = [&](Material& material, const std::string& prefix) {
     if (!material.tabulated) return;
     check_covers(*material.tabulated, at.spectrum, prefix);
     material.constant = material.tabulated->at(wavelength_um);
     material.tabulated.reset();
   };
+  const auto take_value = [&](std::shared_ptr<const SpectralTable>& table, double& value, const char* prefix) {
+    if (!table) return;
+    check_covers(*table, at.spectrum, prefix);
+    value = table->at(wavelength_um);
+    table.reset();
+  };
   take_constant(at.surface.material, "surface.material: ");
-  if (const std::shared_ptr<const SpectralTable> diffuse = std::exchange(at.surface.diffuse_table, nullptr)) {
-    check_covers(*diffuse, at.spectrum, "surface.diffuse_file: ");
-    at.surface.diffuse = diffuse->at(wavelength_um);
-  }
+  take_value(at.surface.diffuse_table, at.surface.diffuse, "surface.diffuse_file: ");
   for (std::size_t i = 0; i < at.surface.coating.size(); ++i)
     take_constant(at.surface.coating[i].material, fmt::format("surface.coating.{}: ", i + 1));
-  if (!scene.source) return at;
-  const Source& source = *scene.source;
-  at.source = {.kind = source.kind,
-               .irradiance = source.irradiance,
-               .relative_irradiance = source.relative_irradiance,
-               .scale = source.scale};
-  if (source.kind == Source::Kind::kTabulated) {
-    check_covers(source.table, at.spectrum, "source: ");
-    at.source->irradiance = source.table.at(wavelength_um);
-    at.source->kind = Source::Kind::kFlat;
-  }
+  if (at.source) take_value(at.source->table, at.source->irradiance, "source: ");
   return at;
 }
 

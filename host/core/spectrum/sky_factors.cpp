@@ -10,10 +10,6 @@ namespace {
 // Allowed error of the sky basis, as a share of the tolerance. Each function of the basis slows a kernel by 1/6.
 constexpr double kBasisShare = 0.02;
 
-Eigen::VectorXd to_vector(const std::vector<double>& values) {
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
-
 }  // namespace
 
 double sky_radiance(const SkyProfile& profile, double wavelength_um, double zenith_deg) {
@@ -54,7 +50,7 @@ std::shared_ptr<const SkyBasis> sky_basis(const SceneModel& scene, std::span<con
   if (!scene.surroundings || !scene.surroundings->profile) return nullptr;
   std::vector<Eigen::VectorXd> functions;
   for (const SpectralRule* rule : rules) {
-    for (const SpectralSample& sample : rule->samples) functions.push_back(to_vector(sample.sky));
+    for (const SpectralSample& sample : rule->samples) functions.push_back(sample.sky);
   }
   SkyNodes nodes(scene.surroundings->profile->ends_deg());
   auto basis = std::make_shared<const SkyBasis>(std::move(nodes), functions, kBasisShare * scene.accuracy.tolerance);
@@ -63,11 +59,10 @@ std::shared_ptr<const SkyBasis> sky_basis(const SceneModel& scene, std::span<con
 
 std::vector<SkyWeights> sky_weights(const SpectralRule& rule, const SkyBasis* basis) {
   std::vector<SkyWeights> weights;
-  if (!basis || rule.samples.empty() || rule.samples.front().sky.empty()) return weights;
+  if (!basis || rule.samples.empty() || rule.samples.front().sky.size() == 0) return weights;
   for (const SpectralSample& sample : rule.samples) {
-    const Eigen::VectorXd sky = to_vector(sample.sky);
-    weights.push_back(basis->find_weights(sky));
-    weights.back().error += basis->nodes().error(sky);
+    weights.push_back(basis->find_weights(sample.sky));
+    weights.back().error += basis->nodes().error(sample.sky);
   }
   return weights;
 }

@@ -56,15 +56,8 @@ const SkyProfile* scene_profile(const SceneModel& scene) {
 
 double source_irradiance(const SceneModel& scene, double wavelength_um, double emitted) {
   const Source& source = *scene.source;
-  switch (source.kind) {
-    case Source::Kind::kFlat:
-      return source.scale * source.irradiance;
-    case Source::Kind::kRelative:
-      return source.scale * source.relative_irradiance * emitted;
-    case Source::Kind::kTabulated:
-      return source.scale * source.table.at(wavelength_um);
-  }
-  return 0.0;
+  if (source.relative_irradiance) return source.scale * *source.relative_irradiance * emitted;
+  return source.scale * (source.table ? source.table->at(wavelength_um) : source.irradiance);
 }
 
 double path_exitance(const Path& path, double wavelength_um) {
@@ -82,8 +75,7 @@ FineNode fine_node(SampledScene& sampled, double wavelength_um, double weight) {
   if (sampled.sky) {
     const Eigen::VectorXd exitances = sampled.sky->at(wavelength_um);
     surroundings = sampled.sky->mean(exitances);
-    const Eigen::VectorXd sky = (weight * (exitances.array() - surroundings)).matrix();
-    node.sky.assign(sky.begin(), sky.end());
+    node.sky = weight * (exitances.array() - surroundings);
   } else if (scene.surroundings) {
     surroundings = std::numbers::pi * planck_radiance(wavelength_um, scene.surroundings->temperature_K);
   }
@@ -141,10 +133,10 @@ void append_fine_nodes(SampledScene& scene, double from_um, double to_um, std::v
 }
 
 std::vector<double> segment_ends(double from_um, double to_um,
-                                 std::initializer_list<const std::vector<double>*> wavelengths_um) {
+                                 std::initializer_list<std::vector<double>> wavelengths_um) {
   std::vector<double> ends = {from_um, to_um};
-  for (const std::vector<double>* list : wavelengths_um)
-    for (const double wavelength_um : *list)
+  for (const std::vector<double>& list : wavelengths_um)
+    for (const double wavelength_um : list)
       if (wavelength_um > from_um && wavelength_um < to_um) ends.push_back(wavelength_um);
   std::ranges::sort(ends);
   const auto repeated = std::ranges::unique(ends);
@@ -152,8 +144,8 @@ std::vector<double> segment_ends(double from_um, double to_um,
   return ends;
 }
 
-std::vector<double> response_rows_um(const Spectrum& spectrum) {
-  return spectrum.response ? spectrum.response->wavelength_um : std::vector<double>{};
+std::vector<double> rows_um(const std::shared_ptr<const SpectralTable>& table) {
+  return table ? table->wavelength_um : std::vector<double>{};
 }
 
 /// Rows at which the response is 0. Between two of them, a segment may have no radiation.
@@ -165,30 +157,12 @@ std::vector<double> response_zeros_um(const Spectrum& spectrum) {
   return zeros_um;
 }
 
-}  // namespace
-
-SampledScene::SampledScene(const SceneModel& scene) : model(scene) {
-  if (const SkyProfile* profile = scene_profile(scene)) sky.emplace(*profile);
-}
-
-std::vector<FineNode> fine_nodes(SampledScene& scene, double from_um, double to_um) {
-  const std::optional<Source>& source = scene.model.source;
-  const bool tabulated = source && source->kind == Source::Kind::kTabulated;
-  const SkyProfile* profile = scene_profile(scene.model);
-  const std::vector<double> source_wavelengths = tabulated ? source->table.wavelength_um : std::vector<double>{};
-  const std::vector<double> profile_breaks = profile ? profile->breaks_um() : std::vector<double>{};
-  const std::vector<double> response_rows = response_rows_um(scene.model.spectrum);
-  const std::vector<double> ends = segment_ends(from_um, to_um, {&source_wavelengths, &profile_breaks, &response_rows});
-  std::vector<FineNode> nodes;
-  for (std::size_t i = 0; i + 1 < ends.size(); ++i) append_fine_nodes(scene, ends[i], ends[i + 1], nodes);
-  return nodes;
-}
-
-std::vector<FineNode> finer_nodes(SampledScene& scene, double from_um, double to_um) {
-  const double middle_um = 0.5 * (from_um + to_um);
-  std::vector<FineNode> nodes = fine_nodes(scene, from_um, middle_um);
-  std::ranges::move(fine_nodes(scene, middle_um, to_um), std::back_inserter(nodes));
-  return nodes;
+std::vector<double> lagrange(const std::vector<double>& nodes_um, double wavelength_um) {
+  std::vector<double> values(nodes_um.size(), 1.0);
+  for (std::size_t j = 0; j < nodes_um.size(); ++j)
+    for (std::size_t k = 0; k < nodes_um.size(); ++k)
+      if (k != j) values[j] *= (wavelength_um - nodes_um[k]) / (nodes_um[j] - nodes_um[k]);
+  return values;
 }
 
 const std::vector<double>& legendre_zeros(int count) {
@@ -199,45 +173,6 @@ const std::vector<double>& legendre_zeros(int count) {
   }();
   return zeros[static_cast<std::size_t>(count)];
 }
-
-std::vector<double> gauss_wavelengths(double from_um, double to_um, int count) {
-  std::vector<double> wavelengths_um;
-  for (const double zero : legendre_zeros(count)) {
-    const double offset_um = 0.5 * (to_um - from_um) * zero;
-    wavelengths_um.push_back(0.5 * (from_um + to_um) + offset_um);
-    if (zero > 0.0) wavelengths_um.push_back(0.5 * (from_um + to_um) - offset_um);
-  }
-  std::ranges::sort(wavelengths_um);
-  return wavelengths_um;
-}
-
-namespace {
-
-std::vector<double> lagrange(const std::vector<double>& nodes_um, double wavelength_um) {
-  std::vector<double> values(nodes_um.size(), 1.0);
-  for (std::size_t j = 0; j < nodes_um.size(); ++j)
-    for (std::size_t k = 0; k < nodes_um.size(); ++k)
-      if (k != j) values[j] *= (wavelength_um - nodes_um[k]) / (nodes_um[j] - nodes_um[k]);
-  return values;
-}
-
-}  // namespace
-
-std::vector<SpectralSample> samples_at(const SceneModel& scene, const std::vector<double>& nodes_um,
-                                       const std::vector<FineNode>& fine) {
-  std::vector<SpectralSample> samples(nodes_um.size());
-  for (std::size_t j = 0; j < nodes_um.size(); ++j) {
-    samples[j].wavelength_um = nodes_um[j];
-    samples[j].index = scene.surface.optics_at(nodes_um[j]);
-  }
-  for (const FineNode& node : fine) {
-    const std::vector<double> values = lagrange(nodes_um, node.wavelength_um);
-    for (std::size_t j = 0; j < samples.size(); ++j) samples[j].add(node, values[j]);
-  }
-  return samples;
-}
-
-namespace {
 
 /// Wavelengths that divide the band into parts in which the films cause about one interference fringe each.
 std::vector<double> fringe_ends(const SceneModel& scene) {
@@ -275,6 +210,54 @@ double error_scale(const ProbeSum& sum, double least) {
 }
 
 }  // namespace
+
+SampledScene::SampledScene(const SceneModel& scene) : model(scene) {
+  if (const SkyProfile* profile = scene_profile(scene)) sky.emplace(*profile);
+}
+
+std::vector<FineNode> fine_nodes(SampledScene& scene, double from_um, double to_um) {
+  const std::optional<Source>& source = scene.model.source;
+  const SkyProfile* profile = scene_profile(scene.model);
+  const std::vector<double> ends =
+      segment_ends(from_um, to_um,
+                   {rows_um(source ? source->table : nullptr), profile ? profile->breaks_um() : std::vector<double>{},
+                    rows_um(scene.model.spectrum.response)});
+  std::vector<FineNode> nodes;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) append_fine_nodes(scene, ends[i], ends[i + 1], nodes);
+  return nodes;
+}
+
+std::vector<FineNode> finer_nodes(SampledScene& scene, double from_um, double to_um) {
+  const double middle_um = 0.5 * (from_um + to_um);
+  std::vector<FineNode> nodes = fine_nodes(scene, from_um, middle_um);
+  std::ranges::move(fine_nodes(scene, middle_um, to_um), std::back_inserter(nodes));
+  return nodes;
+}
+
+std::vector<double> gauss_wavelengths(double from_um, double to_um, int count) {
+  std::vector<double> wavelengths_um;
+  for (const double zero : legendre_zeros(count)) {
+    const double offset_um = 0.5 * (to_um - from_um) * zero;
+    wavelengths_um.push_back(0.5 * (from_um + to_um) + offset_um);
+    if (zero > 0.0) wavelengths_um.push_back(0.5 * (from_um + to_um) - offset_um);
+  }
+  std::ranges::sort(wavelengths_um);
+  return wavelengths_um;
+}
+
+std::vector<SpectralSample> samples_at(const SceneModel& scene, const std::vector<double>& nodes_um,
+                                       const std::vector<FineNode>& fine) {
+  std::vector<SpectralSample> samples(nodes_um.size());
+  for (std::size_t j = 0; j < nodes_um.size(); ++j) {
+    samples[j].wavelength_um = nodes_um[j];
+    samples[j].index = scene.surface.optics_at(nodes_um[j]);
+  }
+  for (const FineNode& node : fine) {
+    const std::vector<double> values = lagrange(nodes_um, node.wavelength_um);
+    for (std::size_t j = 0; j < samples.size(); ++j) samples[j].add(node, values[j]);
+  }
+  return samples;
+}
 
 std::vector<double> critical_cosines(const Surface& surface, double from_um, double to_um) {
   std::vector<double> cosines;
@@ -407,7 +390,7 @@ SpectralRule smooth_rule(SampledScene& sampled, const std::vector<double>& ends_
 DiffuseSpectrum diffuse_spectrum(SampledScene& sampled) {
   const Spectrum& band = sampled.model.spectrum;
   const SpectralTable& k_d = *sampled.model.surface.diffuse_table;
-  const std::vector<double> ends_um = segment_ends(band.min_um, band.max_um, {&k_d.wavelength_um});
+  const std::vector<double> ends_um = segment_ends(band.min_um, band.max_um, {k_d.wavelength_um});
   SpectralFactors all, diffuse;
   for (std::size_t i = 0; i + 1 < ends_um.size(); ++i) {
     for (const FineNode& node : fine_nodes(sampled, ends_um[i], ends_um[i + 1])) {
@@ -437,8 +420,8 @@ void SpectralFactors::add(const SpectralFactors& more, double factor) {
   excess += factor * more.excess;
   irradiance += factor * more.irradiance;
   width += factor * more.width;
-  sky.resize(more.sky.size());
-  for (std::size_t i = 0; i < sky.size(); ++i) sky[i] += factor * more.sky[i];
+  if (sky.size() == 0) sky.setZero(more.sky.size());
+  sky += factor * more.sky;
 }
 
 std::vector<FacetOptics> SpectralRule::indices() const {
@@ -449,11 +432,9 @@ std::vector<FacetOptics> SpectralRule::indices() const {
 
 SpectralRule spectral_rule(const SceneModel& scene) {
   if (!scene.spectrum.is_band()) return single_wavelength_rule(scene, scene.spectrum.min_um);
-  const std::vector<double> rows_um = scene.surface.optics_rows_um();
-  const std::vector<double> fringes_um = fringe_ends(scene);
-  const std::vector<double> zeros_um = response_zeros_um(scene.spectrum);
   const std::vector<double> ends =
-      segment_ends(scene.spectrum.min_um, scene.spectrum.max_um, {&rows_um, &fringes_um, &zeros_um});
+      segment_ends(scene.spectrum.min_um, scene.spectrum.max_um,
+                   {scene.surface.optics_rows_um(), fringe_ends(scene), response_zeros_um(scene.spectrum)});
   SampledScene sampled(scene);
   SpectralRule rule = scene.surface.coating.empty() ? smooth_rule(sampled, ends) : film_rule(sampled, ends);
   if (scene.surface.diffuse_table) rule.diffuse = diffuse_spectrum(sampled);
@@ -465,7 +446,7 @@ SpectralRule kept_rule(SpectralRule rule, const KeptEffects& kept) {
     if (!kept.surroundings) sample.excess = -sample.emitted;
     if (!kept.emission) sample.excess = kept.surroundings ? sample.surroundings : 0.0;
     if (!kept.surroundings) sample.surroundings = 0.0;
-    if (!kept.surroundings || !kept.profile) sample.sky.clear();
+    if (!kept.surroundings || !kept.profile) sample.sky.resize(0);
     if (!kept.emission) sample.emitted = 0.0;
     if (!kept.source) sample.irradiance = 0.0;
   }

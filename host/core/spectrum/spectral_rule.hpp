@@ -1,7 +1,10 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
+#include <map>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -25,12 +28,12 @@ struct KeptEffects {
 /// Integrals of radiation times a weight function over a band, in W m-2. The response of a camera is a factor of it. At
 /// one wavelength: values in W m-2 um-1.
 struct SpectralFactors {
-  double emitted = 0.0;          ///< pi B(T); 0 without [emission]
-  double surroundings = 0.0;     ///< pi B(T_surr), or pi times the mean of a sky profile; 0 without [surroundings]
-  double excess = 0.0;           ///< surroundings - emitted; exactly 0 if both have the same temperature
-  double irradiance = 0.0;       ///< E0 at normal incidence; 0 without [source]
-  double width = 0.0;            ///< integral of the weight function in um; 1 at a single wavelength
-  std::vector<double> sky = {};  ///< pi L - `surroundings` at the zeniths of SkySampler; L: radiance of the sky
+  double emitted = 0.0;       ///< pi B(T); 0 without [emission]
+  double surroundings = 0.0;  ///< pi B(T_surr), or pi times the mean of a sky profile; 0 without [surroundings]
+  double excess = 0.0;        ///< surroundings - emitted; exactly 0 if both have the same temperature
+  double irradiance = 0.0;    ///< E0 at normal incidence; 0 without [source]
+  double width = 0.0;         ///< integral of the weight function in um; 1 at a single wavelength
+  Eigen::VectorXd sky = {};   ///< pi L - `surroundings` at the zeniths of SkySampler; L: radiance of the sky
 
   void add(const SpectralFactors& more, double factor);
 };
@@ -94,7 +97,38 @@ double panel_error(const SpectralRule& rule, const Term& term) {
   return error;
 }
 
+/// Returns a rule with fewer samples outside panels, whose sums are equal except for an error that it adds to
+/// SpectralRule::relative_error. Returns `rule` if fewer samples are not accurate enough for the scene's tolerance, or
+/// if the surface has no films, because the responses of a bare medium are few (model/response_basis.hpp).
+/// Derivation: the reflectance curves of many wavelengths are nearly linearly dependent. Gram-Schmidt orthogonalization
+/// chooses samples k such that the curve of each sample j is a sum of c_jk R_k. Then the integral of F times R, which
+/// is the sum of F_j R_j, is the sum of F'_k R_k with F'_k, the sum of F_j c_jk over j. So it is at each angle. The
+/// specular part of rho is a linear functional of the curve, so F' also gives the integral of F times rho.
+/// Domain: all entries have the medium and the films of `scene`, because c depends on them.
+/// Accuracy: tests ThinnedRule_*.
+SpectralRule thinned_rule(const SceneModel& scene, SpectralRule rule);
+
 /// Returns `rule` without the radiation of the effects whose flags in `kept` are false.
 SpectralRule kept_rule(SpectralRule rule, const KeptEffects& kept);
+
+/// The spectral rules of a run, one for each variant of its entries. All steps of the run share them.
+class SpectralRules {
+ public:
+  /// The rules are thin (thinned_rule) unless entries replace the medium of the scene.
+  SpectralRules(const SceneModel& scene, const SceneEntries& entries);
+
+  /// The rule of a variant. If the rules of all variants would need too much memory, at() computes the rule anew.
+  std::shared_ptr<const SpectralRule> at(const SceneVariant& variant) const;
+
+  /// Largest number of samples among the rules of `entries`.
+  std::size_t most_samples(const SceneEntries& entries) const;
+
+ private:
+  std::shared_ptr<const SpectralRule> computed(const SceneVariant& variant) const;
+
+  SceneModel scene_;
+  bool is_thin_;
+  std::map<SceneVariant, std::shared_ptr<const SpectralRule>> kept_;
+};
 
 }  // namespace dolp

@@ -1,11 +1,10 @@
-#include "spectrum/spectral_rules.hpp"
+#include "spectrum/spectral_rule.hpp"
 
 #include <algorithm>
 #include <utility>
 #include <vector>
 
 #include "base/parallel_ranges.hpp"
-#include "spectrum/thinned_rule.hpp"
 
 namespace dolp {
 namespace {

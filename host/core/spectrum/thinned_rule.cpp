@@ -1,5 +1,3 @@
-#include "spectrum/thinned_rule.hpp"
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -11,6 +9,7 @@
 
 #include "model/films.hpp"
 #include "model/smooth_surface.hpp"
+#include "spectrum/spectral_rule.hpp"
 
 namespace dolp {
 namespace {

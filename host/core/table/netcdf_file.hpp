@@ -60,14 +60,13 @@ inline bool is_lack_of_memory(int status) { return status == NC_ENOMEM || status
 struct Hyperslab {
   std::vector<std::size_t> first, count;
 
-  /// `rank`: dimensions of the variable. A variable with one dimension more than axes has `width` values per entry.
-  Hyperslab(const TableHead& head, const TableBox& box, int rank, std::size_t width) {
+  /// A variable may have `width` values per entry in a last dimension. Other variables ignore this dimension.
+  Hyperslab(const TableHead& head, const GridBox& box, std::size_t width) {
     for (const Axis axis : kAllAxes) {
       if (head.axes[axis].empty()) continue;
       first.push_back(box.first[axis]);
       count.push_back(box.count[axis]);
     }
-    if (static_cast<std::size_t>(rank) == first.size()) return;
     first.push_back(0);
     count.push_back(width);
   }

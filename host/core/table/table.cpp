@@ -4,8 +4,6 @@
 
 #include <bit>
 #include <dolp/errors.hpp>
-#include <functional>
-#include <numeric>
 
 #include "base/hash.hpp"
 #include "base/text.hpp"
@@ -116,34 +114,18 @@ TableLayout values_layout(const TableValues& table) {
   return layout;
 }
 
-std::vector<TableBox> boxes_in_order(const PerAxis& counts, std::size_t most) {
-  if (grid_size(counts) == 0) return {};
-  // A box has all values of the last axes, some values of one axis before them, and one value of each earlier axis.
-  std::size_t cut = counts.size() - 1;
-  std::size_t entries_per_value = 1;
-  while (cut > 0 && entries_per_value * counts[cut] <= most) entries_per_value *= counts[cut--];
-  const std::size_t at_once = std::clamp<std::size_t>(most / entries_per_value, 1, counts[cut]);
-  const auto end_of_slow = counts.begin() + static_cast<std::ptrdiff_t>(cut);
-  const std::size_t slow = std::accumulate(counts.begin(), end_of_slow, std::size_t{1}, std::multiplies<>());
-  std::vector<TableBox> boxes;
-  for (std::size_t i = 0; i < slow; ++i) {
-    TableBox box{{}, counts};
-    for (std::size_t axis = cut, rest = i; axis-- > 0; rest /= counts[axis]) {
-      box.first[axis] = rest % counts[axis];
-      box.count[axis] = 1;
-    }
-    for (std::size_t first = 0; first < counts[cut]; first += at_once) {
-      box.first[cut] = first;
-      box.count[cut] = std::min(at_once, counts[cut] - first);
-      boxes.push_back(box);
-    }
-  }
-  return boxes;
+std::vector<std::string> variable_names(const TableLayout& layout) {
+  std::vector<std::string> names;
+  for (const Quantity quantity : layout.quantities) names.emplace_back(describe(quantity).name);
+  for (const ResponseVariable variable : layout.responses) names.emplace_back(describe(variable).name);
+  for (const DerivativeColumn& column : layout.derivatives) names.push_back(column.name);
+  if (layout.has_status) names.emplace_back("status");
+  return names;
 }
 
-TableHead part_head(const TableHead& whole, const TableBox& box) {
+TableHead part_head(const TableHead& whole, const GridBox& box) {
   TableHead head = whole;
-  head.axes = axes_part(whole.axes, box.first, box.count);
+  head.axes = axes_part(whole.axes, box);
   if (!head.wind_m_s.empty()) head.wind_m_s = slice(head.wind_m_s, box.first[Axis::kSigma], box.count[Axis::kSigma]);
   for (const TableCurve& described : kTableCurves) {
     std::vector<double>& used = (head.*described.curve).used;
@@ -157,7 +139,7 @@ ValueSums value_sums(const TableValues& part, const TableLayout& layout, const P
   for_each_variable(layout, [&](const auto& of, std::size_t width) {
     std::uint64_t& sum = sums.emplace_back(0);
     const std::span values(of(part));
-    for_each_run(first, part.counts(), layout.head.counts(), [&](const GridRun& run) {
+    for_each_run({first, part.counts()}, layout.head.counts(), [&](const GridRun& run) {
       sum += sum_of_values(values.subspan(run.in_part * width, run.count * width), run.in_whole * width);
     });
   });

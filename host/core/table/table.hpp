@@ -55,6 +55,9 @@ std::vector<DerivativeColumn> derivative_columns(const std::vector<std::string>&
 
 TableLayout values_layout(const TableValues& table);
 
+/// The names of the variables, in the order of the file.
+std::vector<std::string> variable_names(const TableLayout& layout);
+
 /// Calls use(of, width) for each variable, in the order of the file. `of` is a function that returns the variable's
 /// column in a TableValues; `width` is the number of values per entry.
 template <class Use>
@@ -73,16 +76,7 @@ void for_each_variable(const TableLayout& layout, const Use& use) {
         [](auto& table) -> auto& { return table.status; }, std::size_t{1});
 }
 
-/// A part of a table: on each axis, `count` values from position `first`.
-struct TableBox {
-  PerAxis first = {};
-  PerAxis count = {};
-};
-
-/// Cuts a table into boxes, in the table's order. A box has at most `most` entries, but at least one.
-std::vector<TableBox> boxes_in_order(const PerAxis& counts, std::size_t most);
-
-TableHead part_head(const TableHead& whole, const TableBox& box);
+TableHead part_head(const TableHead& whole, const GridBox& box);
 
 /// Name of the attribute with the hash of a table's values, by which a reader detects damage.
 inline constexpr const char* kValuesHash = "values_hash";

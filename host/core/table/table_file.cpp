@@ -55,7 +55,7 @@ std::string value_text(const Attribute& attribute) {
 std::string csv_header(const TableLayout& layout) {
   std::string text;
   for (const Axis axis : present_axes(layout.head.axes)) (text += describe(axis).column) += ',';
-  text += result_header(layout.quantities, layout.derivatives, layout.has_status) + "\n";
+  text += fmt::format("{}\n", fmt::join(variable_names(layout), ","));
   for (const Attribute& attribute : layout.head.attributes)
     text += "# " + attribute.name + ": " + value_text(attribute) + "\n";
   return text + "# units of stokes: " + layout.head.stokes_units + "\n";
@@ -85,9 +85,8 @@ std::string npy_header(const TableLayout& layout) {
     fields += fmt::format("('{}', '{}'), ", described.column, type);
     shape += fmt::format("{}{}", shape.empty() ? "" : ", ", layout.head.axes[axis].size());
   }
-  for (const Quantity quantity : layout.quantities) fields += fmt::format("('{}', '<f8'), ", describe(quantity).name);
-  for (const DerivativeColumn& column : layout.derivatives) fields += fmt::format("('{}', '<f8'), ", column.name);
-  if (layout.has_status) fields += "('status', '<u4'), ";
+  for (const std::string& name : variable_names(layout))
+    fields += fmt::format("('{}', '{}'), ", name, name == "status" ? "<u4" : "<f8");
   std::string header = "{'descr': [" + fields + "], 'fortran_order': False, 'shape': (" + shape + "), }";
   const std::size_t unpadded = kPreambleSize + header.size() + 1;
   header.append((kAlignment - unpadded % kAlignment) % kAlignment, ' ');
@@ -113,46 +112,31 @@ std::string npy_rows(const TableValues& part, const TableLayout& layout) {
       label.resize(longest_label(layout.head, axis));
       bytes += label;
     });
-    for (const Quantity quantity : layout.quantities) append_bytes(bytes, part[quantity][position]);
-    for (const DerivativeColumn& column : part.derivatives) append_bytes(bytes, column.values[position]);
-    if (!part.status.empty()) append_bytes(bytes, part.status[position]);
+    for_each_variable(layout, [&](const auto& of, std::size_t) { append_bytes(bytes, of(part)[position]); });
   }
   return bytes;
 }
 
 }  // namespace
 
-std::string result_header(const Quantities& quantities, const std::vector<DerivativeColumn>& derivatives,
-                          bool has_status) {
-  std::string header;
-  for (const Quantity quantity : quantities) (header += describe(quantity).name) += ',';
-  for (const DerivativeColumn& column : derivatives) (header += column.name) += ',';
-  if (has_status) return header + "status";
-  return header.substr(0, header.size() - 1);
-}
-
 std::string result_rows(const ResultColumns& results, std::size_t first, std::size_t last, const Quantities& quantities,
                         const RowStart& start) {
   std::vector<std::string> pieces((last - first + kRowsAtOnce - 1) / kRowsAtOnce);
   parallel_ranges(last - first, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     std::string& text = pieces[begin / kRowsAtOnce];
+    const auto add = [&](double value) {
+      append_number(text, value);
+      text += ',';
+    };
     for (std::size_t row = first + begin; row < first + end; ++row) {
       start(text, row);
-      for (const Quantity quantity : quantities) {
-        append_number(text, results[quantity][row]);
-        text += ',';
-      }
-      for (const DerivativeColumn& column : results.derivatives) {
-        append_number(text, column.values[row]);
-        text += ',';
-      }
-      results.status.empty() ? text.pop_back() : void(text += std::to_string(results.status[row]));
-      text += '\n';
+      for (const Quantity quantity : quantities) add(results[quantity][row]);
+      for (const DerivativeColumn& column : results.derivatives) add(column.values[row]);
+      if (!results.status.empty()) text += std::to_string(results.status[row]) + ',';
+      text.back() = '\n';
     }
   });
-  std::string text;
-  for (const std::string& piece : pieces) text += piece;
-  return text;
+  return fmt::format("{}", fmt::join(pieces, ""));
 }
 
 Quantities in_csv_order(const Quantities& quantities) {
@@ -166,7 +150,8 @@ ResultCsv::ResultCsv(const std::filesystem::path& path, const std::string& colum
                      RowStart start)
     : quantities_(in_csv_order(layout.quantities)), start_(std::move(start)) {
   if (path != "-") file_.emplace(path);
-  write(columns + ',' + result_header(quantities_, layout.derivatives) + '\n');
+  const TableLayout ordered{.quantities = quantities_, .derivatives = layout.derivatives};
+  write(fmt::format("{},{}\n", columns, fmt::join(variable_names(ordered), ",")));
 }
 
 void ResultCsv::append(const ResultColumns& results) {

@@ -12,11 +12,8 @@
 
 namespace dolp {
 
-/// Appends the leading cells of CSV row `row` to `text`, each with a comma after it. result_rows() adds the results.
+/// Appends the leading cells of CSV row `row` to `text`, each with a comma after it. The results follow them.
 using RowStart = std::function<void(std::string& text, std::size_t row)>;
-
-std::string result_header(const Quantities& quantities, const std::vector<DerivativeColumn>& derivatives = {},
-                          bool has_status = true);
 
 /// CSV rows `first` to `last` - 1 of the results. A row has the cells that `start` appends, the quantities in the given
 /// order, the derivatives, the status.

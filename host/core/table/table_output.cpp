@@ -162,7 +162,7 @@ void TableOutput::write_rows() {
   put(table_start(job_.layout, format_));
   if (!store_) put(table_rows(only_part_, job_.layout, format_));
   if (store_) {
-    for (const TableBox& box : boxes_in_order(job_.layout.head.counts(), kConvertedRowsAtOnce))
+    for (const GridBox& box : grid_boxes(job_.layout.head.counts(), kConvertedRowsAtOnce))
       put(table_rows(store_->read(box), job_.layout, format_));
   }
   if (target) target->commit();

@@ -20,9 +20,9 @@ class TableOutput {
   struct Job {
     std::filesystem::path path;
     TableLayout layout;
-    std::vector<TableBox> parts = {};  ///< the parts that write() gets, in this order; empty: any parts in any order
-    std::string identity = {};         ///< names and values that must be equal in a resumed run; empty: not resumable
-    bool is_resumed = false;           ///< continues PATH.partial if this file exists
+    std::vector<GridBox> parts = {};  ///< the parts that write() gets, in this order; empty: any parts in any order
+    std::string identity = {};        ///< names and values that must be equal in a resumed run; empty: not resumable
+    bool is_resumed = false;          ///< continues PATH.partial if this file exists
     /// Called with done = 0 for each finished part that a resumed run reads. If it returns false, the run is cancelled.
     Progress progress = {};
   };

@@ -189,6 +189,16 @@ std::optional<std::variant<std::string, double>> read_attribute(const Reader& re
   return status == NC_NOERR ? std::optional(std::variant<std::string, double>(value)) : std::nullopt;
 }
 
+/// The n, k or E0 of the scene with its own wavelengths, as files of dolp 0.2 store it in variables; else an empty
+/// curve.
+Curve read_scene_curve(const Reader& reader, const TableCurve& described) {
+  Curve curve;
+  curve.wavelength_um = read_numbers(reader, described.name + std::string("_wavelength"), kMostTableEntries);
+  if (!curve.wavelength_um.empty()) curve.values = read_numbers(reader, described.name, kMostTableEntries);
+  if (curve.values.size() != curve.wavelength_um.size()) reader.fail(described.name + std::string(": is cut short"));
+  return curve;
+}
+
 std::optional<std::string> find_text(const Reader& reader, int variable, const char* name) {
   int number = 0;
   if (reader.file().call(nc_inq_attid, variable, name, &number) != NC_NOERR) return std::nullopt;
@@ -293,24 +303,19 @@ struct TableReader::Impl {
   void read_curves() {
     for (const TableCurve& described : kTableCurves) {
       Curve& curve = head.*described.curve;
-      // Files of dolp 0.2 store n, k and E0 of the scene as variables with their own wavelengths, not in an attribute.
-      curve.wavelength_um = read_numbers(reader, described.name + std::string("_wavelength"), kMostTableEntries);
-      const bool is_of_scene = !curve.wavelength_um.empty();
-      std::vector<double>& values = is_of_scene ? curve.values : curve.used;
-      values = read_numbers(reader, described.name, kMostTableEntries);
-      const std::size_t count = is_of_scene ? curve.wavelength_um.size() : head.counts()[Axis::kWavelength];
-      if (values.size() != count && (is_of_scene || !values.empty()))
+      curve = read_scene_curve(reader, described);
+      if (!curve.values.empty()) continue;
+      curve.used = read_numbers(reader, described.name, kMostTableEntries);
+      if (!curve.used.empty() && curve.used.size() != head.counts()[Axis::kWavelength])
         reader.fail(described.name + std::string(": is cut short"));
     }
   }
 
   template <class Value>
-  void read(std::size_t number, const TableBox& box, std::vector<Value>& values, std::size_t width) const {
+  void read(std::size_t number, const GridBox& box, std::vector<Value>& values, std::size_t width) const {
     const auto& [name, variable] = open[number];
-    int rank = 0;
-    reader.call(name, nc_inq_varndims, variable, &rank);
     values.resize(grid_size(box.count) * width);
-    const int status = get_values(reader.file(), variable, Hyperslab(head, box, rank, width), values.data());
+    const int status = get_values(reader.file(), variable, Hyperslab(head, box, width), values.data());
     if (status != NC_NOERR) reader.fail(name + ": cannot be read; the file is damaged");
   }
 };
@@ -328,7 +333,7 @@ TableReader::~TableReader() = default;
 
 const TableLayout& TableReader::layout() const { return impl_->layout; }
 
-TableValues TableReader::read(const TableBox& box) const {
+TableValues TableReader::read(const GridBox& box) const {
   TableValues part{part_head(head(), box)};
   part.derivatives = layout().derivatives;
   std::size_t number = 0;
@@ -345,7 +350,7 @@ void TableReader::check_hash(const ValueSums& sums) const {
       "not all values");
 }
 
-ValueSums TableReader::value_sums(const TableValues& part, const TableBox& box) const {
+ValueSums TableReader::value_sums(const TableValues& part, const GridBox& box) const {
   return dolp::value_sums(part, layout(), box.first);
 }
 
@@ -355,7 +360,7 @@ TableValues TableReader::read_entries(std::span<const std::size_t> positions, co
   ValueSums sums;
   std::size_t before = 0;
   const std::size_t at_once = kEntriesAtOnce / std::max<std::size_t>(head().beta_deg.size(), 1);
-  for (const TableBox& box : boxes_in_order(head().counts(), at_once)) {
+  for (const GridBox& box : grid_boxes(head().counts(), at_once)) {
     if (progress && !progress(before, head().size())) throw Cancelled();
     const TableValues part = read(box);
     add(sums, value_sums(part, box));
@@ -378,12 +383,7 @@ std::vector<Attribute> read_attributes(const fs::path& path) {
   TableHead head;
   head.attributes = read_attributes(reader);
   append_long_texts(reader, head.attributes);
-  for (const TableCurve& described : kTableCurves) {  // in files of dolp 0.2
-    Curve& curve = head.*described.curve;
-    curve.wavelength_um = read_numbers(reader, described.name + std::string("_wavelength"), kMostTableEntries);
-    if (!curve.wavelength_um.empty()) curve.values = read_numbers(reader, described.name, kMostTableEntries);
-    if (curve.values.size() != curve.wavelength_um.size()) reader.fail(described.name + std::string(": is cut short"));
-  }
+  for (const TableCurve& described : kTableCurves) head.*described.curve = read_scene_curve(reader, described);
   if (std::string data = spectral_data_text(head); !data.empty())
     head.attributes.push_back({kSpectralData, std::move(data)});
   return head.attributes;
@@ -391,7 +391,7 @@ std::vector<Attribute> read_attributes(const fs::path& path) {
 
 TableValues read_table(const fs::path& path) {
   const TableReader reader(path);
-  const TableBox all{{}, reader.head().counts()};
+  const GridBox all{{}, reader.head().counts()};
   TableValues table = reader.read(all);
   reader.check_hash(reader.value_sums(table, all));
   return table;

@@ -21,11 +21,11 @@ class TableReader {
   const TableLayout& layout() const;
   const TableHead& head() const { return layout().head; }
 
-  TableValues read(const TableBox& box) const;
+  TableValues read(const GridBox& box) const;
   /// Reads the entries at the ascending `positions`, and checks the hash of the whole table. May also throw Cancelled.
   TableValues read_entries(std::span<const std::size_t> positions, const Progress& progress) const;
 
-  ValueSums value_sums(const TableValues& part, const TableBox& box) const;
+  ValueSums value_sums(const TableValues& part, const GridBox& box) const;
   /// Refuses a file that lacks a hash, or whose values changed since dolp wrote them. `sums`: checksums of the table.
   void check_hash(const ValueSums& sums) const;
 

@@ -144,13 +144,10 @@ struct TableStore::Impl {
 
   /// Calls use(variable, place of the box in it, values) for each variable.
   template <class Values, class Use>
-  void each_variable(Values& part, const TableBox& box, const Use& use) const {
+  void each_variable(Values& part, const GridBox& box, const Use& use) const {
     std::size_t number = 0;
     for_each_variable(layout, [&](const auto& of, std::size_t width) {
-      const int variable = variables[number++];
-      int rank = 0;
-      call(nc_inq_varndims, variable, &rank);
-      use(variable, Hyperslab(layout.head, box, rank, width), of(part));
+      use(variables[number++], Hyperslab(layout.head, box, width), of(part));
     });
   }
 };
@@ -292,7 +289,7 @@ ValueSums TableStore::write(const TableValues& part, const PerAxis& first) {
   return sums;
 }
 
-TableValues TableStore::read(const TableBox& box) const {
+TableValues TableStore::read(const GridBox& box) const {
   TableValues part{part_head(impl_->layout.head, box)};
   part.derivatives = impl_->layout.derivatives;
   for_each_variable(impl_->layout, [&](const auto& of, std::size_t width) { of(part).resize(part.size() * width); });
@@ -302,7 +299,7 @@ TableValues TableStore::read(const TableBox& box) const {
   return part;
 }
 
-std::optional<ValueSums> TableStore::measured(const TableBox& box) const {
+std::optional<ValueSums> TableStore::measured(const GridBox& box) const {
   try {
     return value_sums(read(box), impl_->layout, box.first);
   } catch (const IoError&) {  // for example if the disk is faulty

@@ -22,9 +22,9 @@ class TableStore {
 
   /// Writes a part. Returns the checksums of the part, for the caller to add up.
   ValueSums write(const TableValues& part, const PerAxis& first);
-  TableValues read(const TableBox& box) const;
+  TableValues read(const GridBox& box) const;
   /// The checksums of a part as the file contains it; nullopt if the part cannot be read.
-  std::optional<ValueSums> measured(const TableBox& box) const;
+  std::optional<ValueSums> measured(const GridBox& box) const;
   /// Adds attributes and closes the file. `sums`: checksums of all parts.
   void finish(std::vector<Attribute> more, const ValueSums& sums);
 

@@ -42,7 +42,7 @@ std::vector<Precision> checked_precisions(const DeviceCheckOptions& options, std
 
 BuiltInMaterial to_facts(const Material& material) {
   const Spectrum range = known_range(material);
-  return {material.name, range.min_um, range.max_um, material.source, material_kind(material.name)};
+  return {material.name, range.min_um, range.max_um, material.source, material.kind};
 }
 
 /// The quantities with these names; DOLP without names. Errors: InputError for a quantity that the table lacks.

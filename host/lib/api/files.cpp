@@ -17,7 +17,7 @@
 #include "run/scene_run.hpp"
 #include "run/scene_table.hpp"
 #include "run/table_run.hpp"
-#include "scene/scene_data.hpp"
+#include "scene/scene_reader.hpp"
 #include "table/table_file.hpp"
 
 namespace dolp {

@@ -7,7 +7,6 @@
 #include "run/scene_remarks.hpp"
 #include "run/table_scene.hpp"
 #include "scene/embedded_data.hpp"
-#include "scene/key_hints.hpp"
 #include "scene/material_data.hpp"
 #include "scene/scene_keys.hpp"
 #include "scene/scene_reader.hpp"
@@ -113,17 +112,19 @@ std::string Scene::toml(const std::filesystem::path& folder) const {
 
 std::optional<double> Scene::number(std::string_view key) const {
   const std::optional<KeyValue> value = find_value(impl_->scene, key, {Type::kNumber});
-  return value ? std::optional(value->number) : std::nullopt;
+  return value ? std::optional(std::get<double>(*value)) : std::nullopt;
 }
 
 std::optional<std::string> Scene::word(std::string_view key) const {
   const std::optional<KeyValue> value = find_value(impl_->scene, key, {Type::kWord, Type::kText, Type::kFlag});
-  return value ? std::optional(value->text) : std::nullopt;
+  if (!value) return std::nullopt;
+  if (const bool* const flag = std::get_if<bool>(&*value)) return *flag ? "true" : "false";
+  return std::get<std::string>(*value);
 }
 
 std::vector<double> Scene::numbers(std::string_view key) const {
   const std::optional<KeyValue> value = find_value(impl_->scene, key, {Type::kAxis, Type::kPair, Type::kPairs});
-  return value ? value->numbers : std::vector<double>{};
+  return value ? std::get<std::vector<double>>(*value) : std::vector<double>{};
 }
 
 const AxisLabels& Scene::labels() const { return impl_->scene.labels; }

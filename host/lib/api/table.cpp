@@ -102,19 +102,22 @@ std::vector<Attribute> Table::file_attributes() const {
 void Table::write(const std::filesystem::path& path) const { write_table(impl_->table, path); }
 
 std::string to_csv(const std::vector<Column>& points, const Results& results) {
-  const Quantities quantities = in_csv_order(results.given);
+  TableLayout layout{.quantities = in_csv_order(results.given)};
   const std::size_t count = results.status.size();
   const auto check = [&](const std::string& name, std::size_t size, bool may_be_one) {
     if (size == count || (may_be_one && size == 1)) return;
     throw InputError(fmt::format("{}: {} values for {} results", one_line(name), size, count));
   };
   for (const Column& column : points) check(column.name, column.values.size(), true);
-  for (const Quantity quantity : quantities) check(describe(quantity).name, results[quantity].size(), false);
+  for (const Quantity quantity : layout.quantities) check(describe(quantity).name, results[quantity].size(), false);
   std::string header;
   for (const Column& column : points) header += column.name + ',';
-  for (const DerivativeColumn& column : results.derivatives) check(column.name, column.values.size(), false);
-  return header + result_header(quantities, results.derivatives) + '\n' +
-         result_rows(results, 0, count, quantities, [&](std::string& text, std::size_t row) {
+  for (const DerivativeColumn& column : results.derivatives) {
+    check(column.name, column.values.size(), false);
+    layout.derivatives.push_back({.name = column.name});
+  }
+  return fmt::format("{}{}\n", header, fmt::join(variable_names(layout), ",")) +
+         result_rows(results, 0, count, layout.quantities, [&](std::string& text, std::size_t row) {
            for (const Column& column : points) {
              append_number(text, column.values[column.values.size() == 1 ? 0 : row]);
              text += ',';

@@ -177,7 +177,7 @@ Model::Group Model::make_group(const SceneValues& scene, const MeasuredData& dat
 void Model::check_group(const Group& group) const {
   const MeasuredData& data = *group.data;
   const Surface& surface = group.scene.surface;
-  const bool has_table = group.scene.source && group.scene.source->kind == Source::Kind::kTabulated;
+  const bool has_table = group.scene.source && group.scene.source->table;
   if (varies("spectrum.wavelength_um") && (!surface.material.is_constant() || surface.diffuse_table || has_table))
     throw InputError("spectrum.wavelength_um: to vary it needs n, k, k_d and a source that are constants of the scene");
   if (data.zenith_column == "theta_i_deg" && group.scene.geometry.mode != Mode::kBistatic)
@@ -193,7 +193,8 @@ bool Model::varies(const std::string& key) const {
 SceneValues Model::with(const SceneValues& scene, const Eigen::VectorXd& values) const {
   SceneValues varied = scene;
   for (std::size_t j = 0; j < parameters_.size(); ++j)
-    find_scene_key(parameters_[j].key)->set(varied, {.number = values[static_cast<Eigen::Index>(j)]});
+    find_scene_key(parameters_[j].key)->set(varied, values[static_cast<Eigen::Index>(j)]);
+  follow_keys(varied);
   return varied;
 }
 

@@ -104,7 +104,7 @@ class Steps {
 
  private:
   double value(const SceneEntry& entry) const {
-    return axis_ ? to_key(entries_.value(entry, *axis_)) : find_scene_key(key_)->value(scene_)->number;
+    return axis_ ? to_key(entries_.value(entry, *axis_)) : std::get<double>(*find_scene_key(key_)->value(scene_));
   }
 
   std::vector<PointResult> results_at(double factor, ModelEvaluator& evaluator, const Progress& progress) const {

@@ -11,7 +11,7 @@
 #include "model/films.hpp"
 #include "plan/slope_orders.hpp"
 #include "run/scene_run.hpp"
-#include "scene/scene_data.hpp"
+#include "scene/scene_reader.hpp"
 #include "table/table.hpp"
 
 namespace dolp {

@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "model/further_light.hpp"
+#include "model/scattering.hpp"
 #include "model/scene_entry.hpp"
 #include "plan/weighted_sums.hpp"
 #include "scene/scene.hpp"
-#include "spectrum/spectral_rules.hpp"
+#include "spectrum/spectral_rule.hpp"
 
 namespace dolp {
 

@@ -134,9 +134,10 @@ std::vector<MuellerPoint> mueller_points(const SceneValues& scene, const Points&
       set_films(coated, points.films_at(row));
       optics = coated.optics_at(scene.spectrum.min_um);
     }
-    result.push_back({{(*points.theta_i_deg)[row], (*points.theta_r_deg)[row], (*points.delta_phi_deg)[row]},
-                      shape_at(scene, points, row),
-                      optics});
+    result.push_back(
+        {{(*points[Axis::kTheta])[row], (*points[Axis::kViewZenith])[row], (*points[Axis::kRelativeAzimuth])[row]},
+         shape_at(scene, points, row),
+         optics});
     OpticalConstants& index = result.back().index.index;
     index = {value_or(points[Axis::kN], row, index.n), value_or(points[Axis::kK], row, index.k)};
   }

@@ -288,7 +288,7 @@ ResponseOutcome run_responses(const SceneValues& scene, const TableLayout& layou
   const Progress& progress = options.progress;
   report_start(progress, layout.head.size());
   for (std::size_t first = 0; first < axes[Axis::kTheta].size(); first += at_once) {
-    TableBox box{{}, layout.head.counts()};
+    GridBox box{{}, layout.head.counts()};
     box.first[Axis::kTheta] = first;
     box.count[Axis::kTheta] = std::min(at_once, axes[Axis::kTheta].size() - first);
     TableValues part{part_head(layout.head, box)};

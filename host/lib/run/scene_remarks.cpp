@@ -193,7 +193,7 @@ class Remarks {
         add(key + "thickness_spread_um", "is above the mean thickness; thicknesses below 0 are left out");
     }
     if (!scene_.names.reflectance_file.empty()) add_reflectances("surface.reflectance_file");
-    if (!scene_.names.source_file.empty()) add_gap("source.file", bridged_gap(scene_.source->table, used_um(scene_)));
+    if (!scene_.names.source_file.empty()) add_gap("source.file", bridged_gap(*scene_.source->table, used_um(scene_)));
   }
 
   void add_mode() {

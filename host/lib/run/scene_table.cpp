@@ -40,10 +40,9 @@ void fill_curves(TableHead& head, const SceneValues& scene) {
     head.index_n = scene_curve(material.n, material.constant.n);
     head.index_k = scene_curve(material.k, material.constant.k);
   }
-  if (scene.source && scene.source->kind == Source::Kind::kFlat)
-    head.irradiance = {one_um, {scene.source->irradiance}, {}};
-  if (scene.source && scene.source->kind == Source::Kind::kTabulated)
-    head.irradiance = scene_curve(scene.source->table, 0.0);
+  if (scene.source && !scene.source->relative_irradiance)
+    head.irradiance =
+        scene_curve(scene.source->table ? *scene.source->table : SpectralTable(), scene.source->irradiance);
   fill_used(head, scene);
 }
 
@@ -78,7 +77,7 @@ std::uint64_t data_hash(const SceneValues& scene) {
   }
   hash = hashed(hashed(hash, coating_text(scene, StoredRows::kAll)), reflectance_text(scene.surface));
   hash = hashed(hash, axis_materials_text(scene, StoredRows::kAll));
-  if (scene.source) add(scene.source->table);
+  if (scene.source) add(scene.source->table ? *scene.source->table : SpectralTable());
   for (const SpectralTable* table : {scene.spectrum.response.get(), scene.surface.diffuse_table.get()})
     if (table) add(*table);
   if (scene.surroundings && scene.surroundings->profile) hash = hashed(hash, scene.surroundings->profile->text());
@@ -102,9 +101,8 @@ void fill_used(TableHead& head, const SceneValues& scene) {
   fill(head.index_n, [&](double wavelength_um) { return index_at(wavelength_um).n; });
   fill(head.index_k, [&](double wavelength_um) { return index_at(wavelength_um).k; });
   if (!scene.source) return;
-  const bool is_tabulated = scene.source->kind == Source::Kind::kTabulated;
   fill(head.irradiance, [&](double wavelength_um) {
-    return is_tabulated ? scene.source->table.at(wavelength_um) : scene.source->irradiance;
+    return scene.source->table ? scene.source->table->at(wavelength_um) : scene.source->irradiance;
   });
 }
 

@@ -58,8 +58,8 @@ std::string identity_of_file(const std::string& identity, const Shard& shard, co
                      one_line(evaluation.driver));
 }
 
-std::vector<TableBox> part_boxes(const SceneEntries& entries, const std::vector<SceneEntries>& parts) {
-  std::vector<TableBox> boxes;
+std::vector<GridBox> part_boxes(const SceneEntries& entries, const std::vector<SceneEntries>& parts) {
+  std::vector<GridBox> boxes;
   for (const SceneEntries& part : parts) boxes.push_back({part.first_in(entries), part.counts()});
   return boxes;
 }
@@ -165,7 +165,7 @@ std::vector<Attribute> without_run(std::vector<Attribute> attributes) {
 
 void merge_shard(TableOutput& output, const TableReader& reader, const SceneEntries& shard) {
   ValueSums sums;
-  for (const TableBox& box : boxes_in_order(shard.counts(), kMergedAtOnce)) {
+  for (const GridBox& box : grid_boxes(shard.counts(), kMergedAtOnce)) {
     TableValues part = reader.read(box);
     add(sums, reader.value_sums(part, box));
     PerAxis first = shard.first();
@@ -210,7 +210,7 @@ SceneEntries shard_entries(const SceneValues& scene, const Shard& shard) {
     first[axis] = all * part / cuts[i];
     count[axis] = all * (part + 1) / cuts[i] - first[axis];
   }
-  return whole.part(first, count);
+  return whole.part({first, count});
 }
 
 RunOutcome write_table(const SceneValues& scene, const TableJob& job, const EvaluatorMaker& make_evaluator) {

@@ -173,13 +173,14 @@ std::vector<std::optional<Material>> parse_materials(const std::string& text, co
       material->n.formula = parse_formula(std::string(row.cells()[kValue]), row.where());
       continue;
     }
-    const double value = row.number(kValue, "value", quantity == "n" ? &kNRange : &kKRange);
+    const bool is_n = quantity == "n";
+    const NumberRange& range = is_n ? kNRange : kKRange;
+    const double value = row.number(kValue, "value", &range);
     if (row.cells()[kWavelength].empty()) {
-      (quantity == "n" ? material->constant.n : material->constant.k) = value;
+      (is_n ? material->constant.n : material->constant.k) = value;
     } else {
-      const double wavelength_um = row.number(kWavelength, "wavelength_um");
-      append_index(*material, wavelength_um, quantity == "n" ? std::optional(value) : std::nullopt,
-                   quantity == "n" ? std::nullopt : std::optional(value), row.where());
+      const NamedValue named{is_n ? "n" : "k", value, range};
+      append_row(is_n ? material->n : material->k, row.number(kWavelength, "wavelength_um"), named, row.where());
     }
   }
   return materials;

@@ -55,7 +55,7 @@ std::vector<double> band_breaks_um(const SceneModel& scene) {
       if (at_um > scene.spectrum.min_um && at_um < scene.spectrum.max_um) breaks.push_back(at_um);
   };
   add(scene.surface.optics_rows_um());
-  if (scene.source) add(scene.source->table.wavelength_um);
+  if (scene.source && scene.source->table) add(scene.source->table->wavelength_um);
   if (scene.spectrum.response) add(scene.spectrum.response->wavelength_um);
   if (scene.surface.diffuse_table) add(scene.surface.diffuse_table->wavelength_um);
   if (scene.surroundings && scene.surroundings->profile) add(scene.surroundings->profile->breaks_um());

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <dolp/errors.hpp>
 #include <system_error>
+#include <tuple>
 #include <utility>
 
 #include "base/interrupt.hpp"
@@ -33,25 +34,6 @@ constexpr mode_t kWriteBits = 0222;
   const int error = errno;
   fail(path, what + ": " + std::generic_category().message(error));
 }
-
-class File {
- public:
-  explicit File(int descriptor) : descriptor_(descriptor) {}
-  File(File&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-  File& operator=(File&& other) noexcept {
-    std::swap(descriptor_, other.descriptor_);
-    return *this;
-  }
-  ~File() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-  }
-  int get() const { return descriptor_; }
-  // Returns false on failure: some file systems report a failed write only when the file is closed.
-  bool close() { return ::close(std::exchange(descriptor_, -1)) == 0; }
-
- private:
-  int descriptor_;
-};
 
 fs::path parent_folder(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 
@@ -107,18 +89,29 @@ std::pair<fs::path, int> with_new_name(const fs::path& target, const Make& make)
 }
 
 /// Creates a file without a name or, if the system cannot, with a temporary name. Returns the file and its name.
-std::pair<File, fs::path> create_temporary(const fs::path& target) {
+std::pair<FileDescriptor, fs::path> create_temporary(const fs::path& target) {
   const bool can_be_linked = ::access(kOpenFiles, X_OK) == 0;
   const int unnamed =
       can_be_linked ? ::open(parent_folder(target).c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, kNewFileMode) : -1;
-  if (unnamed >= 0) return {File(unnamed), fs::path()};
+  if (unnamed >= 0) return {FileDescriptor(unnamed), fs::path()};
   auto [name, named] = with_new_name(target, [](const fs::path& path) {
     return ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kNewFileMode);
   });
-  return {File(named), std::move(name)};
+  return {FileDescriptor(named), std::move(name)};
 }
 
-void keep_permissions(const File& file, const fs::path& target) {
+std::string open_file(const FileDescriptor& file) { return std::string(kOpenFiles) + '/' + std::to_string(file.get()); }
+
+/// Gives a temporary name in the folder of `target` to a file without a name. Returns the name.
+fs::path link_with_new_name(const FileDescriptor& file, const fs::path& target) {
+  const std::string own = open_file(file);
+  const auto link = [&](const fs::path& name) {
+    return ::linkat(AT_FDCWD, own.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW);
+  };
+  return with_new_name(target, link).first;
+}
+
+void keep_permissions(const FileDescriptor& file, const fs::path& target) {
   struct stat existing {};
   const bool exists = ::stat(target.c_str(), &existing) == 0;
   // A failure of fchmod is ignored, because the file's content is more important than its permissions.
@@ -131,7 +124,7 @@ bool has_name(const struct stat& file, const fs::path& name) {
 }
 
 void sync_folder(const fs::path& folder, const fs::path& path) {
-  const File file(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const FileDescriptor file(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   // Some file systems cannot sync a folder at all (EINVAL).
   if (file.get() < 0 || (::fsync(file.get()) != 0 && errno != EINVAL)) fail_errno(path, "cannot sync its folder");
 }
@@ -175,127 +168,101 @@ void check_writable(const fs::path& path) {
   if (::access(folder.c_str(), W_OK | X_OK) != 0) fail_errno(path, "cannot write to the folder " + folder.string());
 }
 
-struct AtomicFile::Impl {
-  fs::path path;    // the argument of the constructor, for messages
-  fs::path target;  // follow_links(path)
-  File file;
-  fs::path name;         // temporary name of the incomplete file; empty if it has no name
-  bool is_kept = false;  // true: the destructor does not remove an incomplete file
+FileDescriptor::FileDescriptor(FileDescriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
 
-  Impl(fs::path given_path, fs::path resolved_path, std::pair<File, fs::path> unfinished)
-      : path(std::move(given_path)),
-        target(std::move(resolved_path)),
-        file(std::move(unfinished.first)),
-        name(std::move(unfinished.second)) {}
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
-  ~Impl() {
-    if (!name.empty() && !is_kept) ::unlink(name.c_str());
-  }
-
-  int descriptor() const { return file.get(); }
-
-  std::uint64_t size() const {
-    struct stat now {};
-    if (::fstat(descriptor(), &now) != 0) fail_errno(path, "cannot read its size");
-    return static_cast<std::uint64_t>(now.st_size);
-  }
-
-  std::string open_file() const { return std::string(kOpenFiles) + '/' + std::to_string(descriptor()); }
-
-  void link() {  // gives a temporary name to the file
-    const std::string own = open_file();
-    name = with_new_name(target, [&](const fs::path& free_name) {
-             return ::linkat(AT_FDCWD, own.c_str(), AT_FDCWD, free_name.c_str(), AT_SYMLINK_FOLLOW);
-           }).first;
-  }
-
-  void copy_to_target() const {  // `target` is a device or pipe
-    File device(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
-    if (device.get() < 0 && interrupted()) throw Cancelled();
-    if (device.get() < 0) fail_errno(path, "cannot open for writing");
-    std::string bytes;
-    const std::uint64_t whole = size();
-    for (std::uint64_t done = 0; done < whole; done += bytes.size()) {
-      bytes.resize(static_cast<std::size_t>(std::min<std::uint64_t>(kBytesAtOnce, whole - done)));
-      read_all(descriptor(), path, done, bytes.data(), bytes.size());
-      write_all(device.get(), path, bytes);
-    }
-    if (!device.close()) fail_errno(path, "cannot write");
-  }
-};
-
-AtomicFile::AtomicFile(const fs::path& path) {
-  check_writable(path);
-  const fs::path target = follow_links(path);
-  const bool is_device = is_device_or_pipe(target);
-  impl_ = std::make_unique<Impl>(path, target, create_temporary(is_device ? temporary_files() / "-" : target));
-  if (!is_device) keep_permissions(impl_->file, target);
+FileDescriptor& FileDescriptor::operator=(FileDescriptor&& other) noexcept {
+  std::swap(number_, other.number_);
+  return *this;
 }
 
-AtomicFile::AtomicFile(const fs::path& path, const fs::path& under_way) {
+FileDescriptor::~FileDescriptor() {
+  if (number_ >= 0) ::close(number_);
+}
+
+bool FileDescriptor::close() { return ::close(std::exchange(number_, -1)) == 0; }
+
+AtomicFile::AtomicFile(const fs::path& path) : path_(path) {
   check_writable(path);
-  // Allocates memory before it creates the file, so that lack of memory leaves no file behind.
-  impl_ = std::make_unique<Impl>(path, follow_links(path), std::pair(File(-1), under_way));
-  impl_->is_kept = true;
-  File& file = impl_->file;
-  file = File(::open(under_way.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, kNewFileMode));
-  if (file.get() < 0 && errno == ELOOP) fail(under_way, "is a symbolic link; remove it");
-  if (file.get() < 0) fail_errno(under_way, "cannot create the file");
-  const bool is_locked = ::flock(file.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+  target_ = follow_links(path);
+  const bool is_device = is_device_or_pipe(target_);
+  std::tie(file_, name_) = create_temporary(is_device ? temporary_files() / "-" : target_);
+  if (!is_device) keep_permissions(file_, target_);
+}
+
+AtomicFile::AtomicFile(const fs::path& path, const fs::path& under_way)
+    : path_(path), name_(under_way), is_kept_(true) {
+  check_writable(path);
+  target_ = follow_links(path);
+  file_ = FileDescriptor(::open(under_way.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, kNewFileMode));
+  if (file_.get() < 0 && errno == ELOOP) fail(under_way, "is a symbolic link; remove it");
+  if (file_.get() < 0) fail_errno(under_way, "cannot create the file");
+  const bool is_locked = ::flock(file_.get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
   struct stat found {};
-  if (::fstat(file.get(), &found) != 0 || !S_ISREG(found.st_mode)) fail(under_way, "is not a regular file");
+  if (::fstat(file_.get(), &found) != 0 || !S_ISREG(found.st_mode)) fail(under_way, "is not a regular file");
   // If the opened file no longer has the name `under_way`, another run has just renamed it.
   if (!is_locked || !has_name(found, under_way)) throw InputError(under_way.string() + ": another run writes it");
   if (found.st_nlink > 1) fail(under_way, "is a file that has other names too; remove it");
-  keep_permissions(file, impl_->target);
+  keep_permissions(file_, target_);
 }
 
-AtomicFile::AtomicFile(AtomicFile&&) noexcept = default;
-AtomicFile& AtomicFile::operator=(AtomicFile&&) noexcept = default;
-AtomicFile::~AtomicFile() = default;
-
-const fs::path& AtomicFile::path() const { return impl_->path; }
+AtomicFile::~AtomicFile() {
+  if (file_.get() >= 0 && !name_.empty() && !is_kept_) ::unlink(name_.c_str());
+}
 
 fs::path AtomicFile::open_path() const {
   // Prefers the open file, because the name may be gone, or belong to another file by now.
-  return ::access(kOpenFiles, X_OK) == 0 ? fs::path(impl_->open_file()) : fs::absolute(impl_->name);
+  return ::access(kOpenFiles, X_OK) == 0 ? fs::path(open_file(file_)) : fs::absolute(name_);
 }
 
 void AtomicFile::write_at(std::uint64_t offset, const void* bytes, std::size_t size) {
-  write_all(impl_->path, {static_cast<const char*>(bytes), size}, [&](const char* next, std::size_t most) {
-    const ssize_t written = ::pwrite(impl_->descriptor(), next, most, static_cast<off_t>(offset));
+  write_all(path_, {static_cast<const char*>(bytes), size}, [&](const char* next, std::size_t most) {
+    const ssize_t written = ::pwrite(file_.get(), next, most, static_cast<off_t>(offset));
     if (written > 0) offset += static_cast<std::uint64_t>(written);
     return written;
   });
 }
 
-void AtomicFile::append(std::string_view bytes) { write_at(impl_->size(), bytes.data(), bytes.size()); }
+void AtomicFile::append(std::string_view bytes) { write_at(size(), bytes.data(), bytes.size()); }
 
-std::uint64_t AtomicFile::size() const { return impl_->size(); }
+std::uint64_t AtomicFile::size() const {
+  struct stat now {};
+  if (::fstat(file_.get(), &now) != 0) fail_errno(path_, "cannot read its size");
+  return static_cast<std::uint64_t>(now.st_size);
+}
 
 void AtomicFile::read_at(std::uint64_t offset, void* bytes, std::size_t size) const {
-  read_all(impl_->descriptor(), impl_->path, offset, static_cast<char*>(bytes), size);
+  read_all(file_.get(), path_, offset, static_cast<char*>(bytes), size);
 }
 
 void AtomicFile::resize(std::uint64_t size) {
-  if (::ftruncate(impl_->descriptor(), static_cast<off_t>(size)) != 0) fail_errno(impl_->path, "cannot write");
+  if (::ftruncate(file_.get(), static_cast<off_t>(size)) != 0) fail_errno(path_, "cannot write");
+}
+
+void AtomicFile::copy_to_target() const {
+  FileDescriptor device(::open(target_.c_str(), O_WRONLY | O_CLOEXEC));
+  if (device.get() < 0 && interrupted()) throw Cancelled();
+  if (device.get() < 0) fail_errno(path_, "cannot open for writing");
+  std::string bytes;
+  const std::uint64_t whole = size();
+  for (std::uint64_t done = 0; done < whole; done += bytes.size()) {
+    bytes.resize(static_cast<std::size_t>(std::min<std::uint64_t>(kBytesAtOnce, whole - done)));
+    read_at(done, bytes.data(), bytes.size());
+    write_all(device.get(), path_, bytes);
+  }
+  if (!device.close()) fail_errno(path_, "cannot write");
 }
 
 void AtomicFile::commit() {
-  if (is_device_or_pipe(impl_->target)) return impl_->copy_to_target();
-  const fs::path folder = parent_folder(impl_->target);  // allocated before the rename, because an allocation can fail
+  if (is_device_or_pipe(target_)) return copy_to_target();
+  const fs::path folder = parent_folder(target_);  // allocated before the rename, because an allocation can fail
   if (interrupted()) throw Cancelled();
-  if (::fsync(impl_->descriptor()) != 0) fail_errno(impl_->path, "cannot write");
-  if (impl_->name.empty()) impl_->link();
+  if (::fsync(file_.get()) != 0) fail_errno(path_, "cannot write");
+  if (name_.empty()) name_ = link_with_new_name(file_, target_);
   // The file stays locked until it has its final name. So no other run can continue it as an unfinished file.
-  if (::rename(impl_->name.c_str(), impl_->target.c_str()) != 0)
-    fail_errno(impl_->path, "cannot rename the finished file");
-  impl_->name.clear();
-  sync_folder(folder, impl_->path);
+  if (::rename(name_.c_str(), target_.c_str()) != 0) fail_errno(path_, "cannot rename the finished file");
+  name_.clear();
+  sync_folder(folder, path_);
 }
-
-void AtomicFile::discard() { impl_->is_kept = false; }
 
 void write_text_atomically(const fs::path& path, std::string_view content) {
   if (path == "-") return write_all(STDOUT_FILENO, "standard output", content);

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <string_view>
 
 namespace dolp {
@@ -14,6 +13,20 @@ std::filesystem::path follow_links(std::filesystem::path path);
 /// Checks before a computation that the output `path` can be written; "-" is standard output. Errors: IoError if `path`
 /// is a folder, a read-only file or too long, or if the folder of `path` is missing or not writable.
 void check_writable(const std::filesystem::path& path);
+
+/// Closes the file descriptor. -1 stands for no file.
+class FileDescriptor {
+ public:
+  explicit FileDescriptor(int number = -1) : number_(number) {}
+  FileDescriptor(FileDescriptor&& other) noexcept;
+  FileDescriptor& operator=(FileDescriptor&& other) noexcept;
+  ~FileDescriptor();
+  int get() const { return number_; }
+  bool close();  ///< false on failure: some file systems report a failed write only when the file is closed
+
+ private:
+  int number_;
+};
 
 /// A file that gets the name `path` only in commit(), when all bytes are written. Before, the file has no name, or the
 /// name .dolp-*.tmp if the file system requires one. The new file has the permissions of the file that it replaces. If
@@ -26,11 +39,11 @@ class AtomicFile {
   /// `path`; without commit() the name stays `under_way`. Errors: the errors of check_writable(); IoError if no file
   /// can be made or `under_way` is a symbolic link; InputError if another process has locked the file.
   AtomicFile(const std::filesystem::path& path, const std::filesystem::path& under_way);
-  AtomicFile(AtomicFile&&) noexcept;
-  AtomicFile& operator=(AtomicFile&&) noexcept;
+  AtomicFile(AtomicFile&&) noexcept = default;
+  AtomicFile& operator=(AtomicFile&&) = delete;
   ~AtomicFile();
 
-  const std::filesystem::path& path() const;
+  const std::filesystem::path& path() const { return path_; }
   /// A path by which a library can open the incomplete file. It stays valid until commit().
   std::filesystem::path open_path() const;
   /// Writes bytes at an offset. Errors: IoError; Cancelled if interrupted().
@@ -43,11 +56,16 @@ class AtomicFile {
   /// Syncs the file and renames it to `path`. Until the rename `path` is unchanged. Errors: IoError, Cancelled.
   void commit();
   /// Makes the destructor remove the file, even if the file has the name `under_way`.
-  void discard();
+  void discard() { is_kept_ = false; }
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  void copy_to_target() const;  ///< for a device or pipe
+
+  std::filesystem::path path_;    ///< the argument of the constructor, for messages
+  std::filesystem::path target_;  ///< follow_links(path)
+  FileDescriptor file_;
+  std::filesystem::path name_;  ///< temporary name of the incomplete file; empty if it has no name
+  bool is_kept_ = false;        ///< the destructor does not remove an incomplete file
 };
 
 /// Writes `content` to an AtomicFile, or to standard output for "-". Errors: IoError; Cancelled if interrupted().

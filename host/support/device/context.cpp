@@ -45,8 +45,7 @@ VkDebugUtilsMessengerCreateInfoEXT messenger_info(ValidationLog* log) {
       .pUserData = log};
 }
 
-bool wants_validation(ValidationMode mode) {
-  if (mode != ValidationMode::kFromEnvironment) return mode == ValidationMode::kOn;
+bool asks_for_validation() {
   const char* value = std::getenv("DOLP_VALIDATION");
   return value && std::string_view(value) == "1";
 }
@@ -121,7 +120,7 @@ std::vector<VkPhysicalDevice> Instance::physical_devices() const {
 }
 
 Context::Context(const DeviceSelector& wish)
-    : instance_(std::make_unique<Instance>(wants_validation(wish.validation) ? &log_ : nullptr)) {
+    : instance_(std::make_unique<Instance>(wish.has_validation || asks_for_validation() ? &log_ : nullptr)) {
   const std::vector<VkPhysicalDevice> physical = instance_->physical_devices();
   std::vector<dolp::Device> descriptions;
   for (VkPhysicalDevice device : physical) descriptions.push_back(describe(device));

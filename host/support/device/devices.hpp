@@ -6,17 +6,12 @@
 
 namespace dolp {
 
-/// Tells whether Vulkan's validation layer is on. The layer checks all Vulkan calls. Tests switch it on.
-enum class ValidationMode {
-  kFromEnvironment,  ///< on if the environment variable DOLP_VALIDATION is 1, else off
-  kOff,
-  kOn,
-};
-
 struct DeviceSelector {
   std::string device = {};    ///< position in the list of devices, part of a name, or empty
   bool needs_double = false;  ///< true if shaders need double precision
-  ValidationMode validation = ValidationMode::kFromEnvironment;
+  /// Vulkan's validation layer checks all Vulkan calls. It also does so if the environment variable DOLP_VALIDATION
+  /// is 1.
+  bool has_validation = false;
 };
 
 struct DeviceList {

@@ -73,7 +73,7 @@ TEST(ChooseQueueFamily, ComputeWithoutGraphics_IsPreferred) {
   EXPECT_EQ(chosen({}), std::nullopt);
 }
 
-const DeviceSelector kWatched{.validation = ValidationMode::kOn};
+const DeviceSelector kWatched{.has_validation = true};
 
 TEST(VulkanContext, WorkgroupOnAProcessor_IsAVector) {
   const vulkan::Context context(kWatched);

@@ -35,7 +35,7 @@ constexpr ::uid_t kNobody = 65'534;
 VulkanOptions validated(Precision precision = Precision::kFloat) {
   VulkanOptions options;
   options.needs_double = precision == Precision::kDouble;
-  options.validation = ValidationMode::kOn;
+  options.has_validation = true;
   return options;
 }
 

@@ -150,7 +150,7 @@ TEST(IndexFile_OfManyRows, IsRead) {
 
 TEST(DataFiles_OfOtherKinds, HaveTheSameForms) {
   const TemporaryFile irradiance("e.txt", "! W m-2 um-1\n# wavelength_nm irradiance\n9000 1\n12000 4\n");
-  EXPECT_NEAR(parse(kMinimal, {"source.file=" + irradiance.path()}).source->table.at(10.0), 2.0, kRounding);
+  EXPECT_NEAR(parse(kMinimal, {"source.file=" + irradiance.path()}).source->table->at(10.0), 2.0, kRounding);
   const TemporaryFile sky("s.txt", "zenith_deg;temperature_K\n0;240\n90;280\n");
   EXPECT_EQ(error_of(kMinimal, {"surroundings.profile=" + sky.path()}), "no error");
   const TemporaryFile curve("r.txt", "%beta_deg\tr_s\tr_p\n0\t0.1\t0.1\n90\t1\t1\n");

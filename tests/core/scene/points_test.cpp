@@ -25,19 +25,18 @@ TEST(Points_Directions, HaveTheColumnsOfTheHeader) {
   EXPECT_EQ(*points[Axis::kTheta], (std::vector<double>{0.0, 90.0}));
   EXPECT_EQ(*points[Axis::kQ], (std::vector<double>{2.0, 1.5}));
   EXPECT_FALSE(points[Axis::kSigma] || points[Axis::kN] || points[Axis::kK]);
-  EXPECT_FALSE(points.theta_i_deg || points.theta_r_deg || points.delta_phi_deg);
 }
 
 TEST(Points_Geometries, HaveThreeAnglesAndAnyOfTheRest) {
   const Points points = parse_points("theta_i_deg,theta_r_deg,delta_phi_deg,sigma,n,k\n1,2,-180,0,1.5,0\n", "p.csv",
                                      PointsKind::kGeometries);
-  EXPECT_EQ(*points.theta_i_deg, std::vector<double>{1.0});
-  EXPECT_EQ(*points.theta_r_deg, std::vector<double>{2.0});
-  EXPECT_EQ(*points.delta_phi_deg, std::vector<double>{-180.0});
+  EXPECT_EQ(*points[Axis::kTheta], std::vector<double>{1.0});
+  EXPECT_EQ(*points[Axis::kViewZenith], std::vector<double>{2.0});
+  EXPECT_EQ(*points[Axis::kRelativeAzimuth], std::vector<double>{-180.0});
   EXPECT_EQ(*points[Axis::kSigma], std::vector<double>{0.0});
   EXPECT_EQ(*points[Axis::kN], std::vector<double>{1.5});
   EXPECT_EQ(*points[Axis::kK], std::vector<double>{0.0});
-  EXPECT_FALSE(points[Axis::kQ] || points[Axis::kTheta]);
+  EXPECT_FALSE(points[Axis::kQ]);
 }
 
 TEST(Points_Winds, GiveSigma) {

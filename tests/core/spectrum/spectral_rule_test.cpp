@@ -101,8 +101,8 @@ void expect_promised_reflectances(const Material& material) {
   scene.surface.material = material;
   scene.spectrum = {7.5, 14.5};
   scene.source = Source{};
-  scene.source->kind = Source::Kind::kTabulated;
-  scene.source->table = {{5.0, 8.1, 9.3, 10.0, 20.0}, {9.0, 4.0, 6.0, 0.5, 0.1}, SpectralTable::Interpolation::kLogLog};
+  scene.source->table = std::make_shared<SpectralTable>(
+      SpectralTable{{5.0, 8.1, 9.3, 10.0, 20.0}, {9.0, 4.0, 6.0, 0.5, 0.1}, SpectralTable::Interpolation::kLogLog});
   const SpectralRule rule = spectral_rule(scene);
   EXPECT_LE(rule.relative_error, kBandAgreement);
   for (const Real cosine : {0.97L, 0.7L, 0.3L, 0.15L}) {  // other cosines than those by which the rule is chosen
@@ -120,7 +120,7 @@ void expect_promised_reflectances(const Material& material) {
       return std::numbers::pi_v<Real> * printed_planck(at, 290.0L) * reflectance(at).s;
     });
     const Real direct = integral(corners(scene), [&](Real at) {
-      return static_cast<Real>(scene.source->table.at(static_cast<double>(at))) * reflectance(at).p;
+      return static_cast<Real>(scene.source->table->at(static_cast<double>(at))) * reflectance(at).p;
     });
     EXPECT_NEAR(static_cast<double>(actual_emitted / emitted), 1.0, kBandAgreement) << cosine;
     EXPECT_NEAR(static_cast<double>(actual_direct / direct), 1.0, kBandAgreement) << cosine;

@@ -1,6 +1,4 @@
 // A thinned rule against the rule from which it comes: sums at other angles than those that choose the samples.
-#include "spectrum/thinned_rule.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +10,7 @@
 #include "model/smooth_surface.hpp"
 #include "scene/material_data.hpp"
 #include "scene/sky_profile.hpp"
-#include "spectrum/spectral_rules.hpp"
+#include "spectrum/spectral_rule.hpp"
 
 namespace thinned_rule_test {
 

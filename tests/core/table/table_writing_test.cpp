@@ -47,7 +47,7 @@ class Limit {
 TEST_F(TableFiles, TableOutput_NameTooLongForAPartialFile_IsRefusedBeforeAnyWork) {
   const TableValues table = sample_table(2, 1, 1);
   const TableLayout layout{table, table.quantities(), true};
-  const std::vector<TableBox> parts(2);
+  const std::vector<GridBox> parts(2);
   for (const std::size_t length : {240U, 245U, 250U}) {
     const fs::path path = at(std::string(length - 3, 'n') + ".nc");
     const auto begin = [&] { TableOutput({.path = path, .layout = layout, .parts = parts, .identity = "a 1"}); };

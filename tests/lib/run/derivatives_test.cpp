@@ -157,7 +157,7 @@ TEST(Derivatives, BySlopesAlongAndAcross_AreDifferences) {
   for (const std::string key : {"surface.sigma_cross", "geometry.surface_azimuth_deg"}) {
     const SceneValues scene = parse(kScene, base);
     const std::vector<std::vector<double>> columns = derivatives_with(scene, {key});
-    const double at = find_scene_key(key)->value(scene)->number, step = kStep * at;
+    const double at = std::get<double>(*find_scene_key(key)->value(scene)), step = kStep * at;
     const std::vector<PointResult> below = results_of(with_settings(scene, {{key, at - step}}));
     const std::vector<PointResult> above = results_of(with_settings(scene, {{key, at + step}}));
     for (std::size_t i = 0; i < 2; ++i) {

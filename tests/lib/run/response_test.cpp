@@ -94,7 +94,7 @@ TEST(Responses, OfADevice_AreThoseOfTheCpu) {
     for (const double sigma : {0.1, 0.5}) points.push_back({theta_deg, {sigma, 2.5}, {}});
   }
   VulkanOptions options;
-  options.validation = ValidationMode::kOn;
+  options.has_validation = true;
   VulkanEvaluator device(options);
   CpuEvaluator cpu;
   for (const Model& model : kModels) {

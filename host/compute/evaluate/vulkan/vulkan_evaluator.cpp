@@ -30,7 +30,7 @@ class VulkanEvaluator::Impl {
  public:
   explicit Impl(const VulkanOptions& options)
       : options_(options),
-        context_({options.device, options.needs_double, options.validation}),
+        context_({options.device, options.needs_double, options.has_validation}),
         stream_(context_.device()) {}
 
   const dolp::Device& description() const { return context_.description(); }

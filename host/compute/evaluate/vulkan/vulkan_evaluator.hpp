@@ -15,7 +15,7 @@ namespace dolp {
 struct VulkanOptions {
   std::string device;  ///< name or position of the device, see choose_device
   bool needs_double = false;
-  ValidationMode validation = ValidationMode::kFromEnvironment;
+  bool has_validation = false;  ///< see DeviceSelector
   // The following options do not change results.
   std::uint32_t max_tile_invocations = 65'536;   ///< limit per dispatch
   std::uint32_t first_tile_invocations = 1'024;  ///< of the first dispatch for kernel rows, whose time is not known

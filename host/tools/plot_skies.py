@@ -54,20 +54,11 @@ def sky_exitance(program, sky, band):
     return results(program, MIRROR + [sky, band], 0)
 
 
-def uniform_temperature(program, band, wanted):
-    """The temperature, found by bisection, at which a uniform sky has the irradiance `wanted`."""
-    low, high = 100.0, 400.0
-    while high - low > 0.01:
-        middle = 0.5 * (low + high)
-        one = sky_exitance(program, f"surroundings.temperature_K={middle}", band)["stokes_i"][0]
-        low, high = (middle, high) if one < wanted else (low, middle)
-    return 0.5 * (low + high)
-
-
 def brightness_temperature(program, band, exitance):
-    known_K = np.arange(150.0, 301.0, 15.0)
+    """The temperature of a uniform sky with this exitance. The logarithm of the exitance is nearly linear in 1/T."""
+    known_K = np.arange(150.0, 316.0, 15.0)
     known = [sky_exitance(program, f"surroundings.temperature_K={t}", band)["stokes_i"][0] for t in known_K]
-    return np.interp(np.log(exitance), np.log(known), known_K)
+    return 1 / np.interp(np.log(exitance), np.log(known), 1 / known_K)
 
 
 def main():
@@ -82,7 +73,7 @@ def main():
     clear = sky_exitance(options.program, settings["clear"], band)
     theta = np.radians(clear["theta_deg"])
     mean = np.trapz(clear["stokes_i"] * np.sin(2 * theta), theta)
-    uniform_K = uniform_temperature(options.program, band, mean)
+    uniform_K = brightness_temperature(options.program, band, mean)
     settings["uniform"] = f"surroundings.temperature_K={uniform_K}"
     for name, colour in SKIES.items():
         sky = sky_exitance(options.program, settings[name], band)

@@ -8,6 +8,7 @@ Exit status: 0 done, 2 usage; if DOLP fails, the status of DOLP.
 """
 import argparse
 import csv
+import functools
 import pathlib
 import subprocess
 import sys
@@ -49,6 +50,7 @@ def results(program, settings, sigma):
     return table
 
 
+@functools.cache
 def sky_exitance(program, sky, band):
     """Table of a perfect mirror under a sky. Its column stokes_i is pi times the sky's radiance at each zenith."""
     return results(program, MIRROR + [sky, band], 0)
@@ -56,7 +58,7 @@ def sky_exitance(program, sky, band):
 
 def brightness_temperature(program, band, exitance):
     """The temperature of a uniform sky with this exitance. The logarithm of the exitance is nearly linear in 1/T."""
-    known_K = np.arange(150.0, 316.0, 15.0)
+    known_K = np.arange(150.0, 316.0, 7.5)
     known = [sky_exitance(program, f"surroundings.temperature_K={t}", band)["stokes_i"][0] for t in known_K]
     return 1 / np.interp(np.log(exitance), np.log(known), 1 / known_K)
 

@@ -10,8 +10,7 @@
 #endif
 
 #include "studies/study.hpp"
-#include "terminal/exit_status.hpp"
-#include "terminal/guarded.hpp"
+#include "terminal/terminal.hpp"
 
 namespace dolp::bench {
 namespace {

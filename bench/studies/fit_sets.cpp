@@ -173,7 +173,7 @@ SetOutcome fit_outcome(const FitSet& set, std::size_t number, ModelEvaluator& ev
     outcome.held_68 += holds(fitted.interval_68) ? 1 : 0;
     outcome.held_95 += holds(fitted.interval_95) ? 1 : 0;
   }
-  fit::Residuals residuals(model, outcome.result.tolerance, fit::Differences::kCentral, evaluator, {});
+  fit::Residuals residuals(model, evaluator, {outcome.result.tolerance, fit::Differences::kCentral});
   Eigen::VectorXd truth = set.truth;
   for (std::size_t j = 0; j < set.parameters.size(); ++j) {
     truth[static_cast<Eigen::Index>(j)] = set.parameters[j].coordinate(truth[static_cast<Eigen::Index>(j)]);
@@ -181,7 +181,7 @@ SetOutcome fit_outcome(const FitSet& set, std::size_t number, ModelEvaluator& ev
   std::vector<fit::Minimum> from_truth = {{.where = residuals.at({truth}).front()}};
   outcome.chi_square_of_truth = from_truth.front().where.residuals.squaredNorm();
   fit::descend(residuals, from_truth, {});
-  outcome.chi_square_from_truth = from_truth.front().objective;
+  outcome.chi_square_from_truth = from_truth.front().objective();
   return outcome;
 }
 

@@ -8,7 +8,7 @@
 #include "device/devices.hpp"
 #include "studies/context.hpp"
 #include "studies/report.hpp"
-#include "terminal/progress_bar.hpp"
+#include "terminal/terminal.hpp"
 
 namespace dolp::bench {
 namespace {

@@ -189,10 +189,9 @@ py::object value_of_key(const dolp::Scene& scene, const std::string& key) {
   return py::bool_(*word == "true");
 }
 
-Values setting_values(const dolp::Scene& scene) {
+Values to_values(const std::vector<dolp::Setting>& settings) {
   Values values;
-  for (const dolp::Setting& setting : scene.settings())
-    values.emplace_back(to_str(setting.key), to_object(setting.value));
+  for (const dolp::Setting& setting : settings) values.emplace_back(to_str(setting.key), to_object(setting.value));
   return values;
 }
 
@@ -313,13 +312,6 @@ std::vector<dolp::Attribute> to_attributes(const py::dict& attributes) {
   return all;
 }
 
-py::dict description(const dolp::Device& device) {
-  using py::literals::operator""_a;
-  return py::dict("name"_a = device.name, "type"_a = dolp::type_name(device.type), "driver"_a = device.driver,
-                  "api_version"_a = device.api_version, "usable"_a = device.usable, "why_not"_a = device.why_not,
-                  "has_double"_a = device.has_double, "memory_bytes"_a = device.memory_bytes);
-}
-
 }  // namespace
 
 PYBIND11_MODULE(_native, module) {
@@ -352,7 +344,7 @@ PYBIND11_MODULE(_native, module) {
                   })
       .def("for_points", &dolp::Scene::for_points)
       .def("toml", [](const dolp::Scene& scene) { return to_str(scene.toml()); })
-      .def("values", &setting_values)
+      .def("values", [](const dolp::Scene& scene) { return to_values(scene.settings()); })
       .def("value", [](const dolp::Scene& scene, const py::str& key) { return value_of_key(scene, to_utf8(key)); })
       .def("model_advice", &dolp::Scene::model_advice)
       .def("labels", [](const dolp::Scene& scene) { return to_label_lists(scene.labels()); })
@@ -364,7 +356,7 @@ PYBIND11_MODULE(_native, module) {
             const bool is_of_table = !scene.table_attributes().empty();
             return py::make_tuple(
                 to_str(scene.text()),
-                is_of_table ? py::object(to_list(scene.settings(), line)) : py::cast(setting_values(scene)),
+                is_of_table ? py::object(to_list(scene.settings(), line)) : py::cast(to_values(scene.settings())),
                 to_str(scene.name()), to_dict(scene.table_attributes()));
           },
           [from_text](const py::tuple& state) {
@@ -463,7 +455,14 @@ PYBIND11_MODULE(_native, module) {
     const dolp::Report plan = dolp::plan(scene, device, keep_all);
     return py::make_tuple(to_str(plan.text), to_str(plan.json));
   });
-  module.def("devices", [] { return to_list(dolp::devices(), description); });
+  module.def("devices", [] {
+    using py::literals::operator""_a;
+    return to_list(dolp::devices(), [](const dolp::Device& device) {
+      return py::dict("name"_a = device.name, "type"_a = dolp::type_name(device.type), "driver"_a = device.driver,
+                      "api_version"_a = device.api_version, "usable"_a = device.usable, "why_not"_a = device.why_not,
+                      "has_double"_a = device.has_double, "memory_bytes"_a = device.memory_bytes);
+    });
+  });
   const auto material_facts = [](const dolp::BuiltInMaterial& material) {
     return py::make_tuple(material.name, material.from_um, material.to_um, material.source, material.kind);
   };
@@ -487,17 +486,12 @@ PYBIND11_MODULE(_native, module) {
     all.append(described(dolp::kWind));
     return all;
   });
-  const auto name = [](auto described) { return dolp::describe(described).name; };
-  module.def("table_axes", [name] { return to_list(dolp::kAllAxes, name); });
+  module.def("table_axes",
+             [] { return to_list(dolp::kAllAxes, [](dolp::Axis axis) { return dolp::describe(axis).name; }); });
   module.def("status_bits", [] {
     return to_list(dolp::kStatusBits, [](const dolp::StatusBit& bit) { return py::make_tuple(bit.mask, bit.meaning); });
   });
-  module.def("quantities", [name] { return to_list(dolp::kAllQuantities, name); });
-  module.def("surface_settings", [] {
-    return to_list(dolp::surface_settings(), [](const dolp::Setting& setting) {
-      return py::make_tuple(to_str(setting.key), to_object(setting.value));
-    });
-  });
+  module.def("surface_settings", [] { return to_values(dolp::surface_settings()); });
   module.def("response_fingerprints", [](const Array& entries) {
     std::vector<double> found;
     const std::size_t width = static_cast<std::size_t>(entries.shape(1));
@@ -506,6 +500,5 @@ PYBIND11_MODULE(_native, module) {
     return to_array(std::move(found));
   });
   module.def("version", &dolp::version);
-  module.def("commit", &dolp::commit);
   module.def("citation", &dolp::citation);
 }

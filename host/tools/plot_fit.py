@@ -30,15 +30,17 @@ MOST_PANELS = 4  # largest number of panels, one per zenith, for data over a spe
 MARKS = ".x+^sv"
 
 
-def curves(points):
-    """Groups points by data set, quantity and wavelength. Yields each group's key, and its columns sorted by zenith."""
+def curves(points, along="theta_deg"):
+    """Groups points by data set, quantity and, along theta_deg, by wavelength. Yields each group's key, and its columns
+    sorted by `along`."""
     found = {}
     for point in points:
-        found.setdefault((point["data"], point["quantity"], point["wavelength_um"]), []).append(point)
+        wavelength_um = point["wavelength_um"] if along == "theta_deg" else None
+        found.setdefault((point["data"], point["quantity"], wavelength_um), []).append(point)
     for key, members in found.items():
-        members.sort(key=lambda point: point["theta_deg"])
+        members.sort(key=lambda point: point[along])
         yield key, {name: np.array([np.nan if p[name] is None else p[name] for p in members], dtype=float)
-                    for name in ("theta_deg", "measured", "uncertainty", "model", "residual")}
+                    for name in (along, "measured", "uncertainty", "model", "residual")}
 
 
 def symbol_of(key):
@@ -112,20 +114,15 @@ def draw_spectrum(panels, lower, report, zeniths):
     has_uncertainties = report["scale_from"] == "uncertainties"
     several = len({point["data"] for point in report["points"]}) > 1
     for panel, zenith in zip(panels, zeniths):
-        own = {}
-        for point in report["points"]:
-            if point["theta_deg"] == zenith:
-                own.setdefault((point["data"], point["quantity"], None), []).append(point)
-        for (key, members), mark in zip(own.items(), MARKS):
-            members.sort(key=lambda point: point["wavelength_um"])
-            column = lambda name: np.array([np.nan if p[name] is None else p[name] for p in members], dtype=float)
-            colour = COLOURS[zeniths.index(zenith) % len(COLOURS)]
-            bars = PERCENT * column("uncertainty") if has_uncertainties else None
-            panel.errorbar(column("wavelength_um"), PERCENT * column("measured"), bars, fmt=mark, markersize=3.0,
+        colour = COLOURS[zeniths.index(zenith) % len(COLOURS)]
+        points = [point for point in report["points"] if point["theta_deg"] == zenith]
+        for (key, curve), mark in zip(curves(points, "wavelength_um"), MARKS):
+            bars = PERCENT * curve["uncertainty"] if has_uncertainties else None
+            panel.errorbar(curve["wavelength_um"], PERCENT * curve["measured"], bars, fmt=mark, markersize=3.0,
                            linewidth=0.6, color=colour, alpha=0.5, label=f"measured: {label_of(key, several)}")
-            panel.plot(column("wavelength_um"), PERCENT * column("model"), color="black", linewidth=1.4,
+            panel.plot(curve["wavelength_um"], PERCENT * curve["model"], color="black", linewidth=1.4,
                        label="model" if mark == MARKS[0] else None)
-            lower.plot(column("wavelength_um"), (1.0 if has_uncertainties else PERCENT) * column("residual"), mark,
+            lower.plot(curve["wavelength_um"], (1.0 if has_uncertainties else PERCENT) * curve["residual"], mark,
                        markersize=2.5, color=colour)
         panel.set_title(f"$\\theta$ = {zenith:g}°", fontsize=10, loc="left")
         panel.set_ylabel(names_in(report["points"]) + " (%)")

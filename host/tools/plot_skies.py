@@ -8,6 +8,7 @@ Exit status: 0 done, 2 usage; if DOLP fails, the status of DOLP.
 """
 import argparse
 import csv
+import functools
 import pathlib
 import subprocess
 import sys
@@ -49,25 +50,17 @@ def results(program, settings, sigma):
     return table
 
 
+@functools.cache
 def sky_exitance(program, sky, band):
     """Table of a perfect mirror under a sky. Its column stokes_i is pi times the sky's radiance at each zenith."""
     return results(program, MIRROR + [sky, band], 0)
 
 
-def uniform_temperature(program, band, wanted):
-    """The temperature, found by bisection, at which a uniform sky has the irradiance `wanted`."""
-    low, high = 100.0, 400.0
-    while high - low > 0.01:
-        middle = 0.5 * (low + high)
-        one = sky_exitance(program, f"surroundings.temperature_K={middle}", band)["stokes_i"][0]
-        low, high = (middle, high) if one < wanted else (low, middle)
-    return 0.5 * (low + high)
-
-
 def brightness_temperature(program, band, exitance):
-    known_K = np.arange(150.0, 301.0, 15.0)
+    """The temperature of a uniform sky with this exitance. The logarithm of the exitance is nearly linear in 1/T."""
+    known_K = np.arange(150.0, 316.0, 7.5)
     known = [sky_exitance(program, f"surroundings.temperature_K={t}", band)["stokes_i"][0] for t in known_K]
-    return np.interp(np.log(exitance), np.log(known), known_K)
+    return 1 / np.interp(np.log(exitance), np.log(known), 1 / known_K)
 
 
 def main():
@@ -82,7 +75,7 @@ def main():
     clear = sky_exitance(options.program, settings["clear"], band)
     theta = np.radians(clear["theta_deg"])
     mean = np.trapz(clear["stokes_i"] * np.sin(2 * theta), theta)
-    uniform_K = uniform_temperature(options.program, band, mean)
+    uniform_K = brightness_temperature(options.program, band, mean)
     settings["uniform"] = f"surroundings.temperature_K={uniform_K}"
     for name, colour in SKIES.items():
         sky = sky_exitance(options.program, settings[name], band)

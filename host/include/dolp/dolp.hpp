@@ -169,7 +169,7 @@ class DOLP_EXPORT Table {
   /// Error messages begin with `name`. Errors: InputError if an axis, attribute or column is wrong.
   static Table of(TableValues values, const std::string& name = "table");
 
-  const TableValues& values() const;
+  const TableValues& values() const { return *values_; }
   /// The attributes that write() gives a .nc file: values().attributes and a few more, such as a hash of the values.
   std::vector<Attribute> file_attributes() const;
 
@@ -182,9 +182,8 @@ class DOLP_EXPORT Table {
 
  private:
   friend class Evaluator;
-  struct Impl;
-  explicit Table(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
-  std::shared_ptr<const Impl> impl_;
+  explicit Table(TableValues values) : values_(std::make_shared<const TableValues>(std::move(values))) {}
+  std::shared_ptr<const TableValues> values_;
 };
 
 /// The result of a fit. If the call compared models, it is the result of the best model.

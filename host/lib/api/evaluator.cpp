@@ -108,7 +108,7 @@ Table Evaluator::table(const Scene& scene, const RunOptions& call_options) {
     layout.head.attributes = all_attributes(values, layout, outcome, options.history);
     TableValues table = table_part(layout, run.entries(), results.take());
     static_cast<TableHead&>(table) = std::move(layout.head);
-    return Table(std::make_shared<const Table::Impl>(Table::Impl{std::move(table)}));
+    return Table(std::move(table));
   });
 }
 
@@ -122,7 +122,7 @@ void Evaluator::table_parts(const Scene& scene, const std::function<void(const T
     run.compute([&](const SceneEntries& part, RunResults results, const RunSummary&) {
       TableValues table = table_part(layout, part, std::move(results));
       table.stokes_units = layout.head.stokes_units;
-      guarded(Table(std::make_shared<const Table::Impl>(Table::Impl{std::move(table)})));
+      guarded(Table(std::move(table)));
     });
   });
 }
@@ -182,7 +182,7 @@ Table Evaluator::response(const Scene& scene, const RunOptions& call_options) {
     };
     const ResponseOutcome run = run_responses(values, layout, options, *impl_->begin(values), take);
     table.attributes.insert(table.attributes.end(), run.attributes.begin(), run.attributes.end());
-    return Table(std::make_shared<const Table::Impl>(Table::Impl{std::move(table)}));
+    return Table(std::move(table));
   });
 }
 

@@ -124,18 +124,17 @@ Report verify_device(const DeviceCheckOptions& options) {
     throw InputError(fmt::format("tolerance {:g}: must be a number in {}", options.tolerance, kToleranceRange.text()));
   }
   report_start(options.progress, 1);
-  HardCaseReport report;
-  report.tolerance = options.tolerance;
-  const std::vector<StoredCase> cases = hard_cases();
-  report.cases = cases.size();
-  for (const Precision precision : checked_precisions(options, report.left_out)) {
+  std::string left_out;
+  std::vector<PrecisionCheck> checks;
+  for (const Precision precision : checked_precisions(options, left_out)) {
     const std::unique_ptr<ModelEvaluator> evaluator =
         make_evaluator({options.evaluator, options.device}, precision == Precision::kDouble);
-    PrecisionReport& new_report = report.precisions.emplace_back();
-    new_report.outcomes = qualify(cases, *evaluator, {report.tolerance, precision}, options.progress);
-    new_report.evaluation = evaluator->report();
+    PrecisionCheck& check = checks.emplace_back();
+    check.outcomes = qualify(hard_cases(), *evaluator, {options.tolerance, precision}, options.progress);
+    check.evaluation = evaluator->report();
   }
-  return public_report(hard_case_report(report, options.all), report.failures() == 0);
+  const ReportBuilder report = hard_case_report(checks, options, left_out);
+  return public_report(report, report.json()["passed"] == true);
 }
 
 Report device_report() {

@@ -50,11 +50,6 @@ void add_left_out(ReportBuilder& report, const Points& points) {
   report.value("left_out", points.left_out);
 }
 
-ResultCsv points_csv(const std::filesystem::path& path, const Points& points, const TableLayout& layout) {
-  return {path, points.header, layout,
-          [&points](std::string& text, std::size_t row) { (text += points.rows[row]) += ','; }};
-}
-
 std::string mueller_csv(const Points& points, const std::vector<MuellerMatrix>& results) {
   std::string csv = points.header;
   for (int row = 0; row < 4; ++row) {
@@ -122,7 +117,8 @@ Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& 
     Run run(values, std::move(entries), options, impl_->maker(values));
     const TableLayout layout{.quantities = output_quantities(values, nullptr, &run.entries()),
                              .derivatives = run.derivatives()};
-    ResultCsv csv = points_csv(path, points, layout);
+    ResultCsv csv(path, points.header, layout,
+                  [&](std::string& text, std::size_t row) { (text += points.rows[row]) += ','; });
     double rows_s = 0.0;
     const auto write_rows = [&](const SceneEntries&, RunResults results, const RunSummary&) {
       const Clock::time_point start = Clock::now();

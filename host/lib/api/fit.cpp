@@ -77,23 +77,6 @@ std::vector<Settings> combinations(const FitOptions& options) {
   return all;
 }
 
-struct Best {
-  std::unique_ptr<fit::Model> model;
-  std::optional<fit::FitResult> result;
-  Settings compared;
-  SceneValues scene;  ///< scene with the settings in `compared`
-
-  Eigen::VectorXd values() const {
-    return Eigen::Map<const Eigen::VectorXd>(result.value().minima.front().values.data(),
-                                             static_cast<Eigen::Index>(result->parameters.size()));
-  }
-  Settings settings() const {
-    Settings all = compared;
-    std::ranges::copy(model->settings(values()), std::back_inserter(all));
-    return all;
-  }
-};
-
 void check_plot(const std::filesystem::path& path) {
   const std::string suffix = lower_case(path.extension().string());
   if (path.empty() || suffix == ".png" || suffix == ".pdf" || suffix == ".svg") return;
@@ -125,45 +108,27 @@ std::vector<double> fine_zeniths(const MeasuredData& data) {
   return zeniths;
 }
 
-/// The values of the fitted model at the measurements. If `error` is kBracket, these are the values in the
-/// bracket that are nearest to the measured values. Empty if Model refuses the scene, for example without a bracket.
-std::vector<double> model_values(const Best& best, MeasuredData data, const FitOptions& options, ModelError error,
-                                 ModelEvaluator& evaluator) {
-  const std::size_t count = data.measurements.size();
-  // Model needs at least as many measurements as parameters. So copies of the first are added; their values are unused.
-  data.measurements.resize(std::max(count, options.vary.size()), data.measurements.front());
-  try {
-    const fit::Model model(best.scene, {data}, options.vary, error);
-    fit::Residuals residuals(model, best.result->tolerance, fit::Differences::kForward, evaluator, {});
-    const std::vector<fit::Prediction> found = model.predict({best.values()}, residuals.tolerance(), evaluator, {});
-    const Eigen::VectorXd values = residuals.observed(found.front().components);
-    return {values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count)};
-  } catch (const InputError&) {
-    return {};
-  }
+/// The coordinates of the best minimum.
+const Eigen::VectorXd& best_point(const ComparedModel& fitted) { return fitted.result->valley_points.front().where.at; }
+
+Settings fitted_settings(const ComparedModel& fitted) {
+  Settings all = fitted.settings;
+  std::ranges::copy(fitted.model->settings(fitted.model->values(best_point(fitted))), std::back_inserter(all));
+  return all;
 }
 
-struct Bracketed {
-  double model, low, high;
-};
-
-/// The fitted model at each point of `data`, and its bracket: the range that contains the value with all bounces of
-/// light. The measured values have no influence. Empty if the scene has no bracket.
-std::vector<Bracketed> bracketed(const Best& best, MeasuredData data, const FitOptions& options,
-                                 ModelEvaluator& evaluator) {
-  const std::vector<Measurement> points = std::exchange(data.measurements, {});
-  data.has_uncertainties = true;
-  for (const Measurement& point : points) {
-    for (const double beyond_end : {-1.0, 1.0})
-      data.measurements.push_back({point.observable, point.theta_deg, beyond_end, 1.0, point.wavelength_um});
+/// What the fitted model predicts for `data`. Empty if Model refuses the scene, for example without a bracket.
+std::optional<fit::Prediction> predicted(const ComparedModel& best, MeasuredData data, const FitOptions& options,
+                                         ModelError error, ModelEvaluator& evaluator) {
+  data.has_uncertainties = true;  // Model wants them with a bracket; the prediction does not depend on them
+  // Model needs at least as many measurements as parameters. So copies of the first are added; their values are unused.
+  data.measurements.resize(std::max(data.measurements.size(), options.vary.size()), data.measurements.front());
+  try {
+    const fit::Model model(best.scene, {data}, options.vary, error);
+    return model.predict({model.values(best_point(best))}, best.result->tolerance, evaluator, {}).front();
+  } catch (const InputError&) {
+    return std::nullopt;
   }
-  const std::vector<double> ends = model_values(best, data, options, ModelError::kBracket, evaluator);
-  const std::vector<double> model = model_values(best, data, options, ModelError::kNone, evaluator);
-  std::vector<Bracketed> all;
-  for (std::size_t i = 0; i < std::min(ends.size(), model.size()); i += 2) {
-    all.push_back({model[i], ends[i], ends[i + 1]});
-  }
-  return all;
 }
 
 /// Copies of `measurement` at each of the zeniths, with the settings of `data`.
@@ -173,43 +138,39 @@ MeasuredData at_zeniths(MeasuredData data, const Measurement& measurement, const
   return data;
 }
 
-Json brackets(const Best& best, const FitOptions& options, ModelEvaluator& evaluator) {
-  Json all = Json::array();
+/// Adds the fitted model over the zenith for each data set, quantity and wavelength, and the bracket of each data set.
+void add_curves(ReportBuilder& report, const ComparedModel& best, const FitOptions& options,
+                ModelEvaluator& evaluator) {
+  Json curves = Json::array(), brackets = Json::array();
   for (const MeasuredData& data : best.model->data()) {
-    Json& bracket = all.emplace_back(nullptr);
-    const Measurement first = data.measurements.front();
-    const bool is_drawn = first.observable == Observable::kDolp || first.observable == Observable::kQOverI;
-    if (!is_drawn || first.wavelength_um) continue;
     const std::vector<double> zeniths = fine_zeniths(data);
-    const MeasuredData fine = at_zeniths(data, first, zeniths);
-    for (const Bracketed& at : bracketed(best, fine, options, evaluator)) {
-      bracket["low"].push_back(at.low);
-      bracket["high"].push_back(at.high);
-    }
-    if (!bracket.is_null()) bracket["theta_deg"] = zeniths;
-  }
-  return all;
-}
-
-Json curves(const Best& best, const FitOptions& options, ModelEvaluator& evaluator) {
-  Json all = Json::array();
-  for (const MeasuredData& data : best.model->data()) {
     std::map<std::pair<Observable, std::optional<double>>, Measurement> kinds;
     for (const Measurement& measurement : data.measurements)
       kinds.emplace(std::pair(measurement.observable, measurement.wavelength_um), measurement);
-    const std::vector<double> zeniths = fine_zeniths(data);
     for (const auto& [kind, measurement] : kinds) {
       const MeasuredData fine = at_zeniths(data, measurement, zeniths);
-      const std::vector<double> values = model_values(best, fine, options, ModelError::kNone, evaluator);
-      if (values.empty()) continue;
-      all.push_back({{"data", data.name},
-                     {"quantity", to_name(kind.first)},
-                     {"wavelength_um", kind.second ? Json(*kind.second) : Json(nullptr)},
-                     {"theta_deg", zeniths},
-                     {"model", values}});
+      const auto found = predicted(best, fine, options, ModelError::kNone, evaluator);
+      if (!found) continue;
+      curves.push_back({{"data", data.name},
+                        {"quantity", to_name(kind.first)},
+                        {"wavelength_um", kind.second ? Json(*kind.second) : Json(nullptr)},
+                        {"theta_deg", zeniths},
+                        {"model", std::vector<double>(found->values.begin(), found->values.end())}});
     }
+    Json& bracket = brackets.emplace_back(nullptr);
+    const Measurement& first = data.measurements.front();
+    const bool is_drawn = first.observable == Observable::kDolp || first.observable == Observable::kQOverI;
+    if (!is_drawn || first.wavelength_um) continue;
+    const MeasuredData fine = at_zeniths(data, first, zeniths);
+    const auto found = predicted(best, fine, options, ModelError::kBracket, evaluator);
+    if (!found) continue;
+    const auto low = found->bracket.col(1), high = found->bracket.col(2);
+    bracket = {{"low", std::vector<double>(low.begin(), low.end())},
+               {"high", std::vector<double>(high.begin(), high.end())},
+               {"theta_deg", zeniths}};
   }
-  return all;
+  report.value("brackets", brackets);
+  report.value("curves", curves);
 }
 
 /// The largest distance between the fitted value of a point and the farther end of its bracket. Empty without bracket.
@@ -219,13 +180,13 @@ struct ModelGap {
   bool is_ignored = false;  ///< the fit's intervals ignore the bracket, which is wider than the uncertainties
 };
 
-ModelGap model_gap(const Best& best, const FitOptions& options, ModelEvaluator& evaluator) {
+ModelGap model_gap(const ComparedModel& best, const FitOptions& options, ModelEvaluator& evaluator) {
   ModelGap gap;
   for (const MeasuredData& data : best.model->data()) {
-    const std::vector<Bracketed> results = bracketed(best, data, options, evaluator);
-    for (std::size_t i = 0; i < results.size(); ++i) {
-      const auto& [model, low, high] = results[i];
-      const double distance = std::max(high - model, model - low);
+    const auto found = predicted(best, data, options, ModelError::kBracket, evaluator);
+    for (std::size_t i = 0; found && i < data.measurements.size(); ++i) {
+      const auto at = found->bracket.row(static_cast<Eigen::Index>(i));
+      const double distance = std::max(at[2] - at[0], at[0] - at[1]);
       if (!(distance >= 0.0)) continue;
       gap.distance = std::max(gap.distance.value_or(0.0), distance);
       if (!data.has_uncertainties) continue;
@@ -246,47 +207,42 @@ void add_model_gap(ReportBuilder& report, const ModelGap& gap) {
   report.value("model_gap_in_uncertainties", gap.in_uncertainties);
 }
 
-/// Fits the scene with each combination of compared settings. Adds all results to `models`, the best first. Calls
-/// `begin` at most once, to get the evaluator. Errors: InputError if with_settings() or Model refuses all combinations.
-Best fit_best(std::vector<ComparedModel>& models, const SceneValues& scene, const std::vector<MeasuredData>& data,
-              const FitOptions& options, const std::function<ModelEvaluator*(const SceneValues&)>& begin) {
+/// Fits the scene with each combination of compared settings. Returns the models, the best first. Calls `begin` at most
+/// once, to get the evaluator. Errors: InputError if with_settings() or Model refuses all combinations.
+std::vector<ComparedModel> fit_models(const SceneValues& scene, const std::vector<MeasuredData>& data,
+                                      const FitOptions& options,
+                                      const std::function<ModelEvaluator*(const SceneValues&)>& begin) {
+  constexpr double kNoAic = std::numeric_limits<double>::infinity();
   ModelEvaluator* evaluator = nullptr;
-  Best best;
+  double least_aic = kNoAic;
+  std::vector<ComparedModel> models;
   const std::vector<Settings> compared = combinations(options);
   for (const Settings& settings : compared) {
-    ComparedModel& model_of_settings = models.emplace_back();
-    model_of_settings.settings = settings;
-    std::unique_ptr<fit::Model> model;
-    SceneValues compared_scene;
+    ComparedModel& own = models.emplace_back();
+    own.settings = settings;
     try {
-      compared_scene = with_settings(scene, settings);
-      model = std::make_unique<fit::Model>(compared_scene, data, options.vary, options.model_error);
+      own.scene = with_settings(scene, settings);
+      own.model = std::make_unique<fit::Model>(own.scene, data, options.vary, options.model_error);
     } catch (const InputError& error) {
       if (compared.size() == 1) throw;
-      model_of_settings.refusal = error.what();
+      own.refusal = error.what();
       continue;
     }
-    if (evaluator == nullptr) evaluator = begin(model->scene());
-    const double least_aic = best.result ? best.result->aic : std::numeric_limits<double>::infinity();
-    model_of_settings.result = fit::fit(*model, *evaluator, options, least_aic);
-    if (model_of_settings.result && model_of_settings.result->aic < least_aic) {
-      best = {std::move(model), model_of_settings.result, settings, compared_scene};
-    }
+    if (evaluator == nullptr) evaluator = begin(own.model->scene());
+    own.result = fit::fit(*own.model, *evaluator, options, least_aic);
+    if (own.result) least_aic = std::min(least_aic, own.result->aic);
   }
   if (evaluator == nullptr) throw InputError(models.front().refusal);
-  std::ranges::stable_sort(models, {}, [](const ComparedModel& model_of_settings) {
-    return model_of_settings.result ? model_of_settings.result->aic : std::numeric_limits<double>::infinity();
-  });
-  return best;
+  std::ranges::stable_sort(models, {}, [](const ComparedModel& own) { return own.result ? own.result->aic : kNoAic; });
+  return models;
 }
 
-void draw(ReportBuilder& report, const Best& best, const Scene& fitted, const FitOptions& options,
+void draw(ReportBuilder& report, const ComparedModel& best, const Scene& fitted, const FitOptions& options,
           ModelEvaluator& evaluator) {
-  add_contours(report, *best.model, *best.result, fit::compute_contours(*best.model, evaluator, *best.result, options));
+  add_contours(report, best, fit::compute_contours(*best.model, evaluator, *best.result, options));
   const Spectrum& spectrum = fitted.impl().scene.spectrum;
   report.value("spectrum_um", Json{spectrum.min_um, spectrum.max_um});
-  report.value("brackets", brackets(best, options, evaluator));
-  report.value("curves", curves(best, options, evaluator));
+  add_curves(report, best, options, evaluator);
   draw_with_python(embedded_plot_fit_py().data(), report.json_text(), options.plot.string());
   report.row("picture", "{}", key("plot", options.plot.string()));
 }
@@ -301,12 +257,12 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
     check_plot(options.plot);
     check_labels_chosen(values);
     report_start(options.progress, 1);
-    std::vector<ComparedModel> models;
     ModelEvaluator* evaluator = nullptr;
-    Best best = fit_best(models, values, data, options, [&](const SceneValues& first) {
+    std::vector<ComparedModel> models = fit_models(values, data, options, [&](const SceneValues& first) {
       check_outputs(options, first, data);
       return evaluator = impl_->begin(first);
     });
+    ComparedModel& best = models.front();
 
     ReportBuilder report;
     ModelGap gap;
@@ -317,14 +273,14 @@ Fit Evaluator::fit(const Scene& scene, const std::vector<MeasuredData>& data, co
       if (models.size() > 1) add_comparison(report, models);
       gap = model_gap(best, options, *evaluator);
       if (gap.is_ignored && best.result->fit_quality == "good") best.result->fit_quality = "doubtful";
-      add_fit(report, *best.model, *best.result);
+      add_fit(report, best);
     } else {
       report.row("minimum", "none was found: no descent converged; try other ranges, or more starts");
     }
     report.value("has_minimum", best.result.has_value());
     report.row("starts", "{} descents, seed {}", key("starts", options.starts), key("seed", options.seed));
     report.value("loss", loss_names()[static_cast<std::size_t>(options.loss)]);
-    const Scene fitted = best.result ? scene.with(best.settings()) : scene;
+    const Scene fitted = best.result ? scene.with(fitted_settings(best)) : scene;
     if (best.result) add_model_gap(report, gap);
     if (best.result && !options.output.empty()) {
       const std::filesystem::path folder = options.output.has_parent_path() ? options.output.parent_path() : ".";

@@ -27,10 +27,6 @@ struct Scene::Impl {
   std::vector<Attribute> table_attributes = {};  ///< see Scene::table_attributes()
 };
 
-struct Table::Impl {
-  TableValues table;
-};
-
 Report public_report(const ReportBuilder& report, bool is_good = true, const std::filesystem::path& output = {});
 
 std::vector<std::string> scene_files(const SceneValues& scene);

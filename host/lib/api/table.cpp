@@ -74,9 +74,7 @@ void check_values(const TableValues& table, const std::string& name) {
 
 }  // namespace
 
-Table Table::read(const std::filesystem::path& path) {
-  return Table(std::make_shared<const Impl>(Impl{load_table(path.string())}));
-}
+Table Table::read(const std::filesystem::path& path) { return Table(load_table(path.string())); }
 
 Table Table::of(TableValues values, const std::string& name) {
   std::erase_if(values.attributes, [](const Attribute& attribute) {
@@ -84,13 +82,11 @@ Table Table::of(TableValues values, const std::string& name) {
   });
   take_spectral_data(values, name);
   check_values(values, name);
-  return Table(std::make_shared<const Impl>(Impl{std::move(values)}));
+  return Table(std::move(values));
 }
 
-const TableValues& Table::values() const { return impl_->table; }
-
 std::vector<Attribute> Table::file_attributes() const {
-  const TableValues& table = impl_->table;
+  const TableValues& table = *values_;
   std::vector<Attribute> attributes = {{kConventions, kConventionsOfFiles}};
   attributes.insert(attributes.end(), table.attributes.begin(), table.attributes.end());
   if (const std::string data = spectral_data_text(table); !data.empty()) attributes.push_back({kSpectralData, data});
@@ -99,7 +95,7 @@ std::vector<Attribute> Table::file_attributes() const {
   return attributes;
 }
 
-void Table::write(const std::filesystem::path& path) const { write_table(impl_->table, path); }
+void Table::write(const std::filesystem::path& path) const { write_table(*values_, path); }
 
 std::string to_csv(const std::vector<Column>& points, const Results& results) {
   TableLayout layout{.quantities = in_csv_order(results.given)};

@@ -30,14 +30,16 @@ class GrowthMap {
             const std::array<Eigen::Index, 2>& pair)
       : result_(result),
         pair_(pair),
-        residuals_(model, result.tolerance, Differences::kForward, evaluator,
-                   [this, &options](std::size_t, std::size_t) {
-                     const std::size_t most = result_.evaluations;
-                     return !options.progress || options.progress(std::min(residuals_.evaluations(), most), most);
-                   }) {
-    descent_ = {options.loss, result.scale, descent_.most_steps, kNodeGain, result.chi_square + result.scale};
-    steps_ = first_steps();
-  }
+        residuals_(model, evaluator,
+                   {.tolerance = result.tolerance,
+                    .loss = options.loss,
+                    .progress =
+                        [this, &options](std::size_t, std::size_t) {
+                          const std::size_t most = result_.evaluations;
+                          return !options.progress || options.progress(std::min(residuals_.evaluations(), most), most);
+                        }}),
+        descent_{.scale = result.scale, .least_gain = kNodeGain, .secant_below = result.chi_square + result.scale},
+        steps_(first_steps()) {}
 
   Contours contours() {
     for (std::size_t grid = 1; !spread((grid + 1) * result_.evaluations / 2) && grid < kMostGrids; ++grid) {
@@ -91,12 +93,12 @@ class GrowthMap {
   Wanted next_nodes() const {
     Wanted wanted;
     for (const auto& [node, point] : nodes_) {
-      if (!(growth(point.objective) < kSpreadGrowth)) continue;
+      if (!(growth(point.objective()) < kSpreadGrowth)) continue;
       for (int i = 0; i < 9; ++i) {
         const GridNode other = {node.first + i / 3 - 1, node.second + i % 3 - 1};
         if (nodes_.contains(other) || !is_near_range(other)) continue;
         const Minimum*& near = wanted.try_emplace(other, &point).first->second;
-        if (point.objective < near->objective) near = &point;
+        if (point.objective() < near->objective()) near = &point;
       }
     }
     return wanted;
@@ -132,7 +134,8 @@ class GrowthMap {
       std::vector<const Linearisation*> corners;
       for (int k = 0; k < 4; ++k) {
         const auto corner = nodes_.find({node.first + k / 2, node.second + k % 2});
-        if (corner != nodes_.end() && std::isfinite(corner->second.objective)) corners.push_back(&corner->second.where);
+        if (corner != nodes_.end() && std::isfinite(corner->second.objective()))
+          corners.push_back(&corner->second.where);
       }
       if (corners.size() == 4)
         fill(contours, kPartsOfACell * (node.first - low.first), kPartsOfACell * (node.second - low.second), corners);
@@ -150,9 +153,9 @@ class GrowthMap {
           return (1.0 - x) * ((1.0 - y) * corners[0]->*value + y * corners[1]->*value) +
                  x * ((1.0 - y) * corners[2]->*value + y * corners[3]->*value);
         };
-        const Eigen::VectorXd at = residuals_.values(between(&Linearisation::at));
+        const Eigen::VectorXd at = residuals_.model().values(between(&Linearisation::at));
         for (std::size_t k = 0; k < 2; ++k) contours.values[k](row + i, column + j) = at[pair_[k]];
-        const double reached = growth(objective(between(&Linearisation::residuals), descent_.loss));
+        const double reached = growth(residuals_.objective(between(&Linearisation::residuals)));
         contours.growth(row + i, column + j) = std::max(0.0, reached);
       }
     }

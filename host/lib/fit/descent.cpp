@@ -8,35 +8,6 @@
 namespace dolp::fit {
 namespace {
 
-/// A loss and its derivative with respect to the squared residual. The constants in the losses are chosen so that fits
-/// to normally distributed errors have 95 % of the efficiency of least squares.
-std::pair<double, double> loss_and_weight(double square, Loss loss) {
-  switch (loss) {
-    case Loss::kSquares:
-      break;
-    case Loss::kHuber: {
-      constexpr double kWidth = 1.345;
-      const double length = std::sqrt(square);
-      if (length <= kWidth) break;
-      return {2.0 * kWidth * length - kWidth * kWidth, kWidth / length};
-    }
-    case Loss::kSoftL1: {
-      const double root = std::sqrt(1.0 + square);
-      return {2.0 * (root - 1.0), 1.0 / root};
-    }
-    case Loss::kCauchy: {
-      constexpr double kSquare = 2.385 * 2.385;
-      return {kSquare * std::log1p(square / kSquare), 1.0 / (1.0 + square / kSquare)};
-    }
-    case Loss::kTukey: {
-      constexpr double kSquare = 4.685 * 4.685;
-      const double rest = std::max(0.0, 1.0 - square / kSquare);
-      return {kSquare / 3.0 * (1.0 - rest * rest * rest), rest * rest};
-    }
-  }
-  return {square, 1.0};
-}
-
 /// True if a coordinate is at its bound (0 or 1), perhaps apart from rounding.
 bool is_on_bound(double coordinate) {
   constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
@@ -92,8 +63,8 @@ struct Walk {
   /// Chooses the next point to try, or ends the descent if derivatives predict too small a decrease.
   void aim(const DescentOptions& options) {
     const Linearisation& where = minimum->where;
-    if (!where.jacobian.allFinite()) minimum->objective = std::numeric_limits<double>::infinity();
-    is_done = !std::isfinite(minimum->objective);
+    if (!where.jacobian.allFinite()) minimum->where.objective = std::numeric_limits<double>::infinity();
+    is_done = !std::isfinite(where.objective);
     if (is_done) return;
     // A parameter leaves its bound only if steps of the other parameters do not lower the objective. The reason is the
     // bound k = 0: the model is an even function of k, so finite differences there predict a decrease that is not real.
@@ -108,22 +79,27 @@ struct Walk {
 
   void aim(const DescentOptions& options, const std::vector<Eigen::Index>& held) {
     const Linearisation& where = minimum->where;
-    const Eigen::VectorXd weights = loss_weights(where.residuals, options.loss).cwiseSqrt();
-    const Eigen::VectorXd step =
-        bounded_step(where, Eigen::VectorXd::Zero(where.at.size()), held, options.scale / minimum->radius, weights);
+    const Eigen::VectorXd step = bounded_step(where, Eigen::VectorXd::Zero(where.at.size()), held,
+                                              options.scale / minimum->radius, where.weights);
     point = (where.at + step).cwiseMax(0.0).cwiseMin(1.0);
-    promised = weights.cwiseProduct(where.residuals).squaredNorm() -
-               weights.cwiseProduct(where.residuals + where.jacobian * step).squaredNorm();
+    promised = where.weights.cwiseProduct(where.residuals).squaredNorm() -
+               where.weights.cwiseProduct(where.residuals + where.jacobian * step).squaredNorm();
     constexpr double kLeastStepLength = 1e-7;
     is_done = !(promised >= options.least_gain * options.scale) || step.norm() <= kLeastStepLength;
+  }
+
+  /// True if the descent ended with an objective above secant_below, and its derivatives are not computed there.
+  bool ends_with_guess(const DescentOptions& options) const {
+    return is_done && (is_stale || is_updated) && minimum->objective() > options.secant_below.value_or(0.0);
   }
 
   /// Moves to the tried point if the objective is lower there. Otherwise the next step is shorter (Nielsen 1999).
   void judge(Linearisation tried, const DescentOptions& options) {
     constexpr double kLeastRadius = 1e-8, kMostRadius = 1e8;
     constexpr double kLeastDecrease = 1e-8;  // a descent ends after a smaller decrease (relative to the objective)
-    const double found = objective(tried.residuals, options.loss);
-    const double ratio = (minimum->objective - found) / promised;
+    const double before = minimum->objective();
+    const double decrease = before - tried.objective;
+    const double ratio = decrease / promised;
     if (!(ratio > kLeastRatio)) {
       minimum->radius /= std::exchange(shrink, 2.0 * shrink);
       minimum->has_converged = is_done = minimum->radius < kLeastRadius;
@@ -131,8 +107,7 @@ struct Walk {
       return;
     }
     minimum->where = moved(minimum->where, std::move(tried));
-    minimum->has_converged = is_done = minimum->objective - found < kLeastDecrease * minimum->objective;
-    minimum->objective = found;
+    minimum->has_converged = is_done = decrease < kLeastDecrease * before;
     minimum->radius =
         std::min(kMostRadius, minimum->radius / std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * ratio - 1.0, 3)));
     shrink = 2.0;
@@ -154,17 +129,6 @@ void refresh(Residuals& residuals, std::vector<Walk>& walks, const DescentOption
   }
 }
 
-/// Where a descent ended with an objective above secant_below, replaces Broyden's updates by computed derivatives.
-void finish(Residuals& residuals, std::vector<Walk>& walks, const DescentOptions& options) {
-  std::vector<Linearisation*> guessed;
-  for (Walk& walk : walks) {
-    const bool is_guess = walk.is_stale || walk.is_updated;
-    if (walk.is_done && is_guess && walk.minimum->objective > options.secant_below.value_or(0.0))
-      guessed.push_back(&walk.minimum->where);
-  }
-  residuals.linearise(guessed);
-}
-
 }  // namespace
 
 Eigen::MatrixXd PrincipalAxes::inverse(double least_share) const {
@@ -178,44 +142,25 @@ PrincipalAxes principal_axes(const Eigen::MatrixXd& symmetric) {
   return {solver.eigenvalues().reverse().cwiseMax(0.0), solver.eigenvectors().rowwise().reverse()};
 }
 
-double objective(const Eigen::VectorXd& residuals, Loss loss) {
-  if (!residuals.allFinite()) return std::numeric_limits<double>::infinity();
-  double sum = 0.0;
-  for (const double residual : residuals) sum += loss_and_weight(residual * residual, loss).first;
-  return sum;
-}
-
-Eigen::VectorXd loss_weights(const Eigen::VectorXd& residuals, Loss loss) {
-  return residuals.unaryExpr([loss](double residual) { return loss_and_weight(residual * residual, loss).second; });
-}
-
 bool is_straight(const Linearisation& from, const Linearisation& to, double scale) {
   const Eigen::VectorXd predicted = from.residuals + from.jacobian * (to.at - from.at);
   return (predicted - to.residuals).squaredNorm() < kBent * ((from.residuals - to.residuals).squaredNorm() + scale);
 }
 
 void descend(Residuals& residuals, std::vector<Minimum>& all, const DescentOptions& options) {
-  std::vector<Eigen::VectorXd> unknown;
-  for (const Minimum& minimum : all) {
-    if (minimum.where.residuals.size() == 0) unknown.push_back(minimum.where.at);
-  }
-  std::vector<Linearisation> known = residuals.at(unknown);
-  auto next = known.begin();
   std::vector<Walk> walks;
-  for (Minimum& candidate : all) {
-    if (candidate.where.residuals.size() == 0) candidate.where = std::move(*next++);
-    candidate.objective = objective(candidate.where.residuals, options.loss);
-    const bool is_free = static_cast<std::size_t>(candidate.where.at.size()) > candidate.held.size();
-    candidate.has_converged = !is_free && std::isfinite(candidate.objective);
-    if (!is_free || !std::isfinite(candidate.objective)) continue;
-    walks.push_back({&candidate, candidate.where.jacobian.size() == 0, options.secant_below.has_value()});
+  for (Minimum& start : all) {
+    const bool is_free = static_cast<std::size_t>(start.where.at.size()) > start.held.size();
+    start.has_converged = !is_free && std::isfinite(start.objective());
+    if (is_free && std::isfinite(start.objective()))
+      walks.push_back({&start, start.where.jacobian.size() == 0, options.secant_below.has_value()});
   }
   const auto is_done = [](const Walk& walk) { return walk.is_done; };
   for (int i = 0; i < options.most_steps && !walks.empty(); ++i) {
     for (Walk& walk : walks) {
       if (walk.is_stale) continue;
       walk.aim(options);
-      walk.is_stale = walk.is_done && walk.is_updated && walk.minimum->objective > options.secant_below.value_or(0.0);
+      walk.is_stale = walk.ends_with_guess(options);
     }
     refresh(residuals, walks, options);
     std::erase_if(walks, is_done);
@@ -223,7 +168,11 @@ void descend(Residuals& residuals, std::vector<Minimum>& all, const DescentOptio
     for (const Walk& walk : walks) points.push_back(walk.point);
     std::vector<Linearisation> tried = residuals.at(points);
     for (std::size_t k = 0; k < walks.size(); ++k) walks[k].judge(std::move(tried[k]), options);
-    finish(residuals, walks, options);
+    std::vector<Linearisation*> guessed;
+    for (Walk& walk : walks) {
+      if (walk.ends_with_guess(options)) guessed.push_back(&walk.minimum->where);
+    }
+    residuals.linearise(guessed);
     std::erase_if(walks, is_done);
   }
   refresh(residuals, walks, options);

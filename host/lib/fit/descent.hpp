@@ -21,14 +21,7 @@ struct PrincipalAxes {
 
 PrincipalAxes principal_axes(const Eigen::MatrixXd& symmetric);
 
-/// The sum of the losses of all residuals; with Loss::kSquares it is chi^2. Infinite if a residual is not finite.
-double objective(const Eigen::VectorXd& residuals, Loss loss);
-
-/// The weight of each residual in the normal equations. Only Loss::kSquares gives large residuals the full weight 1.
-Eigen::VectorXd loss_weights(const Eigen::VectorXd& residuals, Loss loss);
-
 struct DescentOptions {
-  Loss loss = Loss::kSquares;
   double scale = 1.0;  ///< rise of the objective at one standard deviation from a minimum; may be a guess
   int most_steps = 40;
   /// The descent ends if derivatives predict that the next step lowers the objective by less than least_gain * scale.
@@ -40,11 +33,12 @@ struct DescentOptions {
 
 /// A point where a descent begins. descend() moves it to the point where the descent ends.
 struct Minimum {
-  Linearisation where;                  ///< coordinates of the point; also residuals and Jacobian if known
+  Linearisation where;                  ///< without a Jacobian, if it is not known yet
   std::vector<Eigen::Index> held = {};  ///< parameters whose coordinates the descent must not change
-  double objective = 0.0;               ///< infinite if the model has no value at the point
   bool has_converged = false;
   double radius = 0.1;  ///< radius of the trust region, which limits the length of a step
+
+  double objective() const { return where.objective; }  ///< infinite if the model has no value at the point
 };
 
 /// Descends from all points at the same time by Levenberg-Marquardt within the bounds. Each step takes one call of the

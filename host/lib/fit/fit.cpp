@@ -56,12 +56,11 @@ struct Covariance {
   std::size_t rank = 0;
 };
 
-Covariance estimate_covariance(const Minimum& minimum, Loss loss, double scale) {
+Covariance estimate_covariance(const Minimum& minimum, double scale) {
   constexpr double kNullShare = 1e-4;  // singular values below this share of the largest belong to null directions
   // Ignores a parameter whose whole range changes the residuals by less than this many standard deviations.
   constexpr double kLeastDeviations = 1e-3;
-  Eigen::MatrixXd jacobian =
-      loss_weights(minimum.where.residuals, loss).cwiseSqrt().asDiagonal() * minimum.where.jacobian;
+  Eigen::MatrixXd jacobian = minimum.where.weights.asDiagonal() * minimum.where.jacobian;
   const Eigen::Index count = jacobian.cols();
   Eigen::VectorXd norms = jacobian.colwise().norm();
   const double least_norm = std::max(kNullShare * kNullShare * norms.maxCoeff(), kLeastDeviations * std::sqrt(scale));
@@ -159,17 +158,14 @@ class Fit {
   Fit(const Model& model, ModelEvaluator& evaluator, const FitOptions& options)
       : model_(model),
         options_(options),
-        poll_([this](std::size_t, std::size_t) { return !options_.progress || options_.progress(done_, total_); }),
-        coarse_(model, coarse_tolerance(model), Differences::kForward, evaluator, poll_),
-        fine_(model, fine_tolerance(model), Differences::kCentral, evaluator, poll_),
-        profile_(model, fine_tolerance(model), Differences::kForward, evaluator, poll_) {}
+        coarse_(model, evaluator, residual_options(coarse_tolerance(model), Differences::kForward)),
+        fine_(model, evaluator, residual_options(fine_tolerance(model), Differences::kCentral)),
+        profile_(model, evaluator, residual_options(fine_tolerance(model), Differences::kForward)) {}
 
   std::optional<FitResult> run(double most_aic) {
     constexpr int kMostRestarts = 4;  // a restart begins at a lower minimum that a profile has found
-    SearchOptions search{options_.starts, options_.seed, options_.loss, model_.has_uncertainties(), guess_scale()};
-    search.count = [this](std::size_t done, std::size_t total) { count(done, total); };
     if (options_.phase) options_.phase("descents of the search");
-    minima_ = find_minima(coarse_, fine_, search);
+    minima_ = find_minima(coarse_, fine_, options_, guess_scale(), count_);
     if (minima_.empty()) return std::nullopt;
     for (int i = 0;; ++i) {
       const bool may_restart = i < kMostRestarts;
@@ -184,9 +180,10 @@ class Fit {
   }
 
  private:
-  void count(std::size_t done, std::size_t total) {
-    done_ = done;
-    total_ = total;
+  ResidualOptions residual_options(double tolerance, Differences differences) {
+    return {tolerance, differences, options_.loss, [this](std::size_t, std::size_t) {
+              return !options_.progress || options_.progress(count_.done, count_.total);
+            }};
   }
 
   /// Degrees of freedom: number of points minus number of parameters. With a model error it is the number of points,
@@ -211,7 +208,7 @@ class Fit {
   /// The scale at a minimum: 1 with uncertainties, otherwise the mean squared residual, but at least tolerance^2.
   double find_scale(const Minimum& minimum) const {
     if (model_.has_uncertainties()) return 1.0;
-    const double mean = freedom() > 0 ? minimum.objective / static_cast<double>(freedom()) : 0.0;
+    const double mean = freedom() > 0 ? minimum.objective() / static_cast<double>(freedom()) : 0.0;
     return std::max(mean, fine_.tolerance() * fine_.tolerance());
   }
 
@@ -225,18 +222,15 @@ class Fit {
     return std::pow(boost::math::quantile(t, 0.5 * (1.0 + level)), 2);
   }
 
-  /// The covariance matrix. With a model error its elements are NaN, because residuals are 0 everywhere in a bracket.
-  Covariance find_covariance() const {
-    if (!model_.has_model_error()) return estimate_covariance(minima_.front(), options_.loss, result_.scale);
-    const Eigen::Index count = minima_.front().where.at.size();
-    return {Eigen::MatrixXd::Constant(count, count, kNaN), {}, static_cast<std::size_t>(count)};
-  }
-
   void find_values() {
     const Minimum& best = minima_.front();
     result_ = {};
     result_.scale = find_scale(best);
-    covariance_ = find_covariance();
+    const Eigen::Index count = best.where.at.size();
+    // With a model error the covariance matrix is NaN, because residuals are 0 everywhere in a bracket.
+    covariance_ = model_.has_model_error()
+                      ? Covariance{Eigen::MatrixXd::Constant(count, count, kNaN), {}, static_cast<std::size_t>(count)}
+                      : estimate_covariance(best, result_.scale);
     for (std::size_t j = 0; j < model_.parameters().size(); ++j) {
       const FitRange& range = model_.parameters()[j];
       const auto index = static_cast<Eigen::Index>(j);
@@ -253,43 +247,32 @@ class Fit {
 
   /// Sets the intervals. Returns false if a profile found a lower minimum, which is now the first of minima_.
   bool find_intervals(double scale, bool may_restart, bool is_scaled) {
-    const std::optional<Profiles> profiles = find_profiles(scale, may_restart);
-    if (!profiles) return false;
+    ProfileOptions options{{rise_at(kLevel68), rise_at(kLevel95)}, 0.0, scale};
+    if (!model_.has_model_error()) options.from = minima_.front().objective();
+    std::vector<Minimum> near = minima_;
+    std::erase_if(near, [&](const Minimum& candidate) {
+      return !(candidate.objective() < options.from + options.rises[1] * scale);
+    });
+    const Profiles profiles = compute_profiles(profile_, near, options, count_);
+    if (may_restart && profiles.lower && take(*profiles.lower)) return false;
     for (std::size_t j = 0; j < result_.parameters.size(); ++j) {
       FitParameter& parameter = result_.parameters[j];
       (is_scaled ? parameter.scaled_68.emplace() : parameter.interval_68) =
-          parameter_interval(model_.parameters()[j], profiles->intervals[j][0]);
+          parameter_interval(model_.parameters()[j], profiles.intervals[j][0]);
       (is_scaled ? parameter.scaled_95.emplace() : parameter.interval_95) =
-          parameter_interval(model_.parameters()[j], profiles->intervals[j][1]);
+          parameter_interval(model_.parameters()[j], profiles.intervals[j][1]);
     }
-    if (!is_scaled) std::ranges::copy(profiles->points, std::back_inserter(result_.valley_points));
+    if (!is_scaled) std::ranges::copy(profiles.points, std::back_inserter(result_.valley_points));
     return true;
   }
 
-  std::optional<Profiles> find_profiles(double scale, bool may_restart) {
-    ProfileOptions options{{rise_at(kLevel68), rise_at(kLevel95)}, 0.0, scale, options_.loss, {}};
-    if (!model_.has_model_error()) options.from = minima_.front().objective;
-    options.count = [this](std::size_t done, std::size_t total) { count(done, total); };
-    std::vector<Minimum> near;
-    for (const Minimum& candidate : minima_) {
-      if (candidate.objective < options.from + options.rises[1] * scale) near.push_back(candidate);
-    }
-    if (near.empty())
-      return Profiles{.intervals =
-                          std::vector<std::array<std::vector<CoordinateInterval>, 2>>(result_.parameters.size())};
-    Profiles profiles = compute_profiles(profile_, near, options);
-    if (may_restart && profiles.lower && take(*profiles.lower)) return std::nullopt;
-    return profiles;
-  }
-
   bool take(const Minimum& lower) {
-    std::vector<Minimum> bottoms(1);
-    bottoms.front().where.at = lower.where.at;
-    descend(fine_, bottoms, {options_.loss, result_.scale});
+    std::vector<Minimum> bottoms = {{.where = fine_.at({lower.where.at}).front()}};
+    descend(fine_, bottoms, {result_.scale});
     Minimum& bottom = bottoms.front();
-    if (!bottom.has_converged || bottom.objective >= minima_.front().objective) return false;
+    if (!bottom.has_converged || bottom.objective() >= minima_.front().objective()) return false;
     // If the objective is lower by less than the scale, the new point replaces the best minimum as a better estimate.
-    if (bottom.objective > minima_.front().objective - result_.scale) minima_.erase(minima_.begin());
+    if (bottom.objective() > minima_.front().objective() - result_.scale) minima_.erase(minima_.begin());
     minima_.insert(minima_.begin(), std::move(bottom));
     return true;
   }
@@ -298,28 +281,36 @@ class Fit {
     const Minimum& best = minima_.front();
     const Prediction prediction = fine_.predict({best.where.at}).front();
     result_.correlation = correlation_matrix(covariance_.matrix);
-    result_.chi_square = best.objective;
+    result_.chi_square = best.objective();
     result_.degrees_of_freedom = freedom();
     if (freedom() > 0) {
       const auto freedoms = static_cast<double>(freedom());
-      result_.reduced_chi_square = best.objective / freedoms;
+      result_.reduced_chi_square = best.objective() / freedoms;
       if (model_.has_uncertainties() && options_.loss == Loss::kSquares)
-        result_.p_value = boost::math::gamma_q(0.5 * freedoms, 0.5 * best.objective);
+        result_.p_value = boost::math::gamma_q(0.5 * freedoms, 0.5 * best.objective());
     }
     result_.fit_quality = fit_quality(result_.p_value);
     for (const Minimum& minimum : minima_) {
-      const Eigen::VectorXd values = fine_.values(minimum.where.at);
-      result_.minima.push_back({{values.begin(), values.end()}, minimum.objective});
+      const Eigen::VectorXd values = model_.values(minimum.where.at);
+      result_.minima.push_back({{values.begin(), values.end()}, minimum.objective()});
     }
     result_.tolerance = fine_.tolerance();
     result_.status = prediction.status;
     result_.residuals = -best.where.residuals;
-    result_.predicted = fine_.observed(prediction.components);
+    result_.predicted = prediction.values;
     result_.numerical_error = prediction.error.cwiseProduct(fine_.weights()).maxCoeff() / std::sqrt(result_.scale);
     result_.evaluations = coarse_.evaluations() + fine_.evaluations() + profile_.evaluations();
     result_.jacobian = find_jacobian(best);
     name_degeneracies();
-    add_criteria();
+    const auto points = static_cast<double>(model_.observation_count());
+    auto parameters = static_cast<double>(result_.determined);
+    double misfit = result_.chi_square;
+    if (!model_.has_uncertainties()) {
+      misfit = points * std::log(std::max(result_.chi_square, std::numeric_limits<double>::min()) / points);
+      parameters += 1.0;  // without uncertainties, the scale is a parameter too
+    }
+    result_.aic = misfit + 2.0 * parameters;
+    result_.bic = misfit + std::log(points) * parameters;
   }
 
   /// The derivatives of the observables by the numbers of the scene.
@@ -349,23 +340,10 @@ class Fit {
     }
   }
 
-  void add_criteria() {
-    const auto points = static_cast<double>(model_.observation_count());
-    auto parameters = static_cast<double>(result_.determined);
-    double misfit = result_.chi_square;
-    if (!model_.has_uncertainties()) {
-      misfit = points * std::log(std::max(result_.chi_square, std::numeric_limits<double>::min()) / points);
-      parameters += 1.0;  // without uncertainties, the scale is a parameter too
-    }
-    result_.aic = misfit + 2.0 * parameters;
-    result_.bic = misfit + std::log(points) * parameters;
-  }
-
   const Model& model_;
   const FitOptions& options_;
-  Progress poll_;
+  Count count_;  ///< for FitOptions::progress: descents of the search, then sides of profiles
   Residuals coarse_, fine_, profile_;
-  std::size_t done_ = 0, total_ = 1;
   std::vector<Minimum> minima_;
   Covariance covariance_;
   FitResult result_;

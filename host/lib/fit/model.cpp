@@ -68,13 +68,17 @@ EmissionModel other_bracket_end(const SceneValues& scene) {
   return scene.emission->model == EmissionModel::kDirect ? EmissionModel::kMoments : EmissionModel::kDirect;
 }
 
-/// The value in the bracket that is nearest to the measured value. The bracket is the range between `end` and `other`.
-/// For DOLP these two are values of Q/I, so the bracket is the range of the absolute value of Q/I between them.
-double nearest_between(const Eigen::RowVector2d& end, const Eigen::RowVector2d& other, const Measurement& measured) {
-  if (std::isnan(end[0] + other[0])) return end[0] + other[0];
-  const auto [low, high] = std::minmax(end[0], other[0]);
-  if (measured.observable != Observable::kDolp) return std::clamp(measured.value, low, high);
-  return std::clamp(measured.value, std::max({low, -high, 0.0}), std::max(-low, high));
+double observed_value(Observable observable, const Eigen::RowVector2d& components) {
+  return observable == Observable::kDolp ? components.norm() : components[0];
+}
+
+/// The bracket of an observable: the range between `end` and `other`, NaN if one of them is. For DOLP these two are
+/// values of Q/I, so the bracket is the range of the absolute value of Q/I between them.
+std::pair<double, double> bracket(Observable observable, double end, double other) {
+  if (std::isnan(end + other)) return {end + other, end + other};
+  const auto [low, high] = std::minmax(end, other);
+  if (observable != Observable::kDolp) return {low, high};
+  return {std::max({low, -high, 0.0}), std::max(-low, high)};
 }
 
 bool is_polarisation(Observable observable) {
@@ -128,6 +132,11 @@ void Model::check() const {
     throw InputError(fmt::format("fit: {} parameters and {} measured points; at most as many parameters as points",
                                  parameters_.size(), count_));
   }
+}
+
+Eigen::VectorXd Model::values(const Eigen::VectorXd& point) const {
+  Eigen::Index j = 0;
+  return each(parameters_, [&](const FitRange& range) { return range.at(point[j++]); });
 }
 
 std::vector<Setting> Model::settings(const Eigen::VectorXd& values) const {
@@ -201,14 +210,9 @@ SceneValues Model::with(const SceneValues& scene, const Eigen::VectorXd& values)
 std::vector<Prediction> Model::predict(const std::vector<Eigen::VectorXd>& values, double tolerance,
                                        ModelEvaluator& evaluator, const Progress& progress) const {
   const auto rows = static_cast<Eigen::Index>(observation_count());
-  std::vector<Prediction> predictions(values.size(), {Eigen::MatrixX2d::Zero(rows, 2), Eigen::VectorXd::Zero(rows)});
-  for (const Group& group : groups_) predict_group(group, values, tolerance, evaluator, progress, predictions);
-  return predictions;
-}
-
-void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>& values, double tolerance,
-                          ModelEvaluator& evaluator, const Progress& progress,
-                          std::vector<Prediction>& predictions) const {
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(rows);
+  std::vector<Prediction> predictions(
+      values.size(), {Eigen::MatrixX2d::Zero(rows, 2), none, none, 0, Eigen::MatrixX3d::Zero(rows, 3)});
   std::map<std::vector<double>, std::vector<std::size_t>> calls;
   for (std::size_t set = 0; set < values.size(); ++set) {
     std::vector<double> common;
@@ -217,35 +221,43 @@ void Model::predict_group(const Group& group, const std::vector<Eigen::VectorXd>
     }
     calls[common].push_back(set);
   }
-  for (const auto& [common, sets] : calls) {
-    std::vector<SceneEntry> points;
-    for (const std::size_t set : sets) add_points(points, group, with(group.scene, values[set]));
-    const SceneEntries entries(std::move(points), grid_variants(make_axes({}, {}, {}, group.wavelength_um)));
-    SceneValues scene = with(group.scene, values[sets.back()]);
-    scene.accuracy.tolerance = tolerance;
-    const std::vector<PointResult> results = evaluate_scene(scene, entries, evaluator, progress);
-    std::vector<PointResult> others;
-    if (group.other_end) {
-      scene.emission->model = *group.other_end;
-      others = evaluate_scene(scene, entries, evaluator, progress);
-    }
-    const std::vector<Measurement>& measurements = group.data->measurements;
-    for (std::size_t i = 0; i < results.size(); ++i) {
-      const std::size_t member = i % measurements.size();
-      const Measurement& measured = measurements[member];
-      const Eigen::Index row = group.first_row + static_cast<Eigen::Index>(member);
-      Prediction& prediction = predictions[sets[i / measurements.size()]];
-      auto components = prediction.components.row(row);
-      double& error = prediction.error[row];
-      components = observed_components(measured.observable, results[i]);
-      error = point_error(measured.observable, results[i]);
-      prediction.status |= results[i].status;
-      if (!group.other_end) continue;
-      components << nearest_between(components, observed_components(measured.observable, others[i]), measured), 0.0;
-      error = std::max(error, point_error(measured.observable, others[i]));
-      prediction.status |= others[i].status;
+  for (const Group& group : groups_) {
+    for (const auto& [common, sets] : calls) {
+      std::vector<SceneEntry> points;
+      for (const std::size_t set : sets) add_points(points, group, with(group.scene, values[set]));
+      const SceneEntries entries(std::move(points), grid_variants(make_axes({}, {}, {}, group.wavelength_um)));
+      SceneValues scene = with(group.scene, values[sets.back()]);
+      scene.accuracy.tolerance = tolerance;
+      const std::vector<PointResult> results = evaluate_scene(scene, entries, evaluator, progress);
+      std::vector<PointResult> others;
+      if (group.other_end) {
+        scene.emission->model = *group.other_end;
+        others = evaluate_scene(scene, entries, evaluator, progress);
+      }
+      const std::vector<Measurement>& measurements = group.data->measurements;
+      for (std::size_t i = 0; i < results.size(); ++i) {
+        const std::size_t member = i % measurements.size();
+        const Measurement& measured = measurements[member];
+        const Eigen::Index row = group.first_row + static_cast<Eigen::Index>(member);
+        Prediction& prediction = predictions[sets[i / measurements.size()]];
+        auto components = prediction.components.row(row);
+        double& error = prediction.error[row];
+        components = observed_components(measured.observable, results[i]);
+        prediction.values[row] = observed_value(measured.observable, components);
+        error = point_error(measured.observable, results[i]);
+        prediction.status |= results[i].status;
+        if (!group.other_end) continue;
+        const auto [low, high] =
+            bracket(measured.observable, components[0], observed_components(measured.observable, others[i])[0]);
+        prediction.bracket.row(row) << prediction.values[row], low, high;
+        components << (std::isnan(low) ? low : std::clamp(measured.value, low, high)), 0.0;
+        prediction.values[row] = observed_value(measured.observable, components);
+        error = std::max(error, point_error(measured.observable, others[i]));
+        prediction.status |= others[i].status;
+      }
     }
   }
+  return predictions;
 }
 
 void Model::add_points(std::vector<SceneEntry>& points, const Group& group, const SceneValues& scene) const {

@@ -21,8 +21,12 @@ struct Prediction {
   /// so that DOLP is its length. With ModelError::kBracket, the model predicts a range for each observable, the
   /// bracket. Then the row contains the value in the bracket that is nearest to the measured value, and 0.
   Eigen::MatrixX2d components;
+  Eigen::VectorXd values;    ///< the predicted observables; for DOLP the lengths of the rows of `components`
   Eigen::VectorXd error;     ///< bound of the numerical error of each predicted observable
   std::uint32_t status = 0;  ///< status bits of all points, combined by OR
+  /// With ModelError::kBracket, one row per measurement: the value with the scene's own emission model, then both ends
+  /// of the bracket, the lower one first.
+  Eigen::MatrixX3d bracket;
 };
 
 /// The model at the measurements of all data sets, as a function of the parameters (the keys that the fit varies).
@@ -48,6 +52,8 @@ class Model {
   std::vector<Prediction> predict(const std::vector<Eigen::VectorXd>& values, double tolerance,
                                   ModelEvaluator& evaluator, const Progress& progress) const;
 
+  /// The values of the parameters at a point, whose coordinates go from 0 to 1 over the range of each parameter.
+  Eigen::VectorXd values(const Eigen::VectorXd& point) const;
   std::vector<Setting> settings(const Eigen::VectorXd& values) const;
 
  private:
@@ -69,8 +75,6 @@ class Model {
   SceneValues data_scene(const SceneValues& scene, const MeasuredData& data, const std::vector<Setting>& extra,
                          const Eigen::VectorXd& values) const;
   SceneValues with(const SceneValues& scene, const Eigen::VectorXd& values) const;
-  void predict_group(const Group& group, const std::vector<Eigen::VectorXd>& values, double tolerance,
-                     ModelEvaluator& evaluator, const Progress& progress, std::vector<Prediction>& predictions) const;
 
   std::vector<MeasuredData> data_;
   std::vector<FitRange> parameters_;

@@ -57,7 +57,7 @@ class Side {
   void add(Minimum found) {
     // A point is a lower minimum if it is below the best objective by more than this times ProfileOptions::scale.
     constexpr double kLowerMinimum = 0.01;
-    if (found.objective < least_ - kLowerMinimum * options_->scale) {
+    if (found.objective() < least_ - kLowerMinimum * options_->scale) {
       lower_ = std::move(found);
       finish(distance_);
       return;
@@ -74,7 +74,7 @@ class Side {
     return points_.front().found.where.at[parameter_] + direction_ * distance;
   }
   double root_growth(const Minimum& found) const {
-    const double growth = (found.objective - options_->from) / options_->scale;
+    const double growth = (found.objective() - options_->from) / options_->scale;
     return std::isfinite(growth) ? std::sqrt(std::max(0.0, growth)) : 1e6;
   }
   double wanted() const { return std::sqrt(options_->rises[rise_]); }
@@ -176,10 +176,13 @@ struct ProfileEnd {
 
 class Profiler {
  public:
-  Profiler(Residuals& residuals, const std::vector<Minimum>& minima, const ProfileOptions& options)
-      : residuals_(residuals), options_(options), least_(minima.front().objective) {
+  Profiler(Residuals& residuals, const std::vector<Minimum>& minima, const ProfileOptions& options, Count& done_sides)
+      : residuals_(residuals),
+        options_(options),
+        done_sides_(done_sides),
+        least_(minima.empty() ? kInfinity : minima.front().objective()) {
     const double secant_below = objective_at(kTrustedShare * options.rises[0]);
-    descent_ = {options.loss, options.scale, descent_.most_steps, kProfileGain, secant_below};
+    descent_ = {.scale = options.scale, .least_gain = kProfileGain, .secant_below = secant_below};
     result_.intervals.resize(residuals.model().parameters().size());
     for (const Minimum& minimum : minima) {
       for (Eigen::Index j = 0; j < minimum.where.at.size(); ++j) {
@@ -206,7 +209,6 @@ class Profiler {
 
  private:
   void complete(std::size_t first) {
-    const auto is_done = [](const Side& side) { return side.is_done(); };
     for (;;) {
       std::vector<Neighbour> wanted;
       std::vector<Side*> open;
@@ -215,8 +217,7 @@ class Profiler {
         open.push_back(&side);
         wanted.push_back(side.next());
       }
-      if (options_.count)
-        options_.count(static_cast<std::size_t>(std::ranges::count_if(sides_, is_done)), sides_.size());
+      done_sides_ = {static_cast<std::size_t>(std::ranges::count_if(sides_, &Side::is_done)), sides_.size()};
       if (wanted.empty()) break;
       std::vector<Minimum> found = follow(residuals_, wanted, descent_);
       for (std::size_t k = 0; k < open.size(); ++k) open[k]->add(std::move(found[k]));
@@ -224,7 +225,7 @@ class Profiler {
     for (std::size_t i = first; i < sides_.size(); i += 2) {
       for (const Side* side : {&sides_[i], &sides_[i + 1]}) {
         if (!side->lower()) continue;
-        if (!result_.lower || side->lower()->objective < result_.lower->objective) result_.lower = side->lower();
+        if (!result_.lower || side->lower()->objective() < result_.lower->objective()) result_.lower = side->lower();
       }
       for (std::size_t rise = 0; rise < options_.rises.size(); ++rise) {
         if (!sides_[i].end(rise)) continue;
@@ -263,11 +264,11 @@ class Profiler {
     std::map<ProfileEnd, const Minimum*> lowest;
     for (std::size_t i = 0; i < found.size(); ++i) {
       const Minimum*& best = lowest.try_emplace(end_of_way[i], &found[i]).first->second;
-      if (found[i].objective < best->objective) best = &found[i];
+      if (found[i].objective() < best->objective()) best = &found[i];
     }
     const std::size_t first = sides_.size();
     for (const auto& [end, best] : lowest) {
-      if (!(best->objective < objective_at(kClearlyLower * options_.rises[end.rise]))) continue;
+      if (!(best->objective() < objective_at(kClearlyLower * options_.rises[end.rise]))) continue;
       const double start = best->where.at[end.parameter];
       const double back = std::abs(start - end.at) + kAtBound;
       const double away = end.direction < 0 ? start : 1.0 - start;
@@ -307,9 +308,9 @@ class Profiler {
     });
     for (const Side& side : sides_) {
       const auto lowest = std::ranges::min_element(side.points(), {}, [&](const ProfilePoint& point) {
-        return distance(point.found) > kAtBound ? point.found.objective : kInfinity;
+        return distance(point.found) > kAtBound ? point.found.objective() : kInfinity;
       });
-      const bool is_lower = lowest->found.objective < objective_at(kClearlyLower * options_.rises[end.rise]);
+      const bool is_lower = lowest->found.objective() < objective_at(kClearlyLower * options_.rises[end.rise]);
       if (is_lower && distance(lowest->found) > kAtBound)
         ways.push_back({&lowest->found, {end.parameter}, lowest->found.where.at});
     }
@@ -318,6 +319,7 @@ class Profiler {
 
   Residuals& residuals_;
   const ProfileOptions& options_;
+  Count& done_sides_;
   double least_;
   DescentOptions descent_;
   std::vector<Side> sides_;
@@ -327,8 +329,9 @@ class Profiler {
 
 }  // namespace
 
-Profiles compute_profiles(Residuals& residuals, const std::vector<Minimum>& minima, const ProfileOptions& options) {
-  return Profiler(residuals, minima, options).run();
+Profiles compute_profiles(Residuals& residuals, const std::vector<Minimum>& minima, const ProfileOptions& options,
+                          Count& sides) {
+  return Profiler(residuals, minima, options, sides).run();
 }
 
 }  // namespace dolp::fit

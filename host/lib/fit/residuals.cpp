@@ -9,6 +9,35 @@
 namespace dolp::fit {
 namespace {
 
+/// A loss and its derivative with respect to the squared residual. The constants in the losses are chosen so that fits
+/// to normally distributed errors have 95 % of the efficiency of least squares.
+std::pair<double, double> loss_and_weight(double square, Loss loss) {
+  switch (loss) {
+    case Loss::kSquares:
+      break;
+    case Loss::kHuber: {
+      constexpr double kWidth = 1.345;
+      const double length = std::sqrt(square);
+      if (length <= kWidth) break;
+      return {2.0 * kWidth * length - kWidth * kWidth, kWidth / length};
+    }
+    case Loss::kSoftL1: {
+      const double root = std::sqrt(1.0 + square);
+      return {2.0 * (root - 1.0), 1.0 / root};
+    }
+    case Loss::kCauchy: {
+      constexpr double kSquare = 2.385 * 2.385;
+      return {kSquare * std::log1p(square / kSquare), 1.0 / (1.0 + square / kSquare)};
+    }
+    case Loss::kTukey: {
+      constexpr double kSquare = 4.685 * 4.685;
+      const double rest = std::max(0.0, 1.0 - square / kSquare);
+      return {kSquare / 3.0 * (1.0 - rest * rest * rest), rest * rest};
+    }
+  }
+  return {square, 1.0};
+}
+
 /// Offsets from a coordinate to its two neighbours. The signs are chosen so that both neighbours lie in [0, 1].
 std::array<double, 2> offsets_at(double at, double step) {
   const double inward = at + step > 1.0 ? -step : step;
@@ -26,13 +55,10 @@ Eigen::MatrixX2d derivative(const Eigen::MatrixX2d& centre, const Prediction* be
 
 }  // namespace
 
-Residuals::Residuals(const Model& model, double tolerance, Differences differences, ModelEvaluator& evaluator,
-                     Progress progress)
+Residuals::Residuals(const Model& model, ModelEvaluator& evaluator, ResidualOptions options)
     : model_(model),
-      tolerance_(tolerance),
-      differences_(differences),
       evaluator_(evaluator),
-      progress_(std::move(progress)),
+      options_(std::move(options)),
       measured_(static_cast<Eigen::Index>(model.observation_count())),
       weights_(measured_.size()) {
   Eigen::Index row = 0;
@@ -45,43 +71,36 @@ Residuals::Residuals(const Model& model, double tolerance, Differences differenc
   }
 }
 
-Eigen::VectorXd Residuals::values(const Eigen::VectorXd& point) const {
-  Eigen::VectorXd values(point.size());
-  for (Eigen::Index j = 0; j < point.size(); ++j) {
-    values[j] = model_.parameters()[static_cast<std::size_t>(j)].at(point[j]);
-  }
-  return values;
-}
-
 std::vector<Prediction> Residuals::predict(const std::vector<Eigen::VectorXd>& points) {
   if (points.empty()) return {};
   std::vector<Eigen::VectorXd> sets;
-  sets.reserve(points.size());
-  for (const Eigen::VectorXd& point : points) sets.push_back(values(point));
+  for (const Eigen::VectorXd& point : points) sets.push_back(model_.values(point));
   evaluations_ += points.size();
-  return model_.predict(sets, tolerance_, evaluator_, progress_);
+  return model_.predict(sets, options_.tolerance, evaluator_, options_.progress);
 }
 
-Eigen::VectorXd Residuals::observed(const Eigen::MatrixX2d& components) const {
-  Eigen::VectorXd values = components.col(0);
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    if (is_length_[static_cast<std::size_t>(i)]) values[i] = components.row(i).norm();
-  }
-  return values;
+double Residuals::objective(const Eigen::VectorXd& residuals) const {
+  if (!residuals.allFinite()) return std::numeric_limits<double>::infinity();
+  double sum = 0.0;
+  for (const double residual : residuals) sum += loss_and_weight(residual * residual, options_.loss).first;
+  return sum;
 }
 
 std::vector<Linearisation> Residuals::at(const std::vector<Eigen::VectorXd>& points) {
   std::vector<Linearisation> found;
   std::vector<Prediction> predictions = predict(points);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::VectorXd residuals = (observed(predictions[i].components) - measured_).cwiseProduct(weights_);
-    found.push_back({points[i], residuals, {}, std::move(predictions[i].components)});
+    const Eigen::VectorXd residuals = (predictions[i].values - measured_).cwiseProduct(weights_);
+    const Eigen::VectorXd weights = residuals.unaryExpr(
+        [this](double residual) { return std::sqrt(loss_and_weight(residual * residual, options_.loss).second); });
+    found.push_back({points[i], residuals, weights, objective(residuals), std::move(predictions[i].components)});
   }
   return found;
 }
 
 void Residuals::linearise(const std::vector<Linearisation*>& points) {
-  const std::size_t count = differences_ == Differences::kCentral ? 2 : 1;  // number of neighbours per parameter
+  const std::size_t count =
+      options_.differences == Differences::kCentral ? 2 : 1;  // number of neighbours per parameter
   std::vector<Eigen::VectorXd> beside;
   for (Linearisation* const point : points) {
     if (point->steps.size() == 0) point->steps.setConstant(point->at.size(), kFirstStep);
@@ -120,7 +139,7 @@ double Residuals::next_step(double step, const Linearisation& point, const Predi
   const double change = (beside.components - point.components).cwiseAbs().maxCoeff();
   if (!std::isfinite(change) || change <= 0.0) return step;
   const double largest = point.components.cwiseAbs().maxCoeff();
-  const double error = std::clamp(beside.error.maxCoeff(), 1e-3 * tolerance_, tolerance_);
+  const double error = std::clamp(beside.error.maxCoeff(), 1e-3 * options_.tolerance, options_.tolerance);
   const double balanced = std::cbrt(3.0 * error * largest * largest);
   const double seen = std::max(kSeenShare / weights_.maxCoeff(), kErrorsOfAChange * error);
   const double factor = std::clamp(std::min(balanced, seen) / change, 1.0 / kMostChangeOfStep, kMostChangeOfStep);

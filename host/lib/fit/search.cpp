@@ -32,7 +32,7 @@ std::vector<Eigen::VectorXd> sobol_points(std::size_t count, Eigen::Index dimens
 
 /// Where descents begin: at the start that the user gave (if any), then at the points of a Sobol sequence that have the
 /// lowest objective. Leaves out a point that is close to another start.
-std::vector<Minimum> choose_starts(Residuals& residuals, const SearchOptions& options) {
+std::vector<Minimum> choose_starts(Residuals& residuals, const FitOptions& options) {
   const std::vector<FitRange>& parameters = residuals.model().parameters();
   const auto dimensions = static_cast<Eigen::Index>(parameters.size());
   std::vector<Eigen::VectorXd> points = sobol_points(kPointsOfAStart * options.starts, dimensions, options.seed);
@@ -45,29 +45,25 @@ std::vector<Minimum> choose_starts(Residuals& residuals, const SearchOptions& op
     }
     points.insert(points.begin(), given);
   }
-  std::vector<Minimum> candidates;
-  for (Linearisation& point : residuals.at(points)) {
-    const double found = objective(point.residuals, options.loss);
-    candidates.push_back({.where = std::move(point), .objective = found});
-  }
-  std::ranges::stable_sort(std::span(candidates).subspan(has_start ? 1 : 0), {}, &Minimum::objective);
+  std::vector<Linearisation> candidates = residuals.at(points);
+  std::ranges::stable_sort(std::span(candidates).subspan(has_start ? 1 : 0), {}, &Linearisation::objective);
   const double apart = 0.5 * std::pow(static_cast<double>(points.size()), -1.0 / static_cast<double>(dimensions));
   std::vector<Minimum> starts;
-  for (Minimum& candidate : candidates) {
-    const auto is_near = [&](const Minimum& minimum) {
-      return (minimum.where.at - candidate.where.at).lpNorm<Eigen::Infinity>() < apart;
+  for (Linearisation& candidate : candidates) {
+    const auto is_near = [&](const Minimum& start) {
+      return (start.where.at - candidate.at).lpNorm<Eigen::Infinity>() < apart;
     };
     if (std::isfinite(candidate.objective) && std::ranges::none_of(starts, is_near))
-      starts.push_back({.where = std::move(candidate.where)});
+      starts.push_back({.where = std::move(candidate)});
     if (starts.size() == options.starts) break;
   }
   return starts;
 }
 
-double noise_scale(const SearchOptions& options, const Minimum& minimum) {
-  if (options.has_uncertainties) return options.scale;
+double noise_scale(const Residuals& residuals, const Minimum& minimum) {
+  if (residuals.model().has_uncertainties()) return 1.0;
   const auto freedom = static_cast<double>(minimum.where.residuals.size() - minimum.where.at.size());
-  return minimum.objective / std::max(1.0, freedom);
+  return minimum.objective() / std::max(1.0, freedom);
 }
 
 /// Moves a point perpendicular to `line` to the floor of the valley: to the least predicted sum of squared residuals.
@@ -82,45 +78,44 @@ Eigen::VectorXd on_floor(const Eigen::VectorXd& point, const Eigen::VectorXd& re
 }
 
 /// True if each point's objective is at most `scale` above the lowest value before it. The first value is `from`.
-bool falls(double from, std::span<const Linearisation> points, Loss loss, double scale) {
+bool falls(double from, const std::vector<Linearisation>& points, double scale) {
   double least = from;
   return std::ranges::all_of(points, [&](const Linearisation& point) {
-    const double here = objective(point.residuals, loss);
-    const bool is_low = here <= least + scale;
-    least = std::min(least, here);
+    const bool is_low = point.objective <= least + scale;
+    least = std::min(least, point.objective);
     return is_low;
   });
 }
 
 /// True if the objective falls() on the straight line from one minimum to another, or on the valley floor beside it.
-bool leads_down(Residuals& residuals, const Minimum& from, const Minimum& to, const SearchOptions& options) {
-  const double scale = noise_scale(options, to);
+bool leads_down(Residuals& residuals, const Minimum& from, const Minimum& to) {
+  const double scale = noise_scale(residuals, to);
   const Eigen::VectorXd line = to.where.at - from.where.at;
   if (line.squaredNorm() == 0.0) return true;
   std::vector<Eigen::VectorXd> points;
   for (int i = 1; i < kPointsOfALine; ++i)
     points.push_back(from.where.at + line * (static_cast<double>(i) / kPointsOfALine));
   const std::vector<Linearisation> found = residuals.at(points);
-  if (falls(from.objective, found, options.loss, scale)) return true;
+  if (falls(from.objective(), found, scale)) return true;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!found[i].residuals.allFinite()) continue;
     const double share = static_cast<double>(i + 1) / kPointsOfALine;
     const Eigen::MatrixXd jacobian = (1.0 - share) * from.where.jacobian + share * to.where.jacobian;
     points[i] = on_floor(points[i], found[i].residuals, jacobian, line);
   }
-  return falls(from.objective, residuals.at(points), options.loss, scale);
+  return falls(from.objective(), residuals.at(points), scale);
 }
 
 /// The minima, the lowest first. Leaves out a minimum if a path leads down from it to a lower minimum.
-std::vector<Minimum> distinct(std::vector<Minimum> all, Residuals& residuals, const SearchOptions& options) {
-  std::erase_if(all, [](const Minimum& minimum) { return !std::isfinite(minimum.objective); });
+std::vector<Minimum> distinct(std::vector<Minimum> all, Residuals& residuals) {
+  std::erase_if(all, [](const Minimum& minimum) { return !std::isfinite(minimum.objective()); });
   std::ranges::stable_sort(all, {}, &Minimum::objective);
   std::vector<Minimum> kept;
   for (Minimum& candidate : all) {
     const auto is_near = [&](const Minimum& lower) {
-      return is_straight(candidate.where, lower.where, noise_scale(options, lower));
+      return is_straight(candidate.where, lower.where, noise_scale(residuals, lower));
     };
-    const auto is_above = [&](const Minimum& lower) { return leads_down(residuals, candidate, lower, options); };
+    const auto is_above = [&](const Minimum& lower) { return leads_down(residuals, candidate, lower); };
     if (std::ranges::none_of(kept, is_near) && std::ranges::none_of(kept, is_above))
       kept.push_back(std::move(candidate));
   }
@@ -129,8 +124,8 @@ std::vector<Minimum> distinct(std::vector<Minimum> all, Residuals& residuals, co
 
 /// Descends from several points, a few steps per round, and returns where the descents end. Drops a descent if its
 /// derivatives predict the residuals at a lower point of another descent: both probably reach the same minimum.
-std::vector<Minimum> descend_apart(Residuals& residuals, std::vector<Minimum> starts, const SearchOptions& options,
-                                   const DescentOptions& descent) {
+std::vector<Minimum> descend_apart(Residuals& residuals, std::vector<Minimum> starts, const DescentOptions& descent,
+                                   Count& descents) {
   std::vector<Minimum> arrived, passed;
   const std::size_t all = starts.size();
   for (int round = 0; round < kMostRounds && !starts.empty(); ++round) {
@@ -139,14 +134,14 @@ std::vector<Minimum> descend_apart(Residuals& residuals, std::vector<Minimum> st
     std::ranges::stable_sort(ends, {}, &Minimum::objective);
     for (Minimum& end : ends) {
       const auto leads_to = [&](const Minimum& minimum) {
-        return minimum.objective <= end.objective && minimum.where.at != end.where.at &&
-               is_straight(end.where, minimum.where, noise_scale(options, minimum));
+        return minimum.objective() <= end.objective() && minimum.where.at != end.where.at &&
+               is_straight(end.where, minimum.where, noise_scale(residuals, minimum));
       };
-      if (!std::isfinite(end.objective) || std::ranges::any_of(passed, leads_to)) continue;
+      if (!std::isfinite(end.objective()) || std::ranges::any_of(passed, leads_to)) continue;
       passed.push_back(end);
       (end.has_converged ? arrived : starts).push_back(std::move(end));
     }
-    if (options.count) options.count(all - starts.size(), all);
+    descents = {all - starts.size(), all};
   }
   std::ranges::move(starts, std::back_inserter(arrived));
   return arrived;
@@ -154,19 +149,21 @@ std::vector<Minimum> descend_apart(Residuals& residuals, std::vector<Minimum> st
 
 }  // namespace
 
-std::vector<Minimum> find_minima(Residuals& coarse, Residuals& fine, const SearchOptions& options) {
-  const DescentOptions round{options.loss, options.scale, kStepsOfARound, kCoarseGain};
-  std::vector<Minimum> far =
-      distinct(descend_apart(coarse, choose_starts(coarse, options), options, round), coarse, options);
+std::vector<Minimum> find_minima(Residuals& coarse, Residuals& fine, const FitOptions& options, double scale,
+                                 Count& descents) {
+  const DescentOptions round{scale, kStepsOfARound, kCoarseGain};
+  std::vector<Minimum> far = distinct(descend_apart(coarse, choose_starts(coarse, options), round, descents), coarse);
   if (far.empty()) return far;
-  const double scale = std::max(noise_scale(options, far.front()), fine.tolerance() * fine.tolerance());
-  const double most = far.front().objective + kFarAbove * noise_scale(options, far.front());
-  const auto end_of_near = std::ranges::find_if(far, [&](const Minimum& minimum) { return minimum.objective > most; });
-  std::vector<Minimum> near;
-  for (auto minimum = far.begin(); minimum != end_of_near; ++minimum) near.push_back({.where = {minimum->where.at}});
+  const double noise = noise_scale(coarse, far.front());
+  const double most = far.front().objective() + kFarAbove * noise;
+  const auto end_of_near = std::ranges::upper_bound(far, most, {}, &Minimum::objective);
+  std::vector<Eigen::VectorXd> points;
+  for (auto minimum = far.begin(); minimum != end_of_near; ++minimum) points.push_back(minimum->where.at);
   far.erase(far.begin(), end_of_near);
-  descend(fine, near, {options.loss, scale, 100});
-  std::vector<Minimum> minima = distinct(std::move(near), fine, options);
+  std::vector<Minimum> near;
+  for (Linearisation& point : fine.at(points)) near.push_back({.where = std::move(point)});
+  descend(fine, near, {std::max(noise, fine.tolerance() * fine.tolerance()), 100});
+  std::vector<Minimum> minima = distinct(std::move(near), fine);
   std::ranges::move(far, std::back_inserter(minima));
   std::erase_if(minima, [](const Minimum& candidate) { return !candidate.has_converged; });
   std::ranges::stable_sort(minima, {}, &Minimum::objective);

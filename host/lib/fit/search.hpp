@@ -2,8 +2,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -11,21 +9,20 @@
 
 namespace dolp::fit {
 
-struct SearchOptions {
-  std::size_t starts = 24;  ///< largest number of descents
-  std::uint64_t seed = 1;   ///< 1: the Sobol sequence itself; other seeds shift the sequence by a random vector
-  Loss loss = Loss::kSquares;
-  bool has_uncertainties = true;  ///< if false, objective / degrees of freedom replaces `scale` at minima
-  double scale = 1.0;             ///< rise of the objective at one standard deviation from a minimum
-  std::function<void(std::size_t done, std::size_t total)> count = {};  ///< counts the descents that are done
+/// The items of a phase of the fit, for example descents: those that are done, and all.
+struct Count {
+  std::size_t done = 0;
+  std::size_t total = 1;
 };
 
 /// Finds the distinct minima of the objective, the lowest first. Descents begin at the parameters' start (if given) and
 /// at the best points of a Sobol sequence. These descents use `coarse`, which has a wider tolerance. Then descents with
 /// `fine` improve the lowest minimum, and each minimum that is higher by at most kFarAbove * scale. Two minima count as
 /// one if the objective rises by at most the scale on a path between them. The result is empty if no descent converged.
-/// Errors: errors of the evaluator; Cancelled.
-std::vector<Minimum> find_minima(Residuals& coarse, Residuals& fine, const SearchOptions& options);
+/// With FitOptions::seed = 1 the points are the Sobol sequence itself; other seeds shift them by a random vector.
+/// `scale` is a guess, see DescentOptions. `descents` counts the descents. Errors: errors of the evaluator; Cancelled.
+std::vector<Minimum> find_minima(Residuals& coarse, Residuals& fine, const FitOptions& options, double scale,
+                                 Count& descents);
 
 /// An interval of a coordinate (0 to 1 over the parameter's range) that the data do not exclude.
 struct CoordinateInterval {
@@ -37,8 +34,6 @@ struct ProfileOptions {
   std::array<double, 2> rises{};  ///< values of the growth at the ends of the 68 % and 95 % intervals
   double from = 0.0;   ///< lowest objective, or 0 with ModelError::kBracket; growth = (objective - from) / scale
   double scale = 1.0;  ///< rise of the objective at one standard deviation from a minimum
-  Loss loss = Loss::kSquares;
-  std::function<void(std::size_t done, std::size_t total)> count;  ///< counts the sides of profiles that are done
 };
 
 struct Profiles {
@@ -50,11 +45,14 @@ struct Profiles {
   std::optional<Minimum> lower = {};
 };
 
-/// Computes the profile likelihoods of all parameters. `minima` begins with the best minimum. At each minimum a profile
+/// Computes the profile likelihoods of all parameters. `minima` has the minima whose growth is below rises[1], the best
+/// first. Without any, all intervals are empty. At each minimum a profile
 /// has two sides, towards smaller and larger values of the parameter. A side follows the valley of the objective until
 /// the growth (see ProfileOptions) reaches one of `rises`. There the interval ends. Beyond this end, a bent valley may
 /// have another branch. To find it, descents begin beyond the end, near known points of the valley. If the growth where
-/// such a descent ends is below the rise, the profile continues there. Errors: errors of the evaluator; Cancelled.
-Profiles compute_profiles(Residuals& residuals, const std::vector<Minimum>& minima, const ProfileOptions& options);
+/// such a descent ends is below the rise, the profile continues there. `sides` counts the sides of all profiles.
+/// Errors: errors of the evaluator; Cancelled.
+Profiles compute_profiles(Residuals& residuals, const std::vector<Minimum>& minima, const ProfileOptions& options,
+                          Count& sides);
 
 }  // namespace dolp::fit

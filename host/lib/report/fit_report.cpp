@@ -270,7 +270,9 @@ void add_alike(ReportBuilder& report, const std::vector<ComparedModel>& models, 
 
 }  // namespace
 
-void add_fit(ReportBuilder& report, const fit::Model& model, const FitResult& result) {
+void add_fit(ReportBuilder& report, const ComparedModel& fitted) {
+  const fit::Model& model = *fitted.model;
+  const FitResult& result = fitted.result.value();
   add_misfit(report, model, result);
   add_parameters(report, result);
   add_model_error(report, model, result);
@@ -290,20 +292,18 @@ void add_fit(ReportBuilder& report, const fit::Model& model, const FitResult& re
   add_points(report, model, result);
 }
 
-void add_contours(ReportBuilder& report, const fit::Model& model, const FitResult& result,
-                  const std::optional<fit::Contours>& drawn) {
-  const std::string reason = why_no_contours(result, drawn);
+void add_contours(ReportBuilder& report, const ComparedModel& fitted, const std::optional<fit::Contours>& drawn) {
+  const std::string reason = why_no_contours(fitted.result.value(), drawn);
   report.row_if(!reason.empty(), "contours", "{}", reason);
   if (!reason.empty()) report.value("no_contours", reason);
   if (!reason.empty() || !drawn) return;
-  report.value(
-      "contours",
-      Json{{"keys", {model.parameters()[drawn->parameters[0]].key, model.parameters()[drawn->parameters[1]].key}},
-           {"levels", fit::kContourLevels},
-           {"x", value_json(drawn->values[0])},
-           {"y", value_json(drawn->values[1])},
-           {"growth", value_json(drawn->growth)},
-           {"evaluations", drawn->evaluations}});
+  const std::vector<FitRange>& parameters = fitted.model->parameters();
+  report.value("contours", Json{{"keys", {parameters[drawn->parameters[0]].key, parameters[drawn->parameters[1]].key}},
+                                {"levels", fit::kContourLevels},
+                                {"x", value_json(drawn->values[0])},
+                                {"y", value_json(drawn->values[1])},
+                                {"growth", value_json(drawn->growth)},
+                                {"evaluations", drawn->evaluations}});
 }
 
 void add_comparison(ReportBuilder& report, const std::vector<ComparedModel>& models) {

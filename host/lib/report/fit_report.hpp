@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,14 +11,15 @@ namespace dolp {
 
 struct ComparedModel {
   std::vector<Setting> settings;         ///< settings by which this model differs from the others
+  SceneValues scene;                     ///< scene with these settings
+  std::unique_ptr<fit::Model> model;     ///< null if the scene refuses the settings
   std::optional<fit::FitResult> result;  ///< empty if no minimum was found
-  std::string refusal;                   ///< why the scene refuses `settings`; empty if it accepts them
+  std::string refusal;                   ///< why the scene refuses the settings; empty if it accepts them
 };
 
-void add_fit(ReportBuilder& report, const fit::Model& model, const fit::FitResult& result);
-
-void add_contours(ReportBuilder& report, const fit::Model& model, const fit::FitResult& result,
-                  const std::optional<fit::Contours>& drawn);
+/// `fitted` has a result.
+void add_fit(ReportBuilder& report, const ComparedModel& fitted);
+void add_contours(ReportBuilder& report, const ComparedModel& fitted, const std::optional<fit::Contours>& drawn);
 
 void add_comparison(ReportBuilder& report, const std::vector<ComparedModel>& models);
 

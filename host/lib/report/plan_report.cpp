@@ -108,8 +108,6 @@ PlannedRun planned_run(const SceneValues& scene, const std::string& device, Effe
 
 constexpr int kLabelWidth = 11;
 
-std::string state_text(EffectState state) { return state == EffectState::kNotNeeded ? "not needed" : to_name(state); }
-
 std::string influence_text(const Effect& row) {
   if (!row.bound && !row.influence) return "-";
   const double points = kPoints * row.bound.value_or(row.influence.value_or(0.0));
@@ -120,7 +118,8 @@ std::string influence_text(const Effect& row) {
 
 ReportBuilder effect_report(const Effect& row) {
   ReportBuilder report;
-  report.line("  {:<14} {:<11} {:>11}  {}{}", key("name", row.name), state_text(row.state), influence_text(row),
+  const char* const state = row.state == EffectState::kNotNeeded ? "not needed" : to_name(row.state);
+  report.line("  {:<14} {:<11} {:>11}  {}{}", key("name", row.name), state, influence_text(row),
               key("reason", row.reason), row.needs.empty() ? "" : fmt::format(" [{}]", row.needs));
   report.values(
       {{"asked_for", row.state != EffectState::kAbsent}, {"state", to_name(row.state)}, {"needs", row.needs}});

@@ -125,11 +125,13 @@ void add_group(ReportBuilder& report, const char* precision, const std::vector<c
               check.error, check.estimate);
 }
 
-ReportBuilder precision_report(const PrecisionReport& precision, bool shows_all) {
-  const EvaluationReport& e = precision.evaluation;
+bool is_wrong(const CaseOutcome& outcome) { return !outcome.complaint.empty(); }
+
+ReportBuilder precision_report(const PrecisionCheck& check, bool shows_all) {
+  const EvaluationReport& e = check.evaluation;
   std::map<std::pair<Distribution, Masking>, std::vector<const CaseOutcome*>> groups;
   ReportBuilder::Json list = ReportBuilder::Json::array();
-  for (const CaseOutcome& outcome : precision.outcomes) {
+  for (const CaseOutcome& outcome : check.outcomes) {
     groups[{outcome.stored.distribution, outcome.stored.masking}].push_back(&outcome);
     list.push_back(case_report(outcome).json());
   }
@@ -137,23 +139,17 @@ ReportBuilder precision_report(const PrecisionReport& precision, bool shows_all)
   for (const auto& [key, group] : groups) {
     add_group(report, e.precision.c_str(), group);
     for (const CaseOutcome* outcome : group) {
-      if (shows_all || !outcome->complaint.empty()) report.show(case_report(*outcome));
+      if (shows_all || is_wrong(*outcome)) report.show(case_report(*outcome));
     }
   }
   report.values({{"precision", e.precision},
                  {"evaluator", e.evaluator},
                  {"device", e.device},
                  {"driver", e.driver},
-                 {"failures", precision.failures()},
+                 {"failures", std::ranges::count_if(check.outcomes, is_wrong)},
                  {"kernel_s", e.kernel_s},
                  {"cases", list}});
   return report;
-}
-
-std::string hard_case_verdict(const HardCaseReport& report) {
-  if (report.precisions.empty()) return "nothing was examined";
-  return report.failures() == 0 ? "passed: every error is below its estimate, every miss is reported"
-                                : fmt::format("failed: {} cases are wrong", report.failures());
 }
 
 /// The tolerance with which ordinary cases are computed: near the best accuracy that float or double can reach.
@@ -195,8 +191,7 @@ ReportBuilder quality_report(const Quality& quality) {
   };
   const CaseOutcome& worst = *std::ranges::max_element(quality.outcomes, {}, outcome_error);
   const auto missed = std::ranges::count_if(quality.outcomes, &CaseOutcome::misses_tolerance);
-  const bool is_sound =
-      std::ranges::all_of(quality.outcomes, [](const CaseOutcome& checked) { return checked.complaint.empty(); });
+  const bool is_sound = std::ranges::none_of(quality.outcomes, is_wrong);
   report.line(
       "   {:<6} true error of rho at most {:.1e} in {} ordinary cases; with tolerance {:g}, {} of them get status 2 or "
       "16, because the stated bound, larger than the error, misses it{}",
@@ -283,30 +278,25 @@ ReportBuilder table_report(const TableCheck& check, const std::string& path, con
   return report;
 }
 
-std::size_t PrecisionReport::failures() const {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(outcomes, [](const CaseOutcome& outcome) { return !outcome.complaint.empty(); }));
-}
-
-std::size_t HardCaseReport::failures() const {
-  std::size_t count = 0;
-  for (const PrecisionReport& precision : precisions) count += precision.failures();
-  return count;
-}
-
-ReportBuilder hard_case_report(const HardCaseReport& cases, bool all) {
+ReportBuilder hard_case_report(const std::vector<PrecisionCheck>& checks, const DeviceCheckOptions& options,
+                               const std::string& left_out) {
+  const EvaluationReport& e = checks.front().evaluation;
   ReportBuilder report(0);
-  report.line("{} hard cases, tolerance {:g}", key("cases", cases.cases), key("tolerance", cases.tolerance));
+  report.line("{} hard cases, tolerance {:g}", key("cases", checks.front().outcomes.size()),
+              key("tolerance", options.tolerance));
+  report.row("device", "{}{}{}", e.device, e.driver.empty() ? "" : ", ", e.driver);
   std::vector<ReportBuilder> precisions;
-  for (const PrecisionReport& precision : cases.precisions) {
-    const EvaluationReport& e = precision.evaluation;
-    if (precisions.empty()) report.row("device", "{}{}{}", e.device, e.driver.empty() ? "" : ", ", e.driver);
-    precisions.push_back(precision_report(precision, all));
+  std::ptrdiff_t failures = 0;
+  for (const PrecisionCheck& check : checks) {
+    precisions.push_back(precision_report(check, options.all));
+    failures += std::ranges::count_if(check.outcomes, is_wrong);
   }
   report.add("precisions", precisions);
-  if (!cases.left_out.empty()) report.line("  {}", cases.left_out);
-  report.row("verdict", "{}", key("verdict", hard_case_verdict(cases)));
-  report.values({{"left_out", cases.left_out}, {"failures", cases.failures()}, {"passed", cases.failures() == 0}});
+  if (!left_out.empty()) report.line("  {}", left_out);
+  const std::string verdict = failures == 0 ? "passed: every error is below its estimate, every miss is reported"
+                                            : fmt::format("failed: {} cases are wrong", failures);
+  report.row("verdict", "{}", key("verdict", verdict));
+  report.values({{"left_out", left_out}, {"failures", failures}, {"passed", failures == 0}});
   return report;
 }
 

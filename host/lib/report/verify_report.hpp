@@ -1,5 +1,6 @@
 #pragma once
 
+#include <dolp/options.hpp>
 #include <string>
 #include <vector>
 
@@ -17,21 +18,15 @@ ReportBuilder table_report(const TableCheck& check, const std::string& path, con
 ReportBuilder between_report(const std::vector<InterpolationError>& errors, std::size_t points, const std::string& path,
                              const std::string& title);
 
-struct PrecisionReport {
+/// The hard cases in one precision.
+struct PrecisionCheck {
   EvaluationReport evaluation;
   std::vector<CaseOutcome> outcomes;
-  std::size_t failures() const;
 };
-
-struct HardCaseReport {
-  double tolerance = 0.0;
-  std::size_t cases = 0;
-  std::vector<PrecisionReport> precisions;
-  std::string left_out;  ///< why a precision is missing; empty if none is missing
-  std::size_t failures() const;
-};
-/// A line for each combination of precision, distribution and masking. A case has a line if it fails or `all` is true.
-ReportBuilder hard_case_report(const HardCaseReport& cases, bool all);
+/// A line for each combination of precision, distribution and masking. A case has a line if it fails, or with
+/// DeviceCheckOptions::all. `checks` is not empty. `left_out`: why a precision is missing; empty if none is missing.
+ReportBuilder hard_case_report(const std::vector<PrecisionCheck>& checks, const DeviceCheckOptions& options,
+                               const std::string& left_out);
 
 ReportBuilder device_report(const DeviceList& list);
 

@@ -41,15 +41,12 @@ struct ErrorCheck {
   double reference = 0.0;  ///< bound of the error of the reference, in the unit of `error`
   /// (error - reference) / estimate, or min(1, error / estimate) if error <= reference: the result may then be exact.
   double ratio() const;
-  bool is_within_estimate() const { return ratio() <= 1.0; }
-  bool is_above(double tolerance) const { return error > tolerance + reference; }
 };
 
 struct CaseOutcome {
   StoredCase stored;
-  ErrorCheck rho;              ///< largest error of rho_I and rho_Q, relative to rho_I
-  ErrorCheck dolp;             ///< absolute error of DOLP
-  bool promises_dolp = false;  ///< false if a bit of `status` says that the accuracy of DOLP is unknown
+  ErrorCheck rho;   ///< largest error of rho_I and rho_Q, relative to rho_I
+  ErrorCheck dolp;  ///< absolute error of DOLP
   std::uint32_t status = 0;
   /// The fault: an error above its bound, or a missed tolerance without its status bit. Empty if nothing.
   std::string complaint;

@@ -105,12 +105,6 @@ BoundTerms bound_terms(const SceneModel& scene, const EffectPlan& plan) {
   return terms;
 }
 
-std::vector<BoundTerms> bound_terms(const SceneValues& scene, const SceneEntries& grid, const EffectPlan& plan) {
-  std::vector<BoundTerms> terms;
-  for (const SceneVariant& variant : grid.variants()) terms.push_back(bound_terms(with_variant(scene, variant), plan));
-  return terms;
-}
-
 /// Error bounds that the table states, or those of the reference.
 struct Estimates {
   double dolp = kInfinity;
@@ -192,19 +186,17 @@ double specular_share(const BoundTerms& terms, const PointResult& reference, dou
   return 1.0 - terms.diffuse->rho(cos_sin_deg(zenith_deg).cos).i / reference[Quantity::kRhoI];
 }
 
-/// Angles that differ by 180 degrees are equal. Where Q = U = 0 on one side only, the comparison of Q and U decides.
-void make_comparable(CheckedValue& angle) {
-  angle.stored = angle.reference + std::remainder(angle.stored - angle.reference, 2.0 * kRightAngle_deg);
-  if (std::isnan(angle.stored)) angle.reference = angle.stored;
-}
-
 CheckedValue compare(const TableSample& sample, const Compared& compared, std::size_t i, const PointResult& reference,
                      const BoundTerms& terms) {
   const TableValues& table = sample.table;
   CheckedValue value{describe(compared.quantity).name, entry_axis_values(sample.positions[i], table)};
   value.stored = table[compared.quantity][i];
   value.reference = reference[compared.quantity];
-  if (compared.bound == Bound::kAngle) make_comparable(value);
+  if (compared.bound == Bound::kAngle) {
+    // Angles that differ by 180 degrees are equal. Where Q = U = 0 on one side only, the comparison of Q and U decides.
+    value.stored = value.reference + std::remainder(value.stored - value.reference, 2.0 * kRightAngle_deg);
+    if (std::isnan(value.stored)) value.reference = value.stored;
+  }
   const Estimates stated{estimate_at(table[Quantity::kErrorEstimate], i),
                          estimate_at(table[Quantity::kRhoErrorEstimate], i)};
   const Estimates reference_estimates{reference[Quantity::kErrorEstimate], reference[Quantity::kRhoErrorEstimate]};
@@ -233,22 +225,6 @@ void check_axes(const TableValues& table, const SceneValues& scene, const std::s
   }
 }
 
-bool has_dolp(const TableValues& table) { return table.has(Quantity::kDolp) && table.has(Quantity::kErrorEstimate); }
-
-bool has_rho(const TableValues& table) {
-  return table.has(Quantity::kRhoErrorEstimate) && (table.has(Quantity::kRhoI) || table.has(Quantity::kRhoQ));
-}
-
-MomentsRequest sample_request(const TableSample& sample, const Surface& surface) {
-  MomentsRequest request = response_request(surface);
-  const SceneEntries grid = SceneEntries::grid(sample.table.axes, kUnusedIndex);
-  for (const std::size_t position : sample.positions) {
-    const SceneEntry entry = grid[position];
-    request.append({entry.theta_deg, entry.shape, kUnusedIndex});
-  }
-  return request;
-}
-
 }  // namespace
 
 double CheckedValue::error() const { return std::abs(stored - reference); }
@@ -273,7 +249,10 @@ std::vector<AxisValue> entry_axis_values(std::size_t entry, const TableHead& tab
 TableCheck check_table(const TableSample& sample, const SceneValues& scene, const std::string& name,
                        const Progress& progress) {
   const TableValues& table = sample.table;
-  if (!has_dolp(table) && !has_rho(table)) {
+  const bool has_dolp = table.has(Quantity::kDolp) && table.has(Quantity::kErrorEstimate);
+  const bool has_rho =
+      table.has(Quantity::kRhoErrorEstimate) && (table.has(Quantity::kRhoI) || table.has(Quantity::kRhoQ));
+  if (!has_dolp && !has_rho) {
     throw InputError(
         fmt::format("{}: has nothing to compare: neither dolp with error_estimate nor rho_i or rho_q with "
                     "rho_error_estimate",
@@ -287,10 +266,14 @@ TableCheck check_table(const TableSample& sample, const SceneValues& scene, cons
                                                ? integrate_band(scene, chosen, reference, progress)
                                                : evaluate_scene(scene, chosen, reference, progress);
 
-  std::vector<BoundTerms> terms = bound_terms(scene, grid, plan_effects(scene, grid, false));
+  const EffectPlan plan = plan_effects(scene, grid, false);
   const std::string* precision = find_attribute<std::string>(table, "precision");
   const bool is_double = precision && *precision == "double";
-  for (BoundTerms& own_terms : terms) own_terms.albedo_rounding = is_double ? own_terms.rounding : kFloatRounding;
+  std::vector<BoundTerms> terms;
+  for (const SceneVariant& variant : grid.variants()) {
+    BoundTerms& own_terms = terms.emplace_back(bound_terms(with_variant(scene, variant), plan));
+    own_terms.albedo_rounding = is_double ? own_terms.rounding : kFloatRounding;
+  }
   TableCheck check;
   check.entries = table.size();
   check.checked = sample.positions.size();
@@ -314,7 +297,12 @@ TableCheck check_responses(const TableSample& sample, const SceneValues& scene, 
   const TableValues& table = sample.table;
   const std::vector<double>& stated = table.responses[ResponseVariable::kResponseError];
   if (stated.empty()) throw InputError(name + ": has no response_error to check");
-  const MomentsRequest request = sample_request(sample, scene.surface);
+  MomentsRequest request = response_request(scene.surface);
+  const SceneEntries grid = SceneEntries::grid(table.axes, kUnusedIndex);
+  for (const std::size_t position : sample.positions) {
+    const SceneEntry entry = grid[position];
+    request.append({entry.theta_deg, entry.shape, kUnusedIndex});
+  }
   ReferenceEvaluator reference;
   const EntryResponses right = compute_responses(request, scene.accuracy, reference, progress);
   const std::vector<double>& reference_error = right.responses[ResponseVariable::kResponseError];

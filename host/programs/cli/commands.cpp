@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <dolp/errors.hpp>
 #include <optional>
@@ -12,12 +13,55 @@
 #include "explore/files.hpp"
 #include "explore/window/app.hpp"
 #include "terminal/embedded_texts.hpp"
-#include "terminal/exit_status.hpp"
-#include "terminal/guarded.hpp"
-#include "terminal/progress_bar.hpp"
+#include "terminal/terminal.hpp"
 
 namespace dolp::cli {
 namespace {
+
+/// Errors: InputError if two inputs would read stdin.
+void check_one_stdin(const Options& options) {
+  const auto is_stdin = [](const std::string& data) { return data == "-" || data.starts_with("-:"); };
+  const bool is_scene = options.scene_path == "-";
+  if (is_scene && options.points_path == "-") {
+    throw InputError("--points -: SCENE is - too, and stdin can be read only once; name a file for one of them");
+  }
+  if (std::ranges::count_if(options.data, is_stdin) + (is_scene ? 1 : 0) > 1) {
+    throw InputError("--data -: stdin can be read only once; name a file for one of them");
+  }
+}
+
+/// The settings of the options --set, --tolerance and --precision, in this order. Errors: InputError.
+std::vector<Setting> all_settings(const Options& options) {
+  std::vector<Setting> settings = settings_from_text(options.overrides, "--set");
+  const auto add = [&](const char* key, const std::string& option, const std::string& value) {
+    if (!value.empty()) settings.push_back({key, TomlText{value}, one_line(option + ' ' + value)});
+  };
+  add("accuracy.tolerance", "--tolerance", options.tolerance);
+  add("accuracy.precision", "--precision", options.precision);
+  return settings;
+}
+
+/// Reads the scene, and applies all_settings() and then `more`. Prints Scene::remarks() as warnings on stderr.
+Scene load_scene(const Options& options, const std::vector<Setting>& more = {}) {
+  check_one_stdin(options);
+  std::vector<Setting> settings = all_settings(options);
+  settings.insert(settings.end(), more.begin(), more.end());
+  const Scene scene = Scene::from_file(options.scene_path, settings);
+  warn("dolp", scene.remarks());
+  return scene;
+}
+
+/// Makes the evaluator that --evaluator names; without the option, the evaluator of the scene's table, or "vulkan".
+/// Errors: InputError if it uses no device but the user gives --device.
+Evaluator make_evaluator(const Options& options, const Scene& scene) {
+  const bool needs_vulkan = !options.device.empty();
+  const std::string fallback = needs_vulkan ? "vulkan" : scene.evaluator();
+  const std::string evaluator = options.evaluator.empty() ? fallback : options.evaluator;
+  if (needs_vulkan && evaluator != "vulkan") {
+    throw InputError(fmt::format("--device {}: needs --evaluator vulkan, and it is {}", options.device, evaluator));
+  }
+  return Evaluator({evaluator, options.device});
+}
 
 std::size_t whole_number(const std::string& text, const std::string& what) {
   constexpr double kMost = 1e9;
@@ -58,7 +102,21 @@ std::vector<std::string> names_in(const std::string& list) {
   return names;
 }
 
-Report verify_device(const Options& options, const Progress& progress) {
+int evaluate_points(const Scene& scene, const Options& options) {
+  const Report report = make_evaluator(options, scene)
+                            .write_points(scene, options.points_path, options.output_path,
+                                          {.keep_all = options.keep_all,
+                                           .progress = ProgressBar(options.quiet).callback(),
+                                           .derivatives = names_in(options.derivatives)});
+  return finish(report, options);
+}
+
+/// Does what the options of `dolp verify` ask for.
+Report verification(const Options& options, const Progress& progress) {
+  if (options.between > 0)
+    return verify_between(options.table_path, {options.between, options.seed, names_in(options.quantities), progress});
+  if (!options.hard_cases)
+    return verify(options.table_path, {options.samples, options.seed, options.named_files, progress});
   DeviceCheckOptions check{options.evaluator.empty() ? "vulkan" : options.evaluator, options.device};
   if (!options.precision.empty()) check.precision = options.precision;
   if (!options.tolerance.empty()) {
@@ -74,23 +132,25 @@ Report verify_device(const Options& options, const Progress& progress) {
   return verify_device(check);
 }
 
-int evaluate_points(const Scene& scene, const Options& options) {
-  const Report report = make_evaluator(options, scene)
-                            .write_points(scene, options.points_path, options.output_path,
-                                          {.keep_all = options.keep_all,
-                                           .progress = ProgressBar(options.quiet).callback(),
-                                           .derivatives = names_in(options.derivatives)});
-  return finish(report, options);
-}
-
-Report verification(const Options& options, const Progress& progress) {
-  if (options.hard_cases) return verify_device(options, progress);
-  if (options.between == 0)
-    return dolp::verify(options.table_path, {options.samples, options.seed, options.named_files, progress});
-  return verify_between(options.table_path, {options.between, options.seed, names_in(options.quantities), progress});
-}
-
 }  // namespace
+
+std::string allowed(const std::string& key) { return std::ranges::find(dolp::keys(), key, &Key::key)->allowed(); }
+
+void print(const Report& report, const Options& options) {
+  std::FILE* const out = options.output_path == "-" ? stderr : stdout;
+  if (options.json) {
+    std::fputs((report.json + '\n').c_str(), out);
+  } else if (!options.quiet) {
+    std::fputs(report.text.c_str(), out);
+  }
+}
+
+int finish(const Report& report, const Options& options) {
+  warn("dolp", report.remarks);
+  print(report, options);
+  if (!options.strict || report.is_good) return kExitDone;
+  return fail("dolp", kExitAccuracy, "--strict: the tolerance is not met everywhere");
+}
 
 int run_table(const Options& options) {
   const Scene scene = load_scene(options);
@@ -141,6 +201,10 @@ int run_verify(const Options& options) {
   const Report report = verification(options, ProgressBar(options.quiet).callback());
   print(report, options);
   return report.is_good ? kExitDone : kExitAccuracy;
+}
+
+int run_plan(const Options& options) {
+  return finish(plan(load_scene(options), options.device, options.keep_all), options);
 }
 
 int run_fit(const Options& options) {

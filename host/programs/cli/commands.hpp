@@ -32,19 +32,7 @@ struct Options {
   std::vector<std::string> words;
 };
 
-void check_one_stdin(const Options& options);  ///< Errors: InputError if two inputs would read stdin
-
-/// The settings of the options --set, --tolerance and --precision, in this order. Errors: InputError.
-std::vector<Setting> all_settings(const Options& options);
-
 std::string allowed(const std::string& key);  ///< values that a scene key allows: "a number in [0, 10]"
-
-/// Reads the scene, and applies all_settings() and then `more`. Prints Scene::remarks() as warnings on stderr.
-Scene load_scene(const Options& options, const std::vector<Setting>& more = {});
-
-/// Makes the evaluator that --evaluator names; without the option, the evaluator of the scene's table, or "vulkan".
-/// Errors: InputError if it uses no device but the user gives --device.
-Evaluator make_evaluator(const Options& options, const Scene& scene);
 
 /// Prints a report: with --json as JSON, otherwise as text unless --quiet. With `-o -` it goes to stderr.
 void print(const Report& report, const Options& options);
@@ -55,7 +43,7 @@ int finish(const Report& report, const Options& options);
 /// The parser of the command line. Parsing fills `options`, which must outlive the result.
 std::unique_ptr<CLI::App> command_line(Options& options);
 
-// Each command returns an exit status of terminal/exit_status.hpp, or throws an error, which guarded() converts to one.
+// Each command returns an exit status of terminal/terminal.hpp, or throws an error, which guarded() converts to one.
 int run_table(const Options& options);
 int run_response(const Options& options);
 int run_merge(const Options& options);

@@ -7,9 +7,10 @@
 #include <cstdio>
 #include <dolp/dolp.hpp>
 
+#include "base/text.hpp"
 #include "cli/commands.hpp"
 #include "terminal/embedded_texts.hpp"
-#include "terminal/exit_status.hpp"
+#include "terminal/terminal.hpp"
 
 namespace dolp::cli {
 namespace {
@@ -48,13 +49,10 @@ Words option_choices(const CLI::Option& option) {
   if (name == "--set" || name == "--vary" || name == "--compare") return settings_for(name);
   const std::string type = option.get_type_name();  // for example "TEXT:{vulkan,cpu}"
   const std::size_t open = type.find('{');
-  const std::size_t close = type.find('}');
+  if (open == std::string::npos) return {};
   Words words;
-  for (std::size_t from = open + 1; open < close && from < close;) {
-    const std::size_t to = std::min(type.find(',', from), close);
-    words.push_back(type.substr(from, to - from));
-    from = to + 1;
-  }
+  for (const std::string_view word : split(std::string_view(type).substr(open + 1, type.find('}') - open - 1), ','))
+    words.emplace_back(word);
   return words;
 }
 
@@ -93,7 +91,7 @@ std::string roff(const std::string& text) {
 std::string manual_options(const CLI::App& command) {
   std::string text;
   for (const CLI::Option* option : command.get_options()) {
-    if (option->get_name() == "--help,-h" || option->get_name() == "-h,--help") continue;
+    if (option == command.get_help_ptr()) continue;
     const bool is_positional = option->get_positional();
     const std::string name =
         is_positional ? option->get_name(true) : fmt::format("{}", fmt::join(option_names(*option), ", "));

@@ -8,7 +8,7 @@
 
 #include "base/text.hpp"
 #include "cli/commands.hpp"
-#include "terminal/exit_status.hpp"
+#include "terminal/terminal.hpp"
 
 namespace dolp::cli {
 namespace {
@@ -161,10 +161,6 @@ int run_devices(const Options& options) {
   require_device(options.device);
   if (!report.is_good) throw DeviceError("no Vulkan device is usable; the report says why");
   return kExitDone;
-}
-
-int run_plan(const Options& options) {
-  return finish(plan(load_scene(options), options.device, options.keep_all), options);
 }
 
 }  // namespace dolp::cli

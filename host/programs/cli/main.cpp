@@ -16,8 +16,7 @@
 #include "base/text.hpp"
 #include "cli/commands.hpp"
 #include "device/result.hpp"
-#include "terminal/exit_status.hpp"
-#include "terminal/guarded.hpp"
+#include "terminal/terminal.hpp"
 
 namespace dolp::cli {
 namespace {
@@ -84,20 +83,16 @@ int parse_and_run(int argc, char** argv) {
   ::_exit(fail_out_of_memory("dolp"));
 }
 
-/// Makes free() keep memory for later use. Otherwise the program would return the memory of large lists and of Vulkan
-/// pipelines to the system, and request it again page by page.
-void keep_freed_memory() {
-  mallopt(M_MMAP_MAX, 0);
-  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
-}
-
 }  // namespace
 }  // namespace dolp::cli
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // if a file is too large, write() then fails instead of ending the program
   std::set_new_handler(dolp::cli::end_out_of_memory);
-  dolp::cli::keep_freed_memory();
+  // Makes free() keep memory for later use. Otherwise the program would return the memory of large lists and of Vulkan
+  // pipelines to the system, and request it again page by page.
+  mallopt(M_MMAP_MAX, 0);
+  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
   const int status = dolp::guarded("dolp", [&] { return dolp::cli::parse_and_run(argc, argv); });
   if (status != dolp::kExitMemory && !dolp::vulkan::driver_is_busy()) return status;
   std::fflush(stdout);

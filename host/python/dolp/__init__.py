@@ -50,11 +50,10 @@ from . import _native
 from ._arguments import MissingFileError
 from ._camera import camera_stokes
 from ._fit import Fit, fit
-from ._model_warning import ModelWarning
 from ._native import DeviceError, InputError, InputWarning, IoError
 from ._response import moments, response
 from ._runs import Plan, devices, evaluate, lookup, mueller, plan, table, write_table
-from ._scene import Material, Scene, keys, material, materials
+from ._scene import Material, ModelWarning, Scene, keys, material, materials
 
 # Omits the exceptions: for each of them `help` would print many inherited methods. The text above names them.
 __all__ = ["Fit", "Material", "Plan", "Scene", "camera_stokes", "citation", "devices", "evaluate", "fit", "keys", "lookup", "material", "materials",

@@ -99,16 +99,9 @@ def scene_of_dataset(table: xr.Dataset) -> _native.Scene:
     columns = {name: column for column, name, *_ in _native.axes()}
     single = {str(name): values.item() for name, values in table.coords.items() if values.size == 1}
     values = [(name, value) for name, value in single.items() if name in KEY_ATTRIBUTES]
-    values += [(f"grid.{columns[name]}", _grid_value(name, value)) for name, value in single.items()
-               if name in _native.table_axes()]
+    values += [(f"grid.{columns[name]}", [[float(end) for end in value.split("-")]] if name == "band" else [value])
+               for name, value in single.items() if name in _native.table_axes()]
     return scene.with_(values).for_points() if values else scene
-
-
-def _grid_value(axis: str, value: Any) -> Any:
-    """A value of an axis as a list for [grid]. A band, such as "8-12", becomes a pair of numbers."""
-    if axis == "band":
-        return [[float(end) for end in value.split("-")]]
-    return [value]
 
 
 def _attributes_of(table: xr.Dataset) -> dict[str, str | float]:

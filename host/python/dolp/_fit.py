@@ -9,7 +9,6 @@ import numpy as np
 import xarray as xr
 
 from ._arguments import Path, check_key, check_mapping, check_names, floats, native_path, native_values, whole_number, word, word_list
-from ._model_warning import warn_of_gap, warn_of_model
 from ._native import InputError
 from ._points import csv_of
 from ._runs import evaluate, native_evaluator, native_scene
@@ -143,7 +142,7 @@ def fit(scene: Scene, data: Any, vary: Mapping[str, tuple[float, ...]], *, compa
     fitted._native = found
     report = json.loads(values)
     if model_error == "none":
-        warn_of_model(scene, report["status"])
-        warn_of_gap(scene, report["model_gap_in_uncertainties"])
+        scene._warn_of_model(report["status"])
+        scene._warn_of_gap(report["model_gap_in_uncertainties"])
     names = ["data"] if len(sets) == 1 else [f"data{i + 1}" for i in range(len(sets))]
     return Fit(text, report, fitted, {name: own or {} for name, (_, own) in zip(names, sets)})

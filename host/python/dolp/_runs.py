@@ -13,7 +13,6 @@ import xarray as xr
 from . import _native
 from ._arguments import Array, Path, axis_values, check_names, label_values, device_name, flag, native_path, short, word, word_list
 from ._datasets import concatenated, dataset_at, table_dataset
-from ._model_warning import warn_of_model
 from ._native import InputError
 from ._points import KEY_ATTRIBUTES, columns_of, with_real_index
 from ._scene import Scene
@@ -51,7 +50,7 @@ def table(scene: Scene, *, evaluator: str | None = None, device: str = "", keep_
         on_axes = with_axes(native_scene(scene), axes)
         whole = table_dataset(*native_evaluator(scene, evaluator, device).table(
             on_axes, flag("keep_all", keep_all), word_list("quantities", quantities), word_list("derivatives", derivatives)))
-        warn_of_model(scene, whole.get("status", 0), whole.attrs)
+        scene._warn_of_model(whole.get("status", 0), whole.attrs)
         return whole
     optional = ("temperature_K", "view_zenith_deg", "relative_azimuth_deg", "sigma_cross", "surface_azimuth_deg")
     columns = [column for column, *_ in _native.axes()
@@ -127,7 +126,7 @@ def _evaluated(scene: Scene, evaluator: str | None, device: str, keep_all: bool,
 
     results = dataset_at(
         _over_keys(run, native, columns, varied) if varied and 0 not in frame.shape else run(native, columns), frame)
-    warn_of_model(scene, results.get("status", 0), results.attrs)
+    scene._warn_of_model(results.get("status", 0), results.attrs)
     return results
 
 

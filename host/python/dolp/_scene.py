@@ -2,16 +2,24 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from . import _native
-from ._arguments import Array, Path, check_key, check_mapping, floats, input_path, native_values, short, word
+from ._arguments import Array, Path, check_key, check_mapping, floats, input_path, native_values, short, warn, word
 from ._datasets import scene_of_dataset
 from ._native import InputError
+
+_MODEL_INACCURATE = 32  # status bit
+
+
+class ModelWarning(UserWarning):
+    """Warns that the estimated error of the intensity I or of DOLP is above 5 % (status 32), because single scattering
+    loses light or the masking function creates light. Also warns that this light may change a fit by more than the
+    uncertainties."""
 
 
 class Scene:
@@ -106,6 +114,28 @@ class Scene:
     def toml(self) -> str:
         """The text of a scene file that describes this scene, including the overrides."""
         return self._native.toml()
+
+    def _warn_of_model(self, status: Any, attributes: Mapping[Hashable, Any] | None = None) -> None:
+        """Warns once for each scene if an entry has status 32. `attributes`: those of the results, with the largest
+        changes of I and of DOLP."""
+        if self._has_model_warning or not np.any(np.asarray(status) & _MODEL_INACCURATE):
+            return
+        self._has_model_warning = True
+        much = "I or DOLP by an estimated more than 5 %"
+        if attributes and "model_change_dolp" in attributes:
+            much = (f"I by up to {100 * float(attributes['model_change']):.2g} % and DOLP by up to "
+                    f"{float(attributes['model_change_dolp']):.2g} points")
+        warn(f"{self!r}: light that single scattering loses, or that the masking creates, changes {much} "
+             f"(status 32); {self._native.model_advice()}", ModelWarning)
+
+    def _warn_of_gap(self, gap: float | None) -> None:
+        """Warns once for each scene if a bracket reaches more than one uncertainty away from a fit. `gap`: this
+        distance."""
+        if self._has_model_warning or gap is None or gap <= 1:
+            return
+        self._has_model_warning = True
+        warn(f"{self!r}: light of further bounces can move the model by {gap:.2g} uncertainties of a point, which the "
+             'intervals of the fit ignore; model_error="bracket" includes it', ModelWarning)
 
     def __repr__(self) -> str:
         changes = [f"{key}={short(value)}" for key, value in self._native.values()]

@@ -26,7 +26,7 @@ std::vector<double> brute_growth(Residuals& residuals, const FitResult& result, 
     const std::vector<Linearisation> found = residuals.at(points);
     for (std::size_t i = 0; i < found.size(); ++i) {
       const std::size_t k = i / (kSteps + 1);
-      const double growth = objective(found[i].residuals, Loss::kSquares) - result.chi_square;
+      const double growth = found[i].objective - result.chi_square;
       if (growth >= least[k]) continue;
       least[k] = growth;
       middles[k] = points[i][static_cast<Eigen::Index>(3 - pair[0] - pair[1])];
@@ -47,7 +47,7 @@ class FitContours : public FitTest {
     const Contours contours = compute_contours(model, evaluator_, result, {}).value();
     EXPECT_LE(contours.evaluations, 2 * result.evaluations);
     const auto& pair = contours.parameters;
-    Residuals residuals(model, result.tolerance, Differences::kForward, evaluator_, {});
+    Residuals residuals(model, evaluator_, {result.tolerance});
     Eigen::AlignedBox2d box;
     std::vector<Eigen::Vector2d> places;
     std::vector<double> roots;

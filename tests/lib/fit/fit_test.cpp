@@ -44,8 +44,8 @@ TEST_F(FitTest, Jacobian_HasTheDerivativesOfTheModelByTheParameters) {
 TEST_F(FitTest, JacobianOfTheResiduals_IsThatOfFinerDifferences) {
   const Model model(parse_scene(kScene, "scene"), {measured(kNoise)},
                     {number("surface.n", 1.1, 4.0), number("surface.sigma", 0.02, 1.0)});
-  Residuals residuals(model, 2e-5, Differences::kCentral, evaluator_, {});
-  Residuals exact(model, 1e-10, Differences::kCentral, evaluator_, {});
+  Residuals residuals(model, evaluator_, {2e-5, Differences::kCentral});
+  Residuals exact(model, evaluator_, {1e-10, Differences::kCentral});
   const Eigen::VectorXd point = Eigen::Vector2d(0.3, 0.6);
   Linearisation found = residuals.at({point}).front();
   for (int i = 0; i < 2; ++i) residuals.linearise({&found});  // the first call chooses the steps of finite differences

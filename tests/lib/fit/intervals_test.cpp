@@ -152,11 +152,11 @@ TEST_F(FitTest, ModelErrorOfTheBracket_ResidualIsTheDistanceFromTheInterval) {
       data.measurements[i].value = observable == Observable::kDolp ? -value : value;
     }
     const Model model(scene, {data}, n, ModelError::kBracket);
-    Residuals residuals(model, 1e-8, Differences::kCentral, evaluator_, {});
+    Residuals residuals(model, evaluator_, {1e-8, Differences::kCentral});
     const Eigen::VectorXd at = Eigen::VectorXd::Constant(1, n[0].coordinate(truth[0]));
     const double expected = sum / (kNoise * kNoise);
     EXPECT_GT(expected, 50.0);
-    EXPECT_NEAR(objective(residuals.at({at}).front().residuals, Loss::kSquares), expected, 1e-3 * expected);
+    EXPECT_NEAR(residuals.at({at}).front().objective, expected, 1e-3 * expected);
   }
 }
 

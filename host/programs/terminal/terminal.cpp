@@ -1,6 +1,6 @@
-#include "terminal/guarded.hpp"
-#include "terminal/exit_status.hpp"
+#include "terminal/terminal.hpp"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -11,15 +11,15 @@
 #include <new>
 #include <system_error>
 
+#include "base/interrupt.hpp"
+#include "base/stopwatch.hpp"
 #include "base/text.hpp"
 
 namespace dolp {
 namespace {
 
-/// True if lack of memory caused `error`, for example if std::thread found no memory for the stack of a new thread.
-bool is_of_memory(const std::system_error& error) {
-  return error.code() == std::errc::not_enough_memory || error.code() == std::errc::resource_unavailable_try_again;
-}
+constexpr auto kRedrawInterval = std::chrono::milliseconds(100);
+constexpr std::size_t kBarWidth = 30;
 
 }  // namespace
 
@@ -60,11 +60,48 @@ int guarded(const std::string& program, const std::function<int()>& body) {
   } catch (const std::bad_alloc&) {
     return fail_out_of_memory(program.c_str());
   } catch (const std::system_error& error) {
-    if (is_of_memory(error)) return fail_out_of_memory(program.c_str());
-    return fail(program, kExitIo, error.what());
+    // Memory may be lacking, for example if std::thread found none for the stack of a new thread.
+    const bool lacks_memory =
+        error.code() == std::errc::not_enough_memory || error.code() == std::errc::resource_unavailable_try_again;
+    return lacks_memory ? fail_out_of_memory(program.c_str()) : fail(program, kExitIo, error.what());
   } catch (const std::exception& error) {
     return fail(program, kExitInternal, std::string("internal error: ") + error.what());
   }
+}
+
+ProgressBar::ProgressBar(bool quiet) : visible_(!quiet && isatty(STDERR_FILENO) == 1) {}
+
+ProgressBar::~ProgressBar() {
+  if (drawn_) std::fputs("\r\033[K", stderr);
+}
+
+Progress ProgressBar::callback() {
+  return [this](std::size_t done, std::size_t total) {
+    if (!watches_) watch_for_interrupts();
+    watches_ = true;
+    const Clock::time_point now = Clock::now();
+    if (visible_ && now - last_drawn_ >= kRedrawInterval) {
+      draw(done, total);
+      last_drawn_ = now;
+    }
+    return !interrupted();
+  };
+}
+
+void ProgressBar::count(const std::string& what) {
+  what_ = what;
+  start_ = Clock::now();
+}
+
+void ProgressBar::draw(std::size_t done, std::size_t total) {
+  const double elapsed_s = seconds_since(start_);
+  const double rate = elapsed_s > 0.0 ? static_cast<double>(done) / elapsed_s : 0.0;
+  const double left_s = rate > 0.0 ? static_cast<double>(total - done) / rate : 0.0;
+  const std::size_t filled = total > 0 ? kBarWidth * done / total : kBarWidth;
+  const std::string bar = std::string(filled, '#') + std::string(kBarWidth - filled, '.');
+  fmt::print(stderr, "\r\033[K[{}] {}/{} {}, {:.3g}/s, {:.0f} s left", bar, done, total, what_, rate, left_s);
+  std::fflush(stderr);
+  drawn_ = true;
 }
 
 }  // namespace dolp

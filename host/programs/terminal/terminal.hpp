@@ -1,11 +1,34 @@
+// Exit statuses, messages and progress of programs.
 #pragma once
 
 #include <chrono>
 #include <cstddef>
 #include <dolp/errors.hpp>
+#include <functional>
 #include <string>
+#include <vector>
 
 namespace dolp {
+
+inline constexpr int kExitDone = 0;
+inline constexpr int kExitAccuracy = 1;
+inline constexpr int kExitInput = 2;
+inline constexpr int kExitDevice = 3;
+inline constexpr int kExitIo = 4;
+inline constexpr int kExitInternal = 5;
+inline constexpr int kExitMemory = 6;
+inline constexpr int kExitInterrupted = 130;
+
+/// Prints "PROGRAM: MESSAGE" as one line on stderr. Returns `status`.
+int fail(const std::string& program, int status, const std::string& message);
+
+void warn(const std::string& program, const std::vector<std::string>& remarks);
+
+/// Prints "out of memory" on stderr without allocating memory. Returns kExitMemory.
+int fail_out_of_memory(const char* program) noexcept;
+
+/// Returns the result of `body`. If `body` throws an error, prints one line and returns the exit status for this error.
+int guarded(const std::string& program, const std::function<int()>& body);
 
 /// Draws a bar with rate and remaining time on stderr, if stderr is a terminal and `quiet` is false.
 class ProgressBar {

@@ -35,13 +35,6 @@ std::vector<ShownCurve> shown_curves(const Session& session) {
   return curves;
 }
 
-const PeakAnswer* shown_peak(const Session& session) {  // null if the plot marks no peak
-  const Plotted quantity = session.view().quantity;
-  const bool is_marked = quantity == Plotted::kDolp || quantity == Plotted::kSignedDolp;
-  const std::optional<PeakAnswer>& peak = session.peak().answer();
-  return is_marked && peak && session.curve().is_finished() ? &*peak : nullptr;
-}
-
 std::vector<double> values_to_show(const Session& session, const std::vector<ShownCurve>& curves) {
   const Plotted quantity = session.view().quantity;
   std::vector<double> values;
@@ -164,9 +157,11 @@ void draw_cursor(const Plot& plot, const Session& session, const CurveStyle& sty
 }
 
 void draw_peak(const Plot& plot, const Session& session) {
-  const PeakAnswer* const peak = shown_peak(session);
-  if (!peak) return;
-  const double value = described(session.view().quantity).shown(peak->at);
+  const Plotted quantity = session.view().quantity;
+  const bool is_marked = quantity == Plotted::kDolp || quantity == Plotted::kSignedDolp;
+  const std::optional<PeakAnswer>& peak = session.peak().answer();
+  if (!is_marked || !peak || !session.curve().is_finished()) return;
+  const double value = described(quantity).shown(peak->at);
   if (!plot.can_show(peak->at.theta_deg, value)) return;
   const bool is_low = value < 0.0;
   const ImVec2 at = plot.at(peak->at.theta_deg, value);

@@ -3,10 +3,11 @@
 
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <set>
 #include <string>
 #include <vector>
 
-#include "bench_program.hpp"
+#include "cli_support.hpp"
 
 namespace program_test {
 
@@ -16,6 +17,28 @@ namespace fs = std::filesystem;
 
 const std::string kAccuracy = "accuracy --quick --entries 16 ";
 constexpr double kMostSeconds = 1.0;  // after this time the study accuracy repeats no call
+
+class BenchProgram : public CommandLine {
+ protected:
+  Outcome bench(Words arguments, std::vector<std::pair<std::string, std::string>> environment = {}) const {
+    arguments.insert(arguments.begin(), DOLP_BENCH_PROGRAM);
+    return run({.arguments = std::move(arguments), .folder = at(""), .environment = std::move(environment)});
+  }
+  Outcome plot(const Words& arguments) const {
+    return run({.arguments = joined({"/usr/bin/python3", DOLP_BENCH_PLOT}, arguments), .folder = at("")});
+  }
+  /// The JSON result of a study that must succeed.
+  nlohmann::json study_of(const Words& arguments) const { return printed_json(bench(joined(arguments, "--json -"))); }
+  /// Expects that the plot script makes a figure of the study in r.json, and a Markdown table that contains `row`.
+  void expect_plots(const std::string& study, const std::string& row) const {
+    succeeded(plot({study, "r.json", "-o", "r.png"}));
+    EXPECT_TRUE(content("r.png").starts_with("\x89PNG"));
+    EXPECT_TRUE(contains(succeeded(plot({study, "r.json", "--markdown"})).out, row));
+  }
+  static void expect_keys(const nlohmann::json& object, const std::set<std::string>& keys) {
+    for (const std::string& key : keys) EXPECT_TRUE(object.contains(key)) << key << " is missing in " << object.dump();
+  }
+};
 
 TEST_F(BenchProgram, Accuracy_Json_Context_SaysWhereAndHowToRunAgain) {
   const json study = study_of(kAccuracy + "--case easy --method gauss --method vulkan-float");
@@ -30,8 +53,10 @@ TEST_F(BenchProgram, Accuracy_Json_Context_SaysWhereAndHowToRunAgain) {
   EXPECT_EQ(context["program"], "dolp-bench " DOLP_VERSION);
 }
 
-TEST_F(BenchProgram, Accuracy_Json_Results_HaveErrorAndTimesForEverySetting) {
+TEST_F(BenchProgram, Accuracy_Json_Results_HaveErrorAndTimesForEverySetting_AndPlots) {
   const json study = study_of(kAccuracy + "--case easy --case median --method gauss --method vulkan-float");
+  put("r.json", study.dump());
+  expect_plots("accuracy", "| Gauss-Legendre rule |");
   ASSERT_EQ(study["methods"].size(), 2U);
   ASSERT_EQ(study["cases"].size(), 2U);
   EXPECT_EQ(study["results"].size(), 2U * (3U + 2U));
@@ -67,8 +92,12 @@ TEST_F(BenchProgram, NoVulkanDevice_OtherMethodsRunAndTheReasonIsNamed) {
   EXPECT_TRUE(study["context"]["device"].contains("none"));
 }
 
-TEST_F(BenchProgram, Throughput_Json_GridsHaveTheirRows) {
-  const json result = study_of("throughput --quick --entries 64 --case grids");
+TEST_F(BenchProgram, Throughput_Json_GridsHaveTheirRows_AndPlots) {
+  succeeded(bench("throughput --quick --entries 64 --case grids --json r.json"));
+  const json result = json::parse(content("r.json"));
+  expect_plots("throughput", "| v-cavity | 4 × 4 × 4 |");
+  EXPECT_EQ(plot("throughput r.json -o none/r.png").status, 4);
+  EXPECT_EQ(plot("accuracy r.json --markdown").status, 2);  // it is the result of another study
   EXPECT_EQ(result["study"], "throughput");
   expect_keys(result, {"context", "time_s", "grid", "scene", "results", "warnings"});
   EXPECT_EQ(result["grid"], "4 x 4 x 4");
@@ -105,20 +134,7 @@ TEST_F(BenchProgram, StudiesOfTheDevice_WithoutOne_AreExit3) {
   EXPECT_EQ(outcome.out, "");
 }
 
-TEST_F(BenchProgram, Plot_OfEveryStudy_GivesFigureAndTable) {
-  for (const auto& [study, options, row] :
-       {std::tuple("accuracy", " --quick --entries 16 --case easy --method gauss --method cpu-double",
-                   "| Gauss-Legendre rule |"),
-        {"throughput", " --quick --entries 64 --case grids", "| v-cavity | 4 × 4 × 4 |"}}) {
-    SCOPED_TRACE(study);
-    succeeded(bench(std::string(study) + options + " --json r.json"));
-    succeeded(plot({study, "r.json", "-o", "r.png"}));
-    EXPECT_TRUE(content("r.png").starts_with("\x89PNG"));
-    fs::remove(at("r.png"));
-    EXPECT_TRUE(contains(succeeded(plot({study, "r.json", "--markdown"})).out, row));
-    EXPECT_EQ(plot({study, "r.json", "-o", "none/r.png"}).status, 4);
-  }
-  EXPECT_EQ(plot("accuracy r.json --markdown").status, 2);  // r.json has results of the study `throughput`
+TEST_F(BenchProgram, Plot_OfNoFile_IsRefused) {
   const Outcome missing = plot("accuracy none.json -o r.png");
   EXPECT_EQ(missing.status, 2);
   EXPECT_TRUE(contains(missing.err, "none.json"));

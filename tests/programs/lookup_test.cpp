@@ -13,13 +13,20 @@ using nlohmann::json;
 
 class TableAsScene : public CommandLine {
  protected:
-  void make_table(const Words& options) const { succeeded(dolp(joined("table scene.toml -o t.nc --quiet", options))); }
+  void make_table(const Words& options) const {
+    succeeded(dolp(joined("table scene.toml -o t.nc --quiet --evaluator cpu", options)));
+  }
+  /// DOLP of `dolp eval` for the scene and the points.
+  std::vector<double> eval_scene(const Words& options) const {
+    return eval(joined("--evaluator cpu", options)).at("dolp");
+  }
+  std::vector<double> lookup_dolp() const { return parse_csv(succeeded(lookup()).out).at("dolp"); }
   Outcome lookup() const { return dolp("lookup t.nc --points points.csv -o -"); }
 };
 
 TEST_F(TableAsScene, Lookup_IsEvalWithTheTablesSettings) {
   const Words settings = "--set surface.masking=v-cavity --tolerance 1e-6";
-  make_table(joined(settings, "--evaluator cpu"));
+  make_table(settings);
   put("points.csv", "theta_deg,sigma,q\n33.3,0.17,2.5\n71,0.3,4\n");
   const Outcome found = succeeded(lookup());
   EXPECT_EQ(found.out, dolp("eval t.nc --points points.csv -o -").out);
@@ -28,7 +35,7 @@ TEST_F(TableAsScene, Lookup_IsEvalWithTheTablesSettings) {
 }
 
 TEST_F(TableAsScene, Evaluator_IsTheTables_UnlessAnOptionNamesAnother) {
-  make_table("--evaluator cpu");
+  make_table({});
   EXPECT_EQ(report("lookup t.nc --points points.csv -o l.csv")["evaluator"], "cpu");
   EXPECT_EQ(report("lookup t.nc --points points.csv -o l.csv --evaluator reference")["evaluator"], "reference");
   EXPECT_EQ(report("eval t.nc --points points.csv -o l.csv --device 0")["evaluator"], "vulkan");
@@ -37,9 +44,9 @@ TEST_F(TableAsScene, Evaluator_IsTheTables_UnlessAnOptionNamesAnother) {
 TEST_F(TableAsScene, AxisWithOneValue_IsThatOfPointsWithoutTheColumn) {
   make_table("--set grid.sigma=[0.27] --set grid.q=[2.25]");
   put("points.csv", "theta_deg\n60\n");
-  const Columns few = parse_csv(lookup().out);
+  const std::vector<double> few = lookup_dolp();
   put("points.csv", "theta_deg,sigma,q\n60,0.27,2.25\n");
-  EXPECT_EQ(few.at("dolp"), parse_csv(lookup().out).at("dolp"));
+  EXPECT_EQ(few, lookup_dolp());
 }
 
 TEST_F(TableAsScene, EveryCommand_TakesATable) {
@@ -60,7 +67,7 @@ TEST_F(TableAsScene, EveryCommand_TakesATable) {
 }
 
 TEST_F(TableAsScene, AxisOfNames_NeedsItsColumn) {
-  make_table("--set surface.n=none --set surface.k=none --set grid.material=[\"iron\",\"water\"] --evaluator cpu");
+  make_table("--set surface.n=none --set surface.k=none --set grid.material=[\"iron\",\"water\"]");
   expect_refused(lookup(), "t.nc: grid.material has 2 values; add the column \"material\" to points.csv");
 }
 
@@ -70,9 +77,9 @@ TEST_F(TableAsScene, DataOfFiles_ComeFromTheTable) {
   const Words glass = "--set surface.material_file=glass.csv --set grid.sigma=[0.2]";
   make_table(glass);
   put("points.csv", "theta_deg,sigma,q\n60,0.2,3\n");
-  const Columns expected = parse_csv(dolp(joined("eval scene.toml --points points.csv -o -", glass)).out);
+  const std::vector<double> expected = eval_scene(glass);
   std::filesystem::remove(at("glass.csv"));
-  EXPECT_EQ(parse_csv(lookup().out).at("dolp"), expected.at("dolp"));
+  EXPECT_EQ(lookup_dolp(), expected);
   expect_refused(dolp("eval t.nc --points points.csv -o - --set spectrum.wavelength_um=9"),
                  "\"glass.csv\" are known at ");
   put("points.csv", "theta_deg,wavelength_um\n60,9\n");
@@ -83,8 +90,8 @@ TEST_F(TableAsScene, OtherMaterialByName_IsBuiltIn) {
   make_table("--set surface.material=iron --set grid.sigma=[0.2]");
   put("points.csv", "theta_deg,sigma,q,wavelength_um\n60,0.2,3,9\n");
   const auto eval_of = [&](const char* source, const char* material) {
-    const Words start = std::string("eval ") + source + " --points points.csv -o - --set grid.sigma=[0.2] --set";
-    return parse_csv(dolp(joined(start, {std::string("surface.material=") + material})).out);
+    const Words end = "--points points.csv -o - --evaluator cpu --set grid.sigma=[0.2] --set";
+    return parse_csv(dolp(joined(joined({"eval", source}, end), {std::string("surface.material=") + material})).out);
   };
   for (const char* material : {"iron", "gold (Ordal)"})
     EXPECT_EQ(eval_of("t.nc", material).at("dolp"), eval_of("scene.toml", material).at("dolp")) << material;
@@ -97,14 +104,13 @@ TEST_F(TableAsScene, LongProfile_ComesFromTheTable) {
     for (int i = 0; i < 1000; ++i) rows += fmt::format("{},{},{}\n", wavelength, i / 999.0 * 90.0, 220 + wavelength);
   }
   put("sky.csv", rows);
-  const Words settings =
-      "--set surroundings={profile=\"sky.csv\"} --evaluator cpu --set grid={theta_deg=[0,30,60],sigma=[0.2]}";
+  const Words settings = "--set surroundings={profile=\"sky.csv\"} --set grid={theta_deg=[0,30,60],sigma=[0.2]}";
   make_table(settings);
   EXPECT_LT(std::filesystem::file_size(at("t.nc")), rows.size() + 100'000);
   put("points.csv", "theta_deg,sigma\n30,0.2\n");
-  const Columns expected = parse_csv(dolp(joined("eval scene.toml --points points.csv -o -", settings)).out);
+  const std::vector<double> expected = eval_scene(settings);
   std::filesystem::remove(at("sky.csv"));
-  EXPECT_EQ(parse_csv(lookup().out).at("dolp"), expected.at("dolp"));
+  EXPECT_EQ(lookup_dolp(), expected);
 }
 
 TEST_F(TableAsScene, NoTable_IsRefusedInOneLine) {
@@ -119,9 +125,7 @@ TEST_F(TableAsScene, NoTable_IsRefusedInOneLine) {
 // Along theta a parabola through the entries would be exact for a quantity a + b theta^2; here the right values come
 // from `eval` at the point that the report names.
 TEST_F(TableAsScene, VerifyBetween_ReportsWhatInterpolationCosts) {
-  make_table(
-      "--set grid.theta_deg={from=0,to=80,count=17} --set grid.sigma=[0.2] --set grid.q=[3] --evaluator cpu "
-      "--tolerance 1e-7");
+  make_table("--set grid.theta_deg={from=0,to=80,count=17} --set grid.sigma=[0.2] --set grid.q=[3] --tolerance 1e-7");
   const json found = report("verify t.nc --between 200 --quantities dolp,rho_i")["between"];
   ASSERT_EQ(found.size(), 4U);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -134,7 +138,7 @@ TEST_F(TableAsScene, VerifyBetween_ReportsWhatInterpolationCosts) {
   EXPECT_LT(found[1]["median"], found[0]["median"].get<double>() / 10.0);
   const double theta_deg = found[0]["at"]["theta_deg"], below = std::floor(theta_deg / 5.0) * 5.0;
   put("points.csv", fmt::format("theta_deg\n{:.17g}\n{}\n{}\n", theta_deg, below, below + 5.0));
-  const std::vector<double> right = parse_csv(lookup().out).at("dolp");
+  const std::vector<double> right = lookup_dolp();
   const double linear = std::lerp(right[1], right[2], (theta_deg - below) / 5.0);
   constexpr double kTwoTolerances = 2e-7;
   EXPECT_NEAR(found[0]["largest"], std::abs(linear - right[0]), kTwoTolerances);
@@ -146,7 +150,7 @@ TEST_F(TableAsScene, VerifyBetween_AnglesDifferByAtMostARightAngle) {
   make_table(
       "--set surface.masking=v-cavity --set surface.sigma_cross=0.4 --set grid.theta_deg=[40] --set "
       "grid.surface_azimuth_deg={from=-60,to=60,count=5} --set grid.sigma=[0.2] --set grid.q=[3] --set "
-      "surroundings.temperature_K=400 --evaluator cpu");
+      "surroundings.temperature_K=400");
   const auto [least, most] = std::ranges::minmax(dolp::read_table(at("t.nc"))[dolp::Quantity::kAolp]);
   ASSERT_GT(most - least, 90.0);
   const json found = report("verify t.nc --between 50 --quantities aolp_deg")["between"];
@@ -167,7 +171,7 @@ TEST_F(TableAsScene, PlansNumbersOfValues_AreAboutEnough_AndHalfOfThemAreTooFew)
   ASSERT_EQ(advice.size(), 2U);
   const int thetas = advice[0]["needed_values"], sigmas = advice[1]["needed_values"];
   const auto typical_error = [&](int of_theta, int of_sigma) {
-    make_table(joined(grid(of_theta, of_sigma), "--evaluator cpu"));
+    make_table(grid(of_theta, of_sigma));
     return report("verify t.nc --between 300")["between"][0]["p95"].get<double>();
   };
   EXPECT_LT(typical_error(thetas, sigmas), 1e-4);

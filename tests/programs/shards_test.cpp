@@ -64,8 +64,9 @@ class Shards : public CommandLine {
 
 // There are 14 shards but only 7 zeniths. So the shards also divide the axis of the two wavelengths.
 TEST_F(Shards, OfSeveralAxes_MergeIntoTheTableAndItsCsv) {
-  succeeded(dolp("table grid.toml -o one.csv"));
-  for (int i = 1; i <= 14; ++i) succeeded(dolp("table grid.toml -o t.nc --shard " + std::to_string(i) + "/14"));
+  const std::string table = "table grid.toml --evaluator cpu -o ";
+  succeeded(dolp(table + "one.csv"));
+  for (int i = 1; i <= 14; ++i) succeeded(dolp(table + "t.nc --shard " + std::to_string(i) + "/14"));
   succeeded(dolp(joined(joined("merge", shard_names(14)), "-o m.csv")));
   EXPECT_EQ(data_lines(read_file(at("m.csv"))), data_lines(read_file(at("one.csv"))));
   expect_refused(dolp("table grid.toml -o t.nc --shard 1/11"),
@@ -200,14 +201,15 @@ TEST_F(Edited, HashOfValuesMissing_IsRefusedByMergeAndVerify) {
 }
 
 TEST_F(Edited, VariableOfOneShardMissing_IsNamed) {
-  for (const std::string name : {"status", "dolp", "stokes_i", "irradiance", "index_n"}) {
-    for (const std::string of : {"t.1-of-2.nc", "t.2-of-2.nc"}) {
-      for (const std::string& shard_file : shard_names(2)) fs::remove(at(shard_file));
-      succeeded(shard(1));
-      succeeded(shard(2));
+  succeeded(shard(1));
+  succeeded(shard(2));
+  for (const std::string of : {"t.1-of-2.nc", "t.2-of-2.nc"}) {
+    const std::string whole = content(of);
+    for (const std::string name : {"status", "dolp", "stokes_i", "irradiance", "index_n"}) {
       edit(of, "table.renameVariable('" + name + "', 'gone')");
       expect_refused(merge(), "");
       EXPECT_FALSE(fs::exists(at("m.nc")));
+      put(of, whole);
     }
   }
 }
@@ -267,9 +269,8 @@ TEST_F(Resume, OverADamagedPartialFile_GivesTheSameBits) {
     return bytes.replace(offset, 64, std::string(64, 'x'));
   };
   const std::vector<std::pair<std::string, std::string>> damaged = {
-      {"", progress},                      // t.nc.partial is removed
-      {values.substr(0, 1000), progress},  // cut within the values of the first part
-      {values.substr(0, 5'000'000), progress},
+      {"", progress},                                         // t.nc.partial is removed
+      {values.substr(0, 1000), progress},                     // cut within the values of the first part
       {content("one.nc") + values, progress},                 // the finished table stands before the values
       {overwritten(values, 400'000), progress},               // 64 bytes in the first part are overwritten
       {values, overwritten(progress, 30)},                    // the line that identifies the table is overwritten

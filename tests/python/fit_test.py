@@ -34,11 +34,12 @@ class Fit(PackageCase):
         self.assertGreater(len(axes.lines[-1].get_xdata()), 100)
         self.assertEqual((axes.get_ylabel(), axes.get_title()), ("Q/I (%)", "painted plate"))
         self.assertIn("bracket of all bounces", [text.get_text() for text in axes.get_legend().texts])
+        few = {"starts": 4, "evaluator": "cpu"}
         ranked = dolp.fit(scene, columns, vary, compare={"surface.masking": ["smith", "v-cavity"]}, loss="huber",
-                          plot=self.folder / "picture.png")
+                          plot=self.folder / "picture.png", **few)
         self.assertEqual(len(ranked.values["models"]), 2)
         self.assertTrue((self.folder / "picture.png").exists())
-        wider = dolp.fit(scene, columns, vary, model_error="bracket")
+        wider = dolp.fit(scene, columns, vary, model_error="bracket", **few)
         self.assertEqual((list(wider.params), wider.stderr["surface.n"]), (list(found.params), None))
         (low, high), (narrow_low, narrow_high) = (one.conf_interval()["surface.n"] for one in (wider, found))
         self.assertTrue((low or 1.1) < narrow_low < 1.62 < narrow_high < (high or 3))
@@ -46,7 +47,7 @@ class Fit(PackageCase):
         points = found.values["points"]
         np.testing.assert_allclose(np.interp([p["theta_deg"] for p in points], line.get_xdata(), line.get_ydata()),
                                    [100 * p["model"] for p in points], atol=2e-2)
-        two = dolp.fit(scene, [(columns, {"emission.temperature_K": 300.0}), columns], vary)
+        two = dolp.fit(scene, [(columns, {"emission.temperature_K": 300.0}), columns], vary, **few)
         self.assertLess(two.values["parameters"][0]["standard_error"], found.values["parameters"][0]["standard_error"])
 
     def test_a_fit_has_a_word_for_its_quality_and_warns_of_the_model(self):

@@ -28,6 +28,9 @@ wavelength_um = 10
 
 inline constexpr double kNoise = 0.002;
 
+/// Few descents, which suffice where chi^2 has one minimum.
+inline const FitOptions kFewStarts{.vary = {}, .starts = 4};
+
 inline FitRange number(const std::string& key, double low, double high) { return {key, low, high, {}}; }
 
 /// Fits to synthetic data: Q/I of the scene at zeniths up to 80 degrees, with random errors (standard deviation
@@ -56,8 +59,8 @@ class FitTest : public testing::Test {
     }
     return data;
   }
-  FitResult fitted(const MeasuredData& data, const std::vector<FitRange>& parameters, const FitOptions& options = {},
-                   const std::vector<std::string>& overrides = {}) {
+  FitResult fitted(const MeasuredData& data, const std::vector<FitRange>& parameters,
+                   const FitOptions& options = kFewStarts, const std::vector<std::string>& overrides = {}) {
     const Model model(parse_scene(kScene, "scene", settings_from_text(overrides)), {data}, parameters);
     const std::optional<FitResult> result = fit::fit(model, evaluator_, options);
     EXPECT_TRUE(result.has_value());

@@ -1,6 +1,8 @@
 // Random surfaces and pairs of directions for tests of the pBRDF, including hard cases.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -18,11 +20,9 @@ struct ScatteringPoint {
 };
 
 inline std::string text_of(const ScatteringPoint& p) {
-  std::array<char, 300> text{};
-  std::snprintf(text.data(), text.size(), "theta_i %.17g theta_r %.17g dphi %.17g sigma %.17g q %.17g n %.17g k %.17g",
-                p.angles.theta_i_deg, p.angles.theta_r_deg, p.angles.delta_phi_deg, p.shape.sigma, p.shape.q, p.index.n,
-                p.index.k);
-  return text.data();
+  return fmt::format("theta_i {:.17g} theta_r {:.17g} dphi {:.17g} sigma {:.17g} q {:.17g} n {:.17g} k {:.17g}",
+                     p.angles.theta_i_deg, p.angles.theta_r_deg, p.angles.delta_phi_deg, p.shape.sigma, p.shape.q,
+                     p.index.n, p.index.k);
 }
 
 inline ScatteringRequest request_of(Distribution distribution, Masking masking,

@@ -25,6 +25,13 @@ inline SceneValues parse(const std::string& text, const std::vector<std::string>
   return parse_scene(text, "s.toml", settings_from_text(overrides, "--set"));
 }
 
+/// The settings of both lists.
+template <class Change>
+std::vector<Change> joined(std::vector<Change> a, const std::vector<Change>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
 inline std::string error_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
   return error_text([&] { parse(text, overrides); });
 }

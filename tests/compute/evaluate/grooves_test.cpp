@@ -13,6 +13,7 @@
 #include <dolp/status.hpp>
 #include "beams/scattering.hpp"
 #include "calibrate/random_entries.hpp"
+#include "evaluate/remembering_evaluator.hpp"
 #include "model/angles.hpp"
 #include "mueller_support.hpp"
 #include "properties_support.hpp"
@@ -59,19 +60,21 @@ std::vector<Point> random_points(Distribution distribution) {
   return points;
 }
 
-class Grooves : public testing::TestWithParam<Kernel> {};
+class Grooves : public testing::TestWithParam<Kernel> {
+ protected:
+  std::unique_ptr<ModelEvaluator> evaluator_ = make_evaluator(GetParam());
+};
 
 // ---- Moments -------------------------------------------------------------------------------------------------------
 
 TEST_P(Grooves, StoredCases_AreWithinTheBounds) {
-  const auto evaluator = make_evaluator(GetParam());
   for (const Distribution distribution : kDistributions) {
     std::vector<StoredCase> cases = stored_cases();
     std::erase_if(cases, [&](const StoredCase& c) { return c.distribution != distribution; });
     std::vector<Point> points;
     for (const StoredCase& c : cases) points.push_back({c.theta_deg, c.shape, c.index});
     for (const double tolerance : tolerances_of(GetParam())) {
-      const std::vector<Moments> moments = evaluator->evaluate(all_bounces(distribution, points, tolerance), {});
+      const std::vector<Moments> moments = evaluator_->evaluate(all_bounces(distribution, points, tolerance), {});
       double worst = 0.0;
       for (std::size_t i = 0; i < cases.size(); ++i) {
         worst = std::max(worst, expect_within_bounds(cases[i].moments, moments[i], cases[i].name));
@@ -87,7 +90,7 @@ TEST_P(Grooves, AlbedoIsOne_AndNothingIsLost) {
   for (const Distribution distribution : kDistributions) {
     const std::vector<Point> points = random_points(distribution);
     for (const double tolerance : tolerances_of(GetParam())) {
-      const auto moments = make_evaluator(GetParam())->evaluate(all_bounces(distribution, points, tolerance), {});
+      const auto moments = evaluator_->evaluate(all_bounces(distribution, points, tolerance), {});
       for (std::size_t i = 0; i < points.size(); ++i) {
         const Moments& m = moments[i];
         const double c = cos_sin_deg(points[i].theta_deg).cos;
@@ -103,15 +106,14 @@ TEST_P(Grooves, AlbedoIsOne_AndNothingIsLost) {
 }
 
 TEST_P(Grooves, Vacuum_ReflectsNothingAndEmitsAll) {
-  const auto evaluator = make_evaluator(GetParam());
   for (const double theta_deg : {0.0, 45.0, 80.0}) {
     const double c = cos_sin_deg(theta_deg).cos;
     const std::vector<Point> vacuum = {{theta_deg, {0.3, 2.0}, {1.0, 0.0}}};
-    const Moments m = evaluator->evaluate(all_bounces(Distribution::kCauchy, vacuum, 1e-4), {}).front();
+    const Moments m = evaluator_->evaluate(all_bounces(Distribution::kCauchy, vacuum, 1e-4), {}).front();
     EXPECT_NEAR(m.r_i, 0.0, m.r_i_error);
     EXPECT_NEAR(m.deficit, c, m.deficit_error + 1e-7);
     for (const Masking masking : kDirectMaskings) {
-      const Moments d = evaluator->evaluate(direct_emission(Distribution::kCauchy, masking, vacuum), {}).front();
+      const Moments d = evaluator_->evaluate(direct_emission(Distribution::kCauchy, masking, vacuum), {}).front();
       EXPECT_NEAR(d.direct_i, c, d.direct_i_error);
       EXPECT_NEAR(d.direct_q, 0.0, d.direct_q_error);
       EXPECT_LT(d.direct_i_error, 2e-4);
@@ -120,13 +122,12 @@ TEST_P(Grooves, Vacuum_ReflectsNothingAndEmitsAll) {
 }
 
 TEST_P(Grooves, WithoutAndWithTheDirectEmission_TheOtherMomentsAgree) {
-  const auto evaluator = make_evaluator(GetParam());
   for (const Masking masking : kDirectMaskings) {
     const MomentsRequest with = direct_emission(Distribution::kCauchy, masking, {{70.0, {0.4, 2.5}, {3.0, 4.0}}});
     MomentsRequest without = with;
     without.wants_direct = false;
-    const Moments a = evaluator->evaluate(with, {}).front();
-    const Moments b = evaluator->evaluate(without, {}).front();
+    const Moments a = evaluator_->evaluate(with, {}).front();
+    const Moments b = evaluator_->evaluate(without, {}).front();
     expect_within_bounds(a, b, to_name({Distribution::kCauchy, masking}));
     EXPECT_TRUE(std::isnan(b.direct_i));
     // The emissivity is deficit / cos(theta) with single scattering, and direct_i / cos(theta) with direct emission.
@@ -191,14 +192,13 @@ void expect_like_reference(ModelEvaluator& evaluator, const std::vector<Scatteri
 }
 
 TEST_P(Grooves, MuellerMatrices_AreThoseOfTheReference) {
-  const auto evaluator = make_evaluator(GetParam());
-  expect_like_reference(*evaluator, kBeams, 0.0);
-  for (const ScatteringMatrix& f : evaluator->scatter(bounces_of(kBeams), {})) EXPECT_LT(f.error, 3e-5 * f.m[0]);
+  expect_like_reference(*evaluator_, kBeams, 0.0);
+  for (const ScatteringMatrix& f : evaluator_->scatter(bounces_of(kBeams), {})) EXPECT_LT(f.error, 3e-5 * f.m[0]);
 }
 
 TEST_P(Grooves, TowardTheMirrorDirection_NoMatrixIsDefined) {
   const ScatteringRequest mirror = bounces_of({{{40.0, 40.0, 180.0}, {0.3, 2.0}, {1.5, 0.1}}});
-  const ScatteringMatrix matrix = make_evaluator(GetParam())->scatter(mirror, {}).front();
+  const ScatteringMatrix matrix = evaluator_->scatter(mirror, {}).front();
   for (const double element : matrix.m) EXPECT_TRUE(std::isnan(element));
 }
 
@@ -277,11 +277,14 @@ TEST(GrooveScenes, RandomEntriesUpToTheHorizon_ArePhysical) {
     for (std::size_t i = 0; i < points.size(); i += 6) points[i].theta_deg = i % 12 == 0 ? 90.0 : kNextToTheHorizon;
     SceneValues scene = multiple(distribution);
     scene.accuracy.tolerance = 1e-2;
-    for (const auto& surroundings : {std::optional<Surroundings>(), std::optional(Surroundings{400.0})}) {
-      scene.surroundings = surroundings;
-      for (const Point& point : points) {
-        const PointResult r = result_at(scene, point);
-        const std::string where = text_of(point);
+    const auto kernel = make_evaluator(Kernel::kCpuDouble);
+    RememberingEvaluator evaluator(*kernel, [](const MomentsRequest&) { return true; });
+    for (const Point& point : points) {
+      const std::string where = text_of(point);
+      for (const auto& surroundings : {std::optional<Surroundings>(), std::optional(Surroundings{400.0})}) {
+        scene.surroundings = surroundings;
+        const SceneEntries entries = {{point.theta_deg, point.shape, point.index}};
+        const PointResult r = evaluate_scene(scene, entries, evaluator, {}).front();
         EXPECT_EQ(r.status & (kReflectanceOutsideZeroToOne | kIntensityNotPositive | kOutsideModelDomain), 0U) << where;
         EXPECT_NEAR(r[Quantity::kAlbedo], 1.0, kRounding) << where;
         EXPECT_TRUE(r[Quantity::kRhoI] >= 0.0 && r[Quantity::kRhoI] <= 1.0 + kRounding)

@@ -83,7 +83,10 @@ TEST(SlopeSectors, CosinesOfTheAzimuth_ArePowersOfTheEccentricity) {
   }
 }
 
-class SlopeOrders : public testing::TestWithParam<Kernel> {};
+class SlopeOrders : public testing::TestWithParam<Kernel> {
+ protected:
+  std::unique_ptr<ModelEvaluator> evaluator_ = make_evaluator(GetParam());
+};
 
 // Gaussian slopes of the sea, clean surface, at 10 m/s: Cox and Munk (1954). N = 1.18 + 0.07i. Values of v-cavity: a
 // sum over 9e6 facets on a grid of slopes, by a program that shares nothing with this one. Values of smith: own
@@ -105,7 +108,7 @@ TEST_P(SlopeOrders, Sea_EmitsDifferentlyUpwindAndCrosswind) {
     request.tolerance = 1e-5;
     const SlopeShape shape{std::sqrt(0.0316), 2.0, std::sqrt(0.0222), row.azimuth_deg};
     request.append({row.theta_deg, shape, FacetOptics{1.18, 0.07}});
-    const Moments m = make_evaluator(GetParam())->evaluate(request, {}).front();
+    const Moments m = evaluator_->evaluate(request, {}).front();
     const std::string where = std::string(row.light.name) + " " + std::to_string(row.theta_deg);
     EXPECT_NEAR(100.0 * m.direct_q / m.direct_i, row.q, 0.6e-3) << where;
     EXPECT_NEAR(100.0 * m.direct_u / m.direct_i, row.u, 0.6e-3) << where;
@@ -139,7 +142,7 @@ TEST_P(SlopeOrders, VeryUnequalWidths_AreWithinTheBoundsOfTheReference) {
     request.tolerance = tolerance;
     for (const double theta_deg : {88.0, 89.5, 89.95})
       request.append({theta_deg, {0.3, 1.8, sigma_cross, 0.0}, FacetOptics{3.0, 2.0}});
-    const std::vector<Moments> own = make_evaluator(GetParam())->evaluate(request, {});
+    const std::vector<Moments> own = evaluator_->evaluate(request, {});
     const std::vector<Moments> exact = reference.evaluate(request, {});
     for (std::size_t i = 0; i < own.size(); ++i)
       expect_all_within_bounds(own[i], exact[i], std::to_string(sigma_cross) + ' ' + std::to_string(i));
@@ -147,13 +150,12 @@ TEST_P(SlopeOrders, VeryUnequalWidths_AreWithinTheBoundsOfTheReference) {
 }
 
 TEST_P(SlopeOrders, RandomEntries_AreWithinTheBoundsOfTheReference) {
-  const auto evaluator = make_evaluator(GetParam());
   ReferenceEvaluator reference;
   for (const Distribution distribution : kBothDistributions) {
     for (const Light& light : {kLights[0], kLights[1], kLights[2], kSmithDirect}) {
       const MomentsRequest request =
           random_entries(distribution, light, light.scattering == Scattering::kMultiple ? 3 : 6);
-      const std::vector<Moments> own = evaluator->evaluate(request, {});
+      const std::vector<Moments> own = evaluator_->evaluate(request, {});
       const std::vector<Moments> exact = reference.evaluate(request, {});
       double worst = 0.0;
       for (std::size_t i = 0; i < own.size(); ++i) {
@@ -175,7 +177,7 @@ TEST_P(SlopeOrders, Sky_IsThatOfTheReference) {
     MomentsRequest request = brushed_request(Distribution::kGaussian, light, {kBrushed});
     request.wants_direct = false;
     request.sky = std::make_shared<const SkyBasis>(nodes, std::vector{cosines}, 1e-6);
-    const Moments own = make_evaluator(GetParam())->evaluate(request, {}).front();
+    const Moments own = evaluator_->evaluate(request, {}).front();
     const Moments exact = ReferenceEvaluator().evaluate(request, {}).front();
     ASSERT_EQ(own.columns.size(), 1U) << light.name;
     EXPECT_GT(std::abs(exact.columns.front().u), 10.0 * own.columns.front().error) << light.name;
@@ -192,9 +194,8 @@ bool have_same_bits(const Moments& a, const Moments& b) {
 TEST_P(SlopeOrders, EqualWidths_GiveTheBitsOfIsotropicSlopes) {
   for (const Light& light : kLights) {
     const SlopeShape isotropic{0.3, 2.5}, equal{0.3, 2.5, 0.3, 40.0};
-    const auto evaluator = make_evaluator(GetParam());
-    const Moments a = evaluator->evaluate(brushed_request(Distribution::kCauchy, light, {isotropic}), {}).front();
-    const Moments b = evaluator->evaluate(brushed_request(Distribution::kCauchy, light, {equal}), {}).front();
+    const Moments a = evaluator_->evaluate(brushed_request(Distribution::kCauchy, light, {isotropic}), {}).front();
+    const Moments b = evaluator_->evaluate(brushed_request(Distribution::kCauchy, light, {equal}), {}).front();
     EXPECT_TRUE(have_same_bits(a, b)) << light.name;
     EXPECT_EQ(a.r_u, 0.0);
   }
@@ -207,7 +208,7 @@ TEST_P(SlopeOrders, HalfTurnAndMirrorImage_ChangeNothingButTheSignOfU) {
   mirrored.azimuth_deg *= -1.0;
   for (const Light& light : kLights) {
     const MomentsRequest request = brushed_request(Distribution::kCauchy, light, {kBrushed, turned, mirrored});
-    const std::vector<Moments> m = make_evaluator(GetParam())->evaluate(request, {});
+    const std::vector<Moments> m = evaluator_->evaluate(request, {});
     for (const MomentMember& member : kMomentMembers) {
       if (!light.is_direct && std::isnan(m[0].*member.value)) continue;
       EXPECT_NEAR(m[1].*member.value, m[0].*member.value, rounding) << light.name;
@@ -238,7 +239,7 @@ TEST_P(SlopeOrders, MeanOverAzimuths_IsThatOfIsotropicSectors) {
     const auto mean = [&](const std::vector<SlopeShape>& shapes) {
       const MomentsRequest request = brushed_request(Distribution::kGaussian, light, shapes);
       Moments sum{.direct_i = 0.0, .direct_q = 0.0};
-      for (const Moments& m : make_evaluator(GetParam())->evaluate(request, {})) {
+      for (const Moments& m : evaluator_->evaluate(request, {})) {
         for (const auto member : {&Moments::r_i, &Moments::r_q, &Moments::r_u, &Moments::albedo, &Moments::direct_i,
                                   &Moments::direct_q, &Moments::direct_u})
           sum.*member += m.*member / static_cast<double>(shapes.size());
@@ -267,7 +268,7 @@ TEST_P(SlopeOrders, PerfectReflector_ReflectsEverythingAtEveryAzimuth) {
     request.append({70.0, shape, perfect});
   }
   const double c = cos_sin_deg(70.0).cos;
-  for (const Moments& m : make_evaluator(GetParam())->evaluate(request, {})) {
+  for (const Moments& m : evaluator_->evaluate(request, {})) {
     EXPECT_NEAR(m.albedo, c, rounding);
     EXPECT_NEAR(m.r_i, c, m.r_i_error + rounding);
     EXPECT_LE(m.r_i_error, 2.0 * kTolerance * c);
@@ -282,7 +283,7 @@ TEST_P(SlopeOrders, WidthsOfOneToThree_MeetTheTolerance) {
     for (const Light& light : {kLights[1], kLights[2]}) {
       MomentsRequest request = empty_request(distribution, light);
       request.append({50.0, {.sigma = 0.2, .q = 3.0, .sigma_cross = 0.6, .azimuth_deg = 30.0}, FacetOptics{1.6, 0.5}});
-      const Moments m = make_evaluator(GetParam())->evaluate(request, {}).front();
+      const Moments m = evaluator_->evaluate(request, {}).front();
       EXPECT_LE(m.r_i_error, kTolerance * m.r_i) << light.name;
       EXPECT_LE(m.r_q_error, kTolerance * m.r_i) << light.name;
     }
@@ -293,17 +294,16 @@ TEST_P(SlopeOrders, EvaluationsOfTheEntries_AddUpToThoseOfTheEvaluator) {
   MomentsRequest request = empty_request(Distribution::kGaussian, kLights[1]);
   for (const double theta_deg : {20.0, 50.0, 70.0})
     request.append({theta_deg, {.sigma = 0.01 * theta_deg, .q = 3.0, .sigma_cross = 0.3}, FacetOptics{1.6, 0.5}});
-  const auto evaluator = make_evaluator(GetParam());
   double sum = 0.0;
-  for (const Moments& m : evaluator->evaluate(request, {})) sum += m.evaluations;
-  EXPECT_NEAR(sum, evaluator->report().evaluations, 1e-5 * sum);
+  for (const Moments& m : evaluator_->evaluate(request, {})) sum += m.evaluations;
+  EXPECT_NEAR(sum, evaluator_->report().evaluations, 1e-5 * sum);
 }
 
 TEST_P(SlopeOrders, Vacuum_ReflectsNothing) {
   for (const Light& light : kLights) {
     MomentsRequest request = empty_request(Distribution::kCauchy, light);
     request.append({70.0, kBrushed, FacetOptics{1.0, 0.0}});
-    const Moments m = make_evaluator(GetParam())->evaluate(request, {}).front();
+    const Moments m = evaluator_->evaluate(request, {}).front();
     EXPECT_EQ(m.r_i, 0.0) << light.name;
     EXPECT_EQ(m.r_q, 0.0) << light.name;
     EXPECT_EQ(m.r_u, 0.0) << light.name;

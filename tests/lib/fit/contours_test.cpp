@@ -10,7 +10,7 @@ namespace {
 /// Scans the range of the third parameter, then smaller and smaller ranges around its best value.
 std::vector<double> brute_growth(Residuals& residuals, const FitResult& result, const std::array<std::size_t, 2>& pair,
                                  const std::vector<Eigen::Vector2d>& places) {
-  constexpr int kSteps = 40;
+  constexpr int kSteps = 20;
   std::vector<double> least(places.size(), std::numeric_limits<double>::infinity());
   std::vector<double> middles(places.size(), 0.5);
   for (double width = 0.5; width > 1e-4; width *= 2.0 / kSteps) {

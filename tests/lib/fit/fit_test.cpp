@@ -153,9 +153,9 @@ TEST_F(FitTest, EachNumberOfAScene_VariesAsASettingOfItWould) {
 }
 
 TEST_F(FitTest, ParameterWithoutInfluence_IsNamedAndOpen) {
-  const FitResult result =
-      fitted(measured(kNoise, {"surface.distribution=gaussian"}),
-             {number("surface.n", 1.1, 4.0), number("surface.q", 1.6, 5.0)}, {}, {"surface.distribution=gaussian"});
+  const FitResult result = fitted(measured(kNoise, {"surface.distribution=gaussian"}),
+                                  {number("surface.n", 1.1, 4.0), number("surface.q", 1.6, 5.0)}, kFewStarts,
+                                  {"surface.distribution=gaussian"});
   ASSERT_EQ(result.degeneracies.size(), 1U);
   EXPECT_EQ(result.degeneracies.front(), "the data do not determine surface.q at all");
   EXPECT_FALSE(result.parameters[1].standard_error.has_value());
@@ -169,8 +169,8 @@ TEST_F(FitTest, FactorsOfOneProduct_AreNamedAsAPair) {
   const std::vector<std::string> source_alone = {"emission=none", "surroundings=none", "source.irradiance=1"};
   const MeasuredData data = measured(kNoise, source_alone);
   const FitResult result = fitted(
-      data, {number("surface.n", 1.1, 4.0), number("surface.specular", 0.2, 0.9), number("source.scale", 0.5, 2.0)}, {},
-      source_alone);
+      data, {number("surface.n", 1.1, 4.0), number("surface.specular", 0.2, 0.9), number("source.scale", 0.5, 2.0)},
+      kFewStarts, source_alone);
   ASSERT_EQ(result.degeneracies.size(), 2U);
   EXPECT_NE((result.degeneracies[0] + result.degeneracies[1]).find("surface.specular"), std::string::npos);
   EXPECT_NE((result.degeneracies[0] + result.degeneracies[1]).find("source.scale"), std::string::npos);
@@ -192,7 +192,7 @@ TEST_F(FitTest, Outlier_MovesSquaresMoreThanARobustLoss) {
   const std::vector<FitRange> parameters = {number("surface.n", 1.1, 4.0)};
   const double squares = std::abs(fitted(data, parameters).parameters.front().value - 1.6);
   for (const Loss loss : {Loss::kHuber, Loss::kSoftL1, Loss::kCauchy, Loss::kTukey}) {
-    const FitResult result = fitted(data, parameters, {.vary = {}, .loss = loss});
+    const FitResult result = fitted(data, parameters, {.vary = {}, .starts = 4, .loss = loss});
     EXPECT_LT(std::abs(result.parameters.front().value - 1.6), 0.3 * squares);
     EXPECT_FALSE(result.p_value.has_value());
   }
@@ -205,8 +205,8 @@ TEST_F(FitTest, SameSeed_GivesTheSameDigits) {
   const FitResult two = fitted(data, parameters);
   EXPECT_EQ(one.parameters[0].value, two.parameters[0].value);
   EXPECT_EQ(one.parameters[1].interval_95.high, two.parameters[1].interval_95.high);
-  EXPECT_NEAR(fitted(data, parameters, {.vary = {}, .seed = 2}).parameters[0].value, one.parameters[0].value,
-              0.01 * *one.parameters[0].standard_error);
+  EXPECT_NEAR(fitted(data, parameters, {.vary = {}, .starts = 4, .seed = 2}).parameters[0].value,
+              one.parameters[0].value, 0.01 * *one.parameters[0].standard_error);
 }
 
 }  // namespace

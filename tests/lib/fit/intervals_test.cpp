@@ -7,7 +7,7 @@ namespace {
 TEST_F(FitTest, LinearParameter_IntervalsAreThoseOfTheCovariance) {
   // rho is linear in k_s, and Q/I is nearly linear, because I changes little with k_s.
   const FitResult result =
-      fitted(measured(kNoise), {number("surface.specular", 0.2, 1.0)}, {}, {"surface.specular=0.6"});
+      fitted(measured(kNoise), {number("surface.specular", 0.2, 1.0)}, kFewStarts, {"surface.specular=0.6"});
   const FitParameter& one = result.parameters.front();
   ASSERT_TRUE(one.interval_68.low && one.interval_95.low && one.interval_68.high && one.interval_95.high);
   const double error = *one.standard_error;
@@ -27,7 +27,7 @@ TEST_F(FitTest, IntervalEnds_LieWhereTheBestOfTheOthersHasGrownSo) {
     for (const std::optional<double>& end : {interval.low, interval.high}) {
       ASSERT_TRUE(end.has_value());
       const FitResult held =
-          fitted(data, {number("surface.n", 1.1, 4.0)}, {}, {"surface.sigma=" + std::to_string(*end)});
+          fitted(data, {number("surface.n", 1.1, 4.0)}, kFewStarts, {"surface.sigma=" + std::to_string(*end)});
       // The growth is chi^2 minus its minimum. The search for an end allows an error of 0.5 % of sqrt(growth), which is
       // 1 % of the growth. The tolerance is 1.5 %, because to_string writes only six decimals.
       EXPECT_NEAR(held.chi_square - result.chi_square, is_95 ? 3.841 : 1.0, 0.015 * (is_95 ? 3.841 : 1.0));
@@ -138,12 +138,13 @@ TEST_F(FitTest, ModelErrorOfTheBracket_ResidualIsTheDistanceFromTheInterval) {
   const std::vector<FitRange> n = {number("surface.n", 1.1, 4.0)};
   const Eigen::VectorXd truth = Eigen::VectorXd::Constant(1, 1.6);
   MeasuredData data = measured(0.0);
+  const MeasuredData single = data;
   const MeasuredData direct = measured(0.0, {"emission.model=direct"});
   constexpr double kOutside = 3.0;  // uncertainties
   for (const Observable observable : {Observable::kQOverI, Observable::kDolp}) {
     double sum = 0.0;
     for (std::size_t i = 0; i < data.measurements.size(); ++i) {
-      const double one = measured(0.0).measurements[i].value, other = direct.measurements[i].value;
+      const double one = single.measurements[i].value, other = direct.measurements[i].value;
       const double beyond = i % 3 == 0 || std::max(one, other) > -kOutside * kNoise ? 0.0 : kOutside * kNoise;
       double value = i % 3 == 1 ? std::max(one, other) + beyond : std::min(one, other) - beyond;
       if (beyond == 0.0) value = std::lerp(one, other, 0.4);

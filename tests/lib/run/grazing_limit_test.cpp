@@ -69,7 +69,7 @@ Real integral(double q, const OpticalConstants& index, const std::function<Real(
 TEST(GrazingLimit, TinyIndex_ReflectsAllButAsMuch) {
   for (const double n : {1e-8, 1e-9, 1e-10, 1e-16, 1e-75, 1e-100, 1e-300, 5e-324}) {
     for (const double k : {0.0, 1e-12, 1e-100, 5e-324}) {
-      for (const double q : kQs) {
+      for (const double q : {1.0001, 1.3, 1.5}) {
         const Moments moments = grazing_limit_moments({n, k}, q);
         EXPECT_NEAR(moments.r_i, moments.albedo, 4.0 * n + kAlbedoAccuracy * moments.albedo)
             << n << " " << k << " " << q;

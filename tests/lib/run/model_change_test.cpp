@@ -37,6 +37,8 @@ wavelength_um = 10.6
 theta_deg = [60]
 )toml";
 
+const Overrides kAllBounces = {"surface.scattering=multiple"};
+
 SceneValues scene_with(const Overrides& overrides) { return parse(kScene, overrides); }
 PointResult result_of(const Overrides& overrides) { return results_of(scene_with(overrides)).front(); }
 
@@ -98,9 +100,7 @@ TEST(ModelChange, SteepViewOfASmoothDielectric_HasBit32ForItsDolp) {
   EXPECT_NEAR(single[kDolp], 0.5189, 1e-4);
   EXPECT_EQ(single.status, kModelInaccurate);
   EXPECT_LT(single.model_change, kLargestModelChange);
-  Overrides with_all = surface;
-  with_all.emplace_back("surface.scattering=multiple");
-  const PointResult all = result_of(with_all);
+  const PointResult all = result_of(joined(surface, kAllBounces));
   EXPECT_NEAR(all[kDolp], 0.5789, 1e-4);
   EXPECT_EQ(all.status, 0U);
   EXPECT_EQ(all.model_change_dolp, 0.0);
@@ -128,11 +128,9 @@ TEST(ModelChange, RandomEntries_HaveBit32WhereAllBouncesChangeDolp) {
   for (const Overrides& more : {Overrides{"surface.distribution=gaussian"},
                                 {"surface.distribution=cauchy"},
                                 {"surface.distribution=gaussian", "surroundings.temperature_K=240"}}) {
-    Overrides settings = {"surface.material={}", "surface.n=1.5", "surface.masking=v-cavity"};
-    settings.insert(settings.end(), more.begin(), more.end());
+    const Overrides settings = joined({"surface.material={}", "surface.n=1.5", "surface.masking=v-cavity"}, more);
     const std::vector<PointResult> single = results_of(scene_with(settings), entries);
-    settings.emplace_back("surface.scattering=multiple");
-    const std::vector<PointResult> all = results_of(scene_with(settings), entries);
+    const std::vector<PointResult> all = results_of(scene_with(joined(settings, kAllBounces)), entries);
     std::size_t changed = 0, found = 0, unchanged = 0, marked = 0;
     for (std::size_t i = 0; i < entries.size(); ++i) {
       const double change = std::abs(all[i][kDolp] - single[i][kDolp]);
@@ -187,20 +185,16 @@ TEST(ModelChange, GridOfAnyAxes_IsThatOfPoints) {
         {"surface.material=\"water 25C\"", "grid.wavelength_um={from=8,to=12,count=20}"},
         {"surface.material=\"water 25C\"", "grid.band_um=[[8,9],[9,12]]", "surroundings.temperature_K=240"},
         {"surface.material=iron", "geometry.mode=bistatic", "geometry.view_zenith_deg=70", "source.irradiance=1"},
-        {"emission.model=direct", "surface.material={}", "surface.n=2"}}) {
-    Overrides settings = axes;
-    settings.insert(settings.end(), more.begin(), more.end());
-    expect_points_like_grid(settings);
-  }
+        {"emission.model=direct", "surface.material={}", "surface.n=2"}})
+    expect_points_like_grid(joined(axes, more));
 }
 
 TEST(ModelChange, CoveredSurface_IsThatOfTheBareOneItEquals) {
   const Overrides surface = {"surface.material={}", "surface.n=2.5", "surface.k=0.1", "surface.masking=v-cavity",
                              "grid.theta_deg=[40,60,75]"};
   const std::vector<PointResult> bare = results_of(scene_with(surface));
-  Overrides settings = surface;
-  settings.emplace_back("surface.coating=[{n=1.4,thickness_um=0}]");
-  const std::vector<PointResult> coated = results_of(scene_with(settings));
+  const Overrides film = {"surface.coating=[{n=1.4,thickness_um=0}]"};
+  const std::vector<PointResult> coated = results_of(scene_with(joined(surface, film)));
   std::string rows = "beta_deg,r_s,r_p\n";
   for (int beta_deg = 0; beta_deg <= 90; ++beta_deg) {
     const SmoothAbsorptance absorbed =
@@ -208,8 +202,8 @@ TEST(ModelChange, CoveredSurface_IsThatOfTheBareOneItEquals) {
     rows += fmt::format("{},{},{}\n", beta_deg, 1.0 - absorbed.s, 1.0 - (beta_deg == 0 ? absorbed.s : absorbed.p));
   }
   const TemporaryFile file("measured.csv", rows);
-  settings = {"surface.material={}", "surface.masking=v-cavity", "grid.theta_deg=[40,60,75]",
-              "surface.reflectance_file=" + file.path()};
+  const Overrides settings = {"surface.material={}", "surface.masking=v-cavity", "grid.theta_deg=[40,60,75]",
+                              "surface.reflectance_file=" + file.path()};
   const std::vector<PointResult> measured = results_of(scene_with(settings));
   for (std::size_t i = 0; i < bare.size(); ++i) {
     EXPECT_GT(bare[i].model_change_dolp, 1e-3);
@@ -223,11 +217,8 @@ TEST(ModelChange, DirectEmission_IsTheDifferenceToAllBounces) {
   for (const char* theta : {"grid.theta_deg=40", "grid.theta_deg=70"}) {
     const Overrides surface = {"surface.material={}", "surface.n=2.5", "surface.k=0.1", "surface.masking=v-cavity",
                                theta};
-    Overrides settings = surface;
-    settings.emplace_back("emission.model=direct");
-    const PointResult direct = result_of(settings);
-    settings.back() = "surface.scattering=multiple";
-    const double change = std::abs(result_of(settings)[kDolp] - direct[kDolp]);
+    const PointResult direct = result_of(joined(surface, {"emission.model=direct"}));
+    const double change = std::abs(result_of(joined(surface, kAllBounces))[kDolp] - direct[kDolp]);
     EXPECT_GT(change, 1e-3);
     EXPECT_NEAR(direct.model_change_dolp, change, 0.1 * change) << theta;
   }

@@ -63,7 +63,7 @@ TEST_P(ResponsesOf, RandomEntries_StayWithinTheirBounds) {
   constexpr std::uint64_t kSeed = 44;
   const std::vector<Point> points = Random(kSeed).points(model, draws_wanted(40));
   CpuEvaluator evaluator;
-  const EntryResponses fine = responses(model, points, 1e-9, evaluator, true);
+  const EntryResponses fine = responses(model, points, 1e-8, evaluator, true);
   for (const double tolerance : {1e-2, 1e-4, 1e-6}) {
     const EntryResponses own = responses(model, points, tolerance, evaluator);
     const double worst = expect_within_bounds(own, fine, points);

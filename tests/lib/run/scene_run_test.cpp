@@ -7,6 +7,7 @@
 #include <numeric>
 #include <random>
 
+#include "agreement.hpp"
 #include "error_text.hpp"
 #include "scene_run_support.hpp"
 
@@ -33,49 +34,48 @@ SceneValues band_scene() {
   return scene;
 }
 
-std::string error_of(const SceneValues& scene, const std::string& csv) {
-  return error_text([&] { point_entries(scene, parse_points(csv, "p.csv", PointsKind::kDirections)); });
-}
-
-TEST(PointEntries_Smith, RefusesSmallQWithFileLineColumnValueAndRange) {
-  const SceneValues scene = make_scene(Distribution::kCauchy, Masking::kSmith, kDielectric);
-  EXPECT_EQ(
-      error_of(scene, "theta_deg,q\n10,1.501\n20,1.5\n30,1.2\n"),
-      "p.csv:3: q = 1.5: out of range; must be a number in (1.5, 1e4] with masking = \"smith\" and distribution = "
-      "\"cauchy\"");
-  EXPECT_EQ(error_of(scene, "theta_deg,q\n10,1.501\n"), "no error");
-}
-
-TEST(PointEntries_SmallQ, IsAllowedWhereItHasAMeaning) {
-  const std::string csv = "theta_deg,q\n10,1.2\n";
-  EXPECT_EQ(error_of(make_scene(Distribution::kGaussian, Masking::kSmith, kDielectric), csv), "no error");
-  EXPECT_EQ(error_of(make_scene(Distribution::kCauchy, Masking::kIntegral, kDielectric), csv), "no error");
-}
-
-TEST(PointEntries_MissingTheta, NamesTheFileUnlessTheSceneHasOneTheta) {
-  SceneValues scene = make_scene(Distribution::kCauchy, Masking::kNone, kDielectric);
-  const SceneEntries entries = point_entries(scene, parse_points("sigma\n0.2\n", "p.csv", PointsKind::kDirections));
-  ASSERT_EQ(entries.size(), 1U);
-  EXPECT_EQ(entries[0].theta_deg, 60.0);
-  scene.grid[Axis::kTheta] = {0.0, 60.0};
-  EXPECT_EQ(error_of(scene, "sigma\n0.2\n"),
+TEST(PointEntries, Mistakes_AreToldWithFileLineColumnAndRange) {
+  const SceneValues smith = make_scene(Distribution::kCauchy, Masking::kSmith, kDielectric);
+  const SceneValues gaussian_smith = make_scene(Distribution::kGaussian, Masking::kSmith, kDielectric);
+  const SceneValues integral = make_scene(Distribution::kCauchy, Masking::kIntegral, kDielectric);
+  SceneValues two_zeniths = integral;
+  two_zeniths.grid[Axis::kTheta] = {0.0, 60.0};
+  struct Case {
+    SceneValues scene;
+    const char* csv;
+    const char* message = "no error";
+  };
+  for (const Case& row : {
+           Case{smith, "theta_deg,q\n10,1.501\n"},
+           {gaussian_smith, "theta_deg,q\n10,1.2\n"},
+           {integral, "theta_deg,q\n10,1.2\n"},
+           {integral, "n\n1.7\n"},
+           {band_scene(), "n,k\n1.5,0\n"},
+           {smith, "theta_deg,q\n10,1.501\n20,1.5\n30,1.2\n",
+            "p.csv:3: q = 1.5: out of range; must be a number in (1.5, 1e4] with masking = \"smith\" and distribution "
+            "= "
+            "\"cauchy\""},
+           {two_zeniths, "sigma\n0.2\n",
             "p.csv:1: column \"theta_deg\" is missing, a number in [0, 90]; only a scene with a single grid.theta_deg "
-            "does without");
-}
-
-TEST(PointEntries_HalfAnIndex, IsRefusedBesideAMaterialThatDependsOnTheWavelength) {
-  EXPECT_EQ(error_of(band_scene(), "n\n1.5\n"),
+            "does without"},
+           {band_scene(), "n\n1.5\n",
             "p.csv:1: column \"n\" needs column \"k\" beside it, because the scene's material \"made up\" depends on "
-            "the wavelength");
-  EXPECT_EQ(error_of(band_scene(), "k\n0.1\n").find("p.csv:1: column \"k\" needs column \"n\""), 0U);
-  EXPECT_EQ(error_of(band_scene(), "n,k\n1.5,0\n"), "no error");
-  EXPECT_EQ(error_of(make_scene(Distribution::kCauchy, Masking::kNone, kDielectric), "n\n1.7\n"), "no error");
+            "the wavelength"},
+           {band_scene(), "k\n0.1\n",
+            "p.csv:1: column \"k\" needs column \"n\" beside it, because the scene's material \"made up\" depends on "
+            "the wavelength"},
+       }) {
+    const std::string error =
+        error_text([&] { point_entries(row.scene, parse_points(row.csv, "p.csv", PointsKind::kDirections)); });
+    EXPECT_EQ(error, row.message) << row.csv;
+  }
 }
 
-TEST(PointEntries_AbsentColumns, ComeFromTheScene) {
+TEST(PointEntries, AbsentColumns_ComeFromTheScene) {
   const SceneValues scene = make_scene(Distribution::kCauchy, Masking::kNone, kAbsorbing);
   const auto entries = point_entries(scene, parse_points("k,q\n0.25,4\n", "p.csv", PointsKind::kDirections));
   ASSERT_EQ(entries.size(), 1U);
+  EXPECT_EQ(entries[0].theta_deg, 60.0);
   EXPECT_EQ(entries[0].shape, (SlopeShape{0.3, 4.0}));
   EXPECT_EQ(entries[0].index, (OpticalConstants{kAbsorbing.n, 0.25}));
 }
@@ -127,8 +127,7 @@ TEST_P(RunsOfModel, Grid_EqualsThePointsOneByOne) {
     for (PointResult* result : {&alone, &results[i]}) result->status &= ~kModelInaccurate;
     SCOPED_TRACE(text_of(scene, entries[i]));
     if (has_slope_samples) {
-      EXPECT_NEAR(alone[Quantity::kDolp], results[i][Quantity::kDolp],
-                  alone[Quantity::kErrorEstimate] + results[i][Quantity::kErrorEstimate]);
+      expect_agreement(alone, results[i]);
       EXPECT_EQ(alone.status, results[i].status);
     } else {
       EXPECT_EQ(bits_of(alone), bits_of(results[i]));

@@ -165,7 +165,7 @@ TEST(Sky, RandomScenes_AgreeWithTheReferenceWithinTheirBounds) {
   constexpr double kMostMissed = 0.2;
   Draws random(20261124);
   CpuEvaluator evaluator;
-  ReferenceEvaluator reference({.relative_tolerance = 1e-6});
+  ReferenceEvaluator reference({.relative_tolerance = 1e-5});
   double worst = 0.0;
   int missed = 0;
   for (int i = 0; i < scenes; ++i) {
@@ -188,6 +188,7 @@ TEST(Sky, RandomScenes_AgreeWithTheReferenceWithinTheirBounds) {
 }
 
 // Each case makes the run use another kind of request, such as interpolation, slope samples, many indices, or a band.
+// The reference computes every fifth entry of a large grid.
 TEST(Sky, DenseGridsAndBands_OnTheDevice_AgreeWithTheReferenceWithinTheirBounds) {
   struct Case {
     const char* name;
@@ -221,12 +222,16 @@ TEST(Sky, DenseGridsAndBands_OnTheDevice_AgreeWithTheReferenceWithinTheirBounds)
     scene.grid = c.grid;
     const SceneEntries entries = grid_entries(scene);
     const std::vector<PointResult> own = evaluate_scene(scene, entries, device, {});
-    const std::vector<PointResult> exact = evaluate_scene(scene, entries, reference, {});
-    for (std::size_t i = 0; i < own.size(); ++i) {
-      EXPECT_LE(std::abs(own[i][kQOverI] - exact[i][kQOverI]), own[i][kErrorEstimate] + exact[i][kErrorEstimate])
+    std::vector<std::size_t> chosen;
+    for (std::size_t i = 0; i<own.size(); i += own.size()> 10 ? 5 : 1) chosen.push_back(i);
+    const std::vector<PointResult> exact = evaluate_scene(scene, entries.chosen(chosen), reference, {});
+    for (std::size_t j = 0; j < chosen.size(); ++j) {
+      const std::size_t i = chosen[j];
+      EXPECT_LE(std::abs(own[i][kQOverI] - exact[j][kQOverI]), own[i][kErrorEstimate] + exact[j][kErrorEstimate])
           << c.name << ", entry " << i;
-      EXPECT_LE(own[i][kErrorEstimate], scene.accuracy.tolerance) << c.name << ", entry " << i;
     }
+    for (std::size_t i = 0; i < own.size(); ++i)
+      EXPECT_LE(own[i][kErrorEstimate], scene.accuracy.tolerance) << c.name << ", entry " << i;
   }
 }
 

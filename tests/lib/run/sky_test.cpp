@@ -222,8 +222,9 @@ TEST(Sky, DenseGridsAndBands_OnTheDevice_AgreeWithTheReferenceWithinTheirBounds)
     scene.grid = c.grid;
     const SceneEntries entries = grid_entries(scene);
     const std::vector<PointResult> own = evaluate_scene(scene, entries, device, {});
+    const std::size_t step = own.size() > 10 ? 5 : 1;
     std::vector<std::size_t> chosen;
-    for (std::size_t i = 0; i<own.size(); i += own.size()> 10 ? 5 : 1) chosen.push_back(i);
+    for (std::size_t i = 0; i < own.size(); i += step) chosen.push_back(i);
     const std::vector<PointResult> exact = evaluate_scene(scene, entries.chosen(chosen), reference, {});
     for (std::size_t j = 0; j < chosen.size(); ++j) {
       const std::size_t i = chosen[j];

@@ -57,6 +57,13 @@ CosSin doubled(double x, double y) {
   return square > 0.0 ? CosSin{(x - y) * (x + y) / square, 2.0 * x * y / square} : CosSin{};
 }
 
+/// The reflection of a facet. Films have that of beams without its digits near normal incidence, which take time.
+FacetReflection rough_reflection(const FacetOptics& optics, double cosine) {
+  if (optics.is_bare() || optics.measured) return facet_reflection(optics, cosine, (1.0 - cosine) * (1.0 + cosine));
+  const FilmReflection r = film_reflection(optics, cosine);
+  return {0.5 * (r.r_s + r.r_p), 0.5 * (r.r_s - r.r_p), r.cross};
+}
+
 /// Light of a ray, of several rays, or of all of them.
 struct Light {
   double second = 0.0;  ///< light that meets a second facet
@@ -94,7 +101,7 @@ Light followed(const CosSin& theta, double t, double phi, const FacetOptics& opt
     const std::complex<double> at = between * turn;
     const double cosine = std::clamp(at.imag(), 1e-15, 1.0);
     const CosSin twice = doubled(at.real(), along * at.imag());
-    FacetReflection by = facet_reflection(optics, cosine, (1.0 - cosine) * (1.0 + cosine));
+    FacetReflection by = rough_reflection(optics, cosine);
     by.cross = -by.cross;  // the frames of shaders/physics/groove.glsl have r_p = r_s at normal incidence
     natural = reflected(by, twice, natural);
     polarised = reflected(by, twice, polarised);

@@ -1,6 +1,7 @@
 // A validated scene: the values of the TOML file, in its units (degrees, micrometres, kelvins).
 #pragma once
 
+#include <cstddef>
 #include <dolp/setting.hpp>
 #include <memory>
 #include <optional>

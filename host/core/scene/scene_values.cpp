@@ -6,8 +6,10 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <utility>
 
 #include "base/text.hpp"
+
 namespace dolp {
 namespace {
 

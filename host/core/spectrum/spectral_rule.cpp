@@ -5,8 +5,10 @@
 #include <array>
 #include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/special_functions/legendre.hpp>
+#include <iterator>
 #include <numbers>
 #include <optional>
+#include <ranges>
 
 #include "model/direction.hpp"
 #include "model/films.hpp"
@@ -421,7 +423,7 @@ void SpectralFactors::add(const SpectralFactors& more, double factor) {
   irradiance += factor * more.irradiance;
   width += factor * more.width;
   if (sky.size() == 0) sky.setZero(more.sky.size());
-  sky += factor * more.sky;
+  if (more.sky.size() > 0) sky += factor * more.sky;
 }
 
 std::vector<FacetOptics> SpectralRule::indices() const {

@@ -136,7 +136,9 @@ std::string result_rows(const ResultColumns& results, std::size_t first, std::si
       text.back() = '\n';
     }
   });
-  return fmt::format("{}", fmt::join(pieces, ""));
+  std::string rows;
+  for (const std::string& piece : pieces) rows += piece;
+  return rows;
 }
 
 Quantities in_csv_order(const Quantities& quantities) {

@@ -217,7 +217,8 @@ class Profiler {
         open.push_back(&side);
         wanted.push_back(side.next());
       }
-      done_sides_ = {static_cast<std::size_t>(std::ranges::count_if(sides_, &Side::is_done)), sides_.size()};
+      if (!sides_.empty())
+        done_sides_ = {static_cast<std::size_t>(std::ranges::count_if(sides_, &Side::is_done)), sides_.size()};
       if (wanted.empty()) break;
       std::vector<Minimum> found = follow(residuals_, wanted, descent_);
       for (std::size_t k = 0; k < open.size(); ++k) open[k]->add(std::move(found[k]));

@@ -46,12 +46,12 @@ struct Profiles {
 };
 
 /// Computes the profile likelihoods of all parameters. `minima` has the minima whose growth is below rises[1], the best
-/// first. Without any, all intervals are empty. At each minimum a profile
-/// has two sides, towards smaller and larger values of the parameter. A side follows the valley of the objective until
-/// the growth (see ProfileOptions) reaches one of `rises`. There the interval ends. Beyond this end, a bent valley may
-/// have another branch. To find it, descents begin beyond the end, near known points of the valley. If the growth where
-/// such a descent ends is below the rise, the profile continues there. `sides` counts the sides of all profiles.
-/// Errors: errors of the evaluator; Cancelled.
+/// first. Without any, all intervals are empty. At each minimum a profile has two sides, towards smaller and larger
+/// values of the parameter. A side follows the valley of the objective until the growth (see ProfileOptions) reaches
+/// one of `rises`. There the interval ends. Beyond this end, a bent valley may have another branch. To find it,
+/// descents begin beyond the end, near known points of the valley. If the growth where such a descent ends is below the
+/// rise, the profile continues there. `sides` counts the sides of all profiles. Errors: errors of the evaluator;
+/// Cancelled.
 Profiles compute_profiles(Residuals& residuals, const std::vector<Minimum>& minima, const ProfileOptions& options,
                           Count& sides);
 

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <dolp/dolp.hpp>
+#include <string_view>
 
 #include "base/text.hpp"
 #include "cli/commands.hpp"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "explore/scene_edits.hpp"
 
@@ -139,7 +140,7 @@ void HeatMap::follow(const std::string& key, const Scene& scene, bool keep_all, 
     shown_key_.clear();
     ++version_;
   }
-  if (std::exchange(key_, key) != key) arriving_.clear();
+  key_ = key;
   scene_ = scene;
   keep_all_ = keep_all;
   x_ = x;
@@ -147,17 +148,19 @@ void HeatMap::follow(const std::string& key, const Scene& scene, bool keep_all, 
   theta_deg_ = theta_deg;
 }
 
-PointList HeatMap::columns(std::size_t level, std::size_t first) const {
+PointList HeatMap::lines(std::size_t level, std::size_t first) const {
   const auto [count, tolerance, batch] = kLevels[level];
-  const std::vector<double> all_x = x_.scale.values(count), all_y = y_.scale.values(count);
-  std::vector<double> x, y;
-  for (std::size_t column = first; column < first + batch; ++column) {
-    x.insert(x.end(), count, all_x[column]);
-    y.insert(y.end(), all_y.begin(), all_y.end());
+  const MapAxis& across = is_turned() ? y_ : x_;
+  const MapAxis& along = is_turned() ? x_ : y_;
+  const std::vector<double> all_across = across.scale.values(count), all_along = along.scale.values(count);
+  std::vector<double> values_across, values_along;
+  for (std::size_t line = first; line < first + batch; ++line) {
+    values_across.insert(values_across.end(), count, all_across[line]);
+    values_along.insert(values_along.end(), all_along.begin(), all_along.end());
   }
   PointList list = points_at(scene_, {theta_deg_});
-  list[x_.column()] = std::move(x);
-  list[y_.column()] = std::move(y);
+  list[across.column()] = std::move(values_across);
+  list[along.column()] = std::move(values_along);
   return list;
 }
 
@@ -173,11 +176,11 @@ std::vector<Job> HeatMap::wanted(std::size_t level) const {
   // Points can have a sigma_cross only if their scene has one.
   if (x_.key == kSigmaCross || y_.key == kSigmaCross)
     settings.push_back({kSigmaCross, control(kSigmaCross).value(scene_).value()});
-  for (std::size_t first = known(level).size() / count; first < count; first += batch) {
+  for (std::size_t first = known(level); first < count; first += batch) {
     jobs.push_back({.key = job_key(level, first),
                     .scene = scene_,
                     .settings = settings,
-                    .list = columns(level, first),
+                    .list = lines(level, first),
                     .tolerance = tolerance,
                     .keep_all = keep_all_});
   }
@@ -187,7 +190,8 @@ std::vector<Job> HeatMap::wanted(std::size_t level) const {
 bool HeatMap::take(const JobResult& news) {
   const std::size_t levels = is_current() ? kLevels.size() : 1;
   for (std::size_t level = 0; level < levels; ++level) {
-    if (news.key != job_key(level, known(level).size() / kLevels[level].count)) continue;
+    if (news.key != job_key(level, known(level))) continue;
+    if (!is_current() && std::exchange(arriving_key_, key_) != key_) arriving_.clear();
     std::vector<Point>& points = is_current() ? points_[level] : arriving_;
     points.insert(points.end(), news.points.begin(), news.points.end());
     ++version_;
@@ -205,7 +209,8 @@ const Point& HeatMap::point_at(std::size_t finest, std::size_t row, std::size_t 
   for (std::size_t level = finest;; --level) {
     const std::size_t last = kLevels[level].count - 1;
     const auto nearest = [&](std::size_t i) { return (2 * i * last + steps) / (2 * steps); };
-    const std::size_t position = nearest(column) * kLevels[level].count + nearest(row);
+    const auto [line, place] = is_turned() ? std::pair(row, column) : std::pair(column, row);
+    const std::size_t position = nearest(line) * kLevels[level].count + nearest(place);
     if (level == 0 || position < points_[level].size()) return points_[level][position];
   }
 }

@@ -15,6 +15,10 @@ struct MapAxis {
     if (key.empty()) return "theta_deg";
     return key.starts_with("surface.coating") ? key : key.substr(key.find('.') + 1);
   }
+  /// True if each value on the axis has its own spectral samples, which take long to find where there are films.
+  bool has_own_samples() const {
+    return key == "emission.temperature_K" || key == "spectrum.wavelength_um" || key.starts_with("surface.coating");
+  }
   friend bool operator==(const MapAxis&, const MapAxis&) = default;
 };
 
@@ -51,7 +55,7 @@ class HeatMap {
   struct Level {
     std::size_t count;  ///< number of rows, and of columns
     double tolerance;   ///< the map has the larger one of this tolerance and the scene's tolerance
-    std::size_t batch;  ///< number of columns that one job computes
+    std::size_t batch;  ///< number of columns, or of rows if the map is turned, that one job computes
   };
   // While the user drags a slider, the curve waits for the job that is running. So the jobs of level 0 are small.
   static constexpr std::array<Level, 3> kLevels = {{{16, 1e-2, 2}, {64, 1e-2, 8}, {128, 0.0, 4}}};
@@ -67,7 +71,7 @@ class HeatMap {
   /// Stores results for this map; returns false for other results. The first level is shown only when it is complete.
   bool take(const JobResult& news);
   bool is_finished() const { return is_current() && is_complete(kLevels.size() - 1); }
-  bool is_arriving() const { return !arriving_.empty(); }                 ///< level 0 has some points, but not all
+  bool is_arriving() const { return arriving_key_ == key_ && !arriving_.empty(); }  ///< level 0 has some points
   bool is_stale() const { return !shown_key_.empty() && !is_current(); }  ///< the map on display is an earlier one
 
   const MapAxis& x() const { return x_; }
@@ -97,9 +101,14 @@ class HeatMap {
   bool is_current() const { return shown_key_ == key_; }
   bool is_complete(std::size_t level) const { return points_[level].size() == entries(level); }
   std::string job_key(std::size_t level, std::size_t first) const;
-  PointList columns(std::size_t level, std::size_t first) const;  ///< points of the job that begins at a column
-  /// The known points of a level of the wanted map.
-  const std::vector<Point>& known(std::size_t level) const { return is_current() ? points_[level] : arriving_; }
+  /// True if jobs have rows and not columns, so that each finds the samples of few values.
+  bool is_turned() const { return y_.has_own_samples() && !x_.has_own_samples(); }
+  PointList lines(std::size_t level, std::size_t first) const;  ///< points of the job that begins at a column or row
+  /// Number of columns or rows of a level that the wanted map has.
+  std::size_t known(std::size_t level) const {
+    const std::size_t points = is_current() ? points_[level].size() : is_arriving() ? arriving_.size() : 0;
+    return points / kLevels[level].count;
+  }
   const Point& point_at(std::size_t finest, std::size_t row, std::size_t column) const;
 
   std::string key_;
@@ -108,8 +117,9 @@ class HeatMap {
   MapAxis x_, y_{.name = "sigma"};
   double theta_deg_ = 0.0;
   std::string shown_key_;                                  ///< key of the map on display
-  std::array<std::vector<Point>, kLevels.size()> points_;  ///< points of each level, column after column
-  std::vector<Point> arriving_;                            ///< points of the first level while it is incomplete
+  std::array<std::vector<Point>, kLevels.size()> points_;  ///< points of each level, job after job
+  std::string arriving_key_;
+  std::vector<Point> arriving_;  ///< points of the first level of the map arriving_key_ while it is incomplete
   std::size_t version_ = 0;
 };
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "base/atomic_file.hpp"
 #include "base/stopwatch.hpp"

@@ -82,7 +82,7 @@ TEST_F(Plan, Memory_IsAboutThatOfTheTable) {
   // still writes one part of the table while it computes the next.
   constexpr double kAbout = 1.7;
   // These tables have one, three and two parts. With more parts the memory stays constant.
-  for (const auto& [thetas, sigmas] : {std::pair(200, 1000), {2150, 1000}, {135'000, 2}}) {
+  for (const auto& [thetas, sigmas] : {std::pair(200, 1000), {3000, 1000}, {135'000, 2}}) {
     const Words grid = fmt::format(
         "scene.toml --tolerance 1e-2 --set surface.masking=none --set surface.distribution=gaussian --set "
         "grid={{theta_deg={{from=0,to=80,count={}}},sigma={{from=0.01,to=0.02,count={}}},q=[2]}}",

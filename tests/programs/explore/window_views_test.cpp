@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <boost/math/quadrature/exp_sinh.hpp>
+#include <boost/math/quadrature/tanh_sinh.hpp>
 #include <cmath>
 #include <numbers>
 
@@ -19,12 +19,11 @@ using namespace dolp::explore;
 using namespace dolp::explore_test;
 
 double projected(const Scene& scene) {
-  const auto integrand = [&](double slope) {
-    const double alpha = std::atan(slope);
-    const double density = slope_density(scene, alpha / kDegree) * std::pow(std::cos(alpha), 4);
-    return std::isfinite(density) ? 2.0 * std::numbers::pi * density * slope : 0.0;
+  const auto integrand = [&](double alpha) {
+    const double density = slope_density(scene, alpha / kDegree) * std::sin(2.0 * alpha);
+    return std::isfinite(density) ? std::numbers::pi * density : 0.0;
   };
-  return boost::math::quadrature::exp_sinh<double>().integrate(integrand);
+  return boost::math::quadrature::tanh_sinh<double>().integrate(integrand, 0.0, 0.5 * std::numbers::pi);
 }
 
 TEST(ExplorePanels, SlopeDensity_IsNormalised_AndTheOtherOneHasTheSameD0) {

@@ -29,6 +29,14 @@ constexpr double kCritical = 1e-6;
 constexpr double kSmallestSquare = 1e-300;
 constexpr double kSmallestFacetCosine = 1e-12;
 
+/// Mueller matrix of a facet in its own frame: m00 = (R_s + R_p) / 2, m01 = (R_s - R_p) / 2, cross = conj(r_s) r_p.
+/// Measured reflectances have no phase, so their `cross` is 0. Conventions: r_p = -r_s at normal incidence.
+struct FacetReflection {
+  double m00 = 0.0;
+  double m01 = 0.0;
+  std::complex<double> cross;
+};
+
 constexpr std::size_t kGeometriesAtOnce = 256;
 constexpr std::size_t kBeamsAtOnce = 64;  // those of one slope distribution share an InPlaneMasking
 
@@ -67,6 +75,17 @@ FacetReflection bare_reflection(const OpticalConstants& index, double c, double 
   const double p_norm = std::max(std::norm(p_sum), kSmallestSquare);
   const double m01 = 0.5 * (4.0 * c * w.real() * a / p_norm) * sin2;
   return {r_s - m01, m01, r_s * (sin2 - c * w) * s_sum * std::conj(p_sum) / p_norm};
+}
+
+/// `sin2`: 1 - cosine^2. It is separate because this difference may lose digits.
+FacetReflection facet_reflection(const FacetOptics& optics, double cosine, double sin2) {
+  if (optics.is_bare()) return bare_reflection(optics.index, cosine, sin2, w_squared(optics.index, cosine, sin2));
+  const double c = std::max(cosine, kSmallestFacetCosine);
+  const SmoothAbsorptance absorbed = smooth_absorptance(optics, c);
+  const double m01 = 0.5 * absorbed.split * sin2;
+  if (optics.measured) return {1.0 - absorbed.s - m01, m01, 0.0};
+  const FilmReflection r = film_reflection(optics, c);
+  return {r.r_s - m01, m01, r.cross};
 }
 
 FacetReflection beam_reflection(const BeamAngles& angles, const BeamGeometry& geometry, const FacetOptics& optics) {
@@ -160,16 +179,6 @@ ScatteringMatrix beam_matrix(const ScatteringRequest& request, const ScatteringE
 }
 
 }  // namespace
-
-FacetReflection facet_reflection(const FacetOptics& optics, double cosine, double sin2) {
-  if (optics.is_bare()) return bare_reflection(optics.index, cosine, sin2, w_squared(optics.index, cosine, sin2));
-  const double c = std::max(cosine, kSmallestFacetCosine);
-  const SmoothAbsorptance absorbed = smooth_absorptance(optics, c);
-  const double m01 = 0.5 * absorbed.split * sin2;
-  if (optics.measured) return {1.0 - absorbed.s - m01, m01, 0.0};
-  const FilmReflection r = film_reflection(optics, c);
-  return {r.r_s - m01, m01, r.cross};
-}
 
 std::vector<ScatteringMatrix> scattering_matrices(const ScatteringRequest& request, const Progress& progress) {
   check_entries(request);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <complex>
 #include <vector>
 
 #include <dolp/errors.hpp>
@@ -14,17 +13,6 @@ namespace dolp {
 /// Accuracy: ScatteringMatrix::error (tests ScatteringOf.*).
 /// Errors: InputError if an entry is outside the lists of the request; Cancelled if `progress` returns false.
 std::vector<ScatteringMatrix> scattering_matrices(const ScatteringRequest& request, const Progress& progress);
-
-/// Mueller matrix of a facet in its own frame: m00 = (R_s + R_p) / 2, m01 = (R_s - R_p) / 2, cross = conj(r_s) r_p.
-/// Measured reflectances have no phase, so their `cross` is 0. Conventions: r_p = -r_s at normal incidence.
-struct FacetReflection {
-  double m00 = 0.0;
-  double m01 = 0.0;
-  std::complex<double> cross;
-};
-
-/// `sin2`: 1 - cosine^2. It is separate because this difference may lose digits.
-FacetReflection facet_reflection(const FacetOptics& optics, double cosine, double sin2);
 
 /// Adds the light after two and more bounces to `f`, the pBRDF of the first bounce times cos(theta_i) cos(theta_r).
 /// Returns the number of computed bounces, a measure of the time. Equation: shaders/physics/README.md, section 3.

@@ -8,8 +8,9 @@
 #include <numbers>
 #include <utility>
 
-#include "beams/scattering.hpp"
 #include "model/angles.hpp"
+#include "model/films.hpp"
+#include "model/smooth_surface.hpp"
 
 namespace dolp {
 namespace {
@@ -40,8 +41,41 @@ std::array<Node, kNodes> unit_nodes() {
 /// (I, Q, U, V) in the axes of the groove.
 using StokesVector = std::array<double, 4>;
 
+/// Mueller matrix of a facet in its own frame, as Bounce in shaders/physics/groove.glsl.
+struct Reflection {
+  double m00 = 0.0;
+  double m01 = 0.0;
+  std::complex<double> cross;  ///< conj(r_s) r_p, with the sign of r_p for which r_p = r_s at normal incidence
+};
+
+/// Equation: r_p / r_s = (c w - s^2) / (c w + s^2), with w = sqrt(N^2 - s^2), the cosine c and the sine s.
+Reflection bare_reflection(const OpticalConstants& index, double c) {
+  const double sin2 = (1.0 - c) * (1.0 + c);
+  const double re = (index.n - 1.0) * (index.n + 1.0) - index.k * index.k + c * c;
+  const double im = 2.0 * index.n * index.k;
+  const double larger = std::sqrt(0.5 * (std::abs(re) + std::sqrt(re * re + im * im)));
+  const double smaller = larger > 0.0 ? 0.5 * im / larger : 0.0;
+  const std::complex<double> w = re >= 0.0 ? std::complex(larger, smaller) : std::complex(smaller, larger);
+  const double r_s = std::norm(c - w) / std::norm(c + w);
+  const double below = std::norm(c * w + sin2);
+  const std::complex<double> cross =
+      r_s / below * std::complex(c * c * std::norm(w) - sin2 * sin2, 2.0 * sin2 * c * w.imag());
+  const double r_p = r_s * std::norm(c * w - sin2) / below;
+  return {0.5 * (r_s + r_p), 0.5 * (r_s - r_p), cross};
+}
+
+Reflection reflection(const FacetOptics& optics, double cosine) {
+  if (optics.is_bare()) return bare_reflection(optics.index, cosine);
+  if (optics.measured) {
+    const SmoothAbsorptance absorbed = smooth_absorptance(optics, cosine);
+    return {1.0 - 0.5 * (absorbed.s + absorbed.p), 0.5 * (absorbed.p - absorbed.s), 0.0};
+  }
+  const FilmReflection r = film_reflection(optics, cosine);
+  return {0.5 * (r.r_s + r.r_p), 0.5 * (r.r_s - r.r_p), -r.cross};
+}
+
 /// Turns the light by the angle whose double has the cosine and sine `twice`, reflects it, and turns it back.
-StokesVector reflected(const FacetReflection& by, const CosSin& twice, const StokesVector& light) {
+StokesVector reflected(const Reflection& by, const CosSin& twice, const StokesVector& light) {
   const auto& [i, q_before, u_before, v] = light;
   const double q = twice.cos * q_before + twice.sin * u_before;
   const double u = twice.cos * u_before - twice.sin * q_before;
@@ -55,13 +89,6 @@ StokesVector reflected(const FacetReflection& by, const CosSin& twice, const Sto
 CosSin doubled(double x, double y) {
   const double square = x * x + y * y;
   return square > 0.0 ? CosSin{(x - y) * (x + y) / square, 2.0 * x * y / square} : CosSin{};
-}
-
-/// The reflection of a facet. Films have that of beams without its digits near normal incidence, which take time.
-FacetReflection rough_reflection(const FacetOptics& optics, double cosine) {
-  if (optics.is_bare() || optics.measured) return facet_reflection(optics, cosine, (1.0 - cosine) * (1.0 + cosine));
-  const FilmReflection r = film_reflection(optics, cosine);
-  return {0.5 * (r.r_s + r.r_p), 0.5 * (r.r_s - r.r_p), r.cross};
 }
 
 /// Light of a ray, of several rays, or of all of them.
@@ -101,8 +128,7 @@ Light followed(const CosSin& theta, double t, double phi, const FacetOptics& opt
     const std::complex<double> at = between * turn;
     const double cosine = std::clamp(at.imag(), 1e-15, 1.0);
     const CosSin twice = doubled(at.real(), along * at.imag());
-    FacetReflection by = rough_reflection(optics, cosine);
-    by.cross = -by.cross;  // the frames of shaders/physics/groove.glsl have r_p = r_s at normal incidence
+    const Reflection by = reflection(optics, cosine);
     natural = reflected(by, twice, natural);
     polarised = reflected(by, twice, polarised);
     between = at * turn;

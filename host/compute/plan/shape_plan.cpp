@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -32,6 +31,7 @@ Eigen::RowVectorXd tails(const Eigen::MatrixXd& coefficients, const RowMajor& va
 }
 
 constexpr std::array kColumnParts = {&ColumnMoments::i, &ColumnMoments::q};
+constexpr auto kPartsOfAColumn = static_cast<std::ptrdiff_t>(kColumnParts.size());
 
 double column_bound(const ColumnMoments& column, double ColumnMoments::*part) {
   return column.error + std::max(std::abs(column.i_apart), std::abs(column.q_apart)) +
@@ -40,54 +40,6 @@ double column_bound(const ColumnMoments& column, double ColumnMoments::*part) {
 
 std::span<const MomentMember> interpolated_members(const ShapePlan& plan) {
   return std::span(kMomentMembers).first(kMomentMembers.size() - (plan.nodes.wants_direct ? 0 : kDirectMembers));
-}
-
-/// The known moments at some nodes, with a row for each of them. The bounds lack the errors of interpolation.
-ShapeBlock node_moments(const ShapePlan& plan, std::span<const Moments> nodes) {
-  const std::size_t moments = interpolated_members(plan).size() + kColumnParts.size() * nodes.front().columns.size();
-  ShapeBlock block;
-  for (RowMajor* const part : {&block.values, &block.bounds})
-    part->resize(static_cast<Eigen::Index>(nodes.size()), static_cast<Eigen::Index>(moments));
-  Eigen::Index next = 0;
-  const auto add = [&](double value, double bound) {
-    block.values.data()[next] = value;
-    block.bounds.data()[next++] = bound;
-  };
-  for (const Moments& node : nodes) {
-    for (const auto& [value, error] : interpolated_members(plan)) add(node.*value, node.*error);
-    for (const ColumnMoments& column : node.columns) {
-      for (double ColumnMoments::*part : kColumnParts) add(column.*part, column_bound(column, part));
-    }
-  }
-  return block;
-}
-
-/// Adds the errors of interpolation over an axis of `count` nodes. `outer`: product of the numbers of nodes of the axes
-/// before it, which change more slowly from row to row.
-void add_tails(ShapeBlock& block, const Eigen::MatrixXd& coefficients, Eigen::Index outer, Eigen::Index count) {
-  const Eigen::Index inner = block.values.size() / (outer * count);
-  for (Eigen::Index i = 0; i < outer; ++i) {
-    const RowMajor values = Eigen::Map<const RowMajor>(block.values.data() + i * count * inner, count, inner);
-    Eigen::Map<RowMajor>(block.bounds.data() + i * count * inner, count, inner).rowwise() +=
-        tails(coefficients, values);
-  }
-}
-
-/// Sets the interpolated moments of an entry. `values` and `bounds` are ordered as in a row of node_moments().
-template <class Vector>
-void set_moments(const ShapePlan& plan, const Vector& values, const Vector& bounds, Moments& moments) {
-  Eigen::Index next = 0;
-  for (const auto& [member, error] : interpolated_members(plan)) {
-    moments.*member = values(next);
-    moments.*error = bounds(next++);
-  }
-  moments.columns.assign(static_cast<std::size_t>(values.size() - next) / kColumnParts.size(), {});
-  for (ColumnMoments& column : moments.columns) {
-    for (double ColumnMoments::*part : kColumnParts) {
-      column.*part = values(next);
-      column.error = std::max(column.error, bounds(next++));
-    }
-  }
 }
 
 struct SlopeAxes {
@@ -239,34 +191,63 @@ std::optional<ShapePlan> shape_plan(const MomentsRequest& request) {
 }
 
 ShapeBlock shape_block(const ShapePlan& plan, std::span<const Moments> nodes) {
-  ShapeBlock block = node_moments(plan, nodes);
-  const auto sigmas = std::ssize(plan.sigma.nodes);
-  add_tails(block, plan.sigma.coefficients, 1, sigmas);
-  add_tails(block, plan.q.coefficients, sigmas, std::ssize(plan.q.nodes));
+  const auto sigma_nodes = static_cast<Eigen::Index>(plan.sigma.nodes.size());
+  const auto q_nodes = static_cast<Eigen::Index>(plan.q.nodes.size());
+  const std::size_t columns = nodes.front().columns.size();
+  const auto moments = static_cast<Eigen::Index>(interpolated_members(plan).size() + kPartsOfAColumn * columns);
+  ShapeBlock block{RowMajor(sigma_nodes, moments * q_nodes), RowMajor(sigma_nodes, moments * q_nodes)};
+  Eigen::Index first = 0;
+  const auto add = [&](const auto& node_value, const auto& node_bound) {
+    RowMajor values(sigma_nodes, q_nodes), bounds(sigma_nodes, q_nodes);
+    std::ranges::transform(nodes, values.data(), node_value);
+    std::ranges::transform(nodes, bounds.data(), node_bound);
+    bounds.rowwise() += tails(plan.sigma.coefficients, values);
+    bounds.colwise() += tails(plan.q.coefficients, values.transpose()).transpose();
+    block.values.middleCols(first, q_nodes) = values;
+    block.bounds.middleCols(first, q_nodes) = bounds;
+    first += q_nodes;
+  };
+  for (const auto& [value, error] : interpolated_members(plan)) add(value, error);
+  for (std::size_t k = 0; k < columns; ++k) {
+    for (double ColumnMoments::*part : kColumnParts) {
+      add([&](const Moments& node) { return node.columns[k].*part; },
+          [&](const Moments& node) { return column_bound(node.columns[k], part); });
+    }
+  }
   return block;
 }
 
 void interpolate(const ShapePlan& plan, const ShapeBlock& block, const ShapeRange& range, std::span<Moments> moments) {
-  const auto own_weights = [](const ShapeAxis& axis, std::size_t first, std::size_t count) -> RowMajor {
+  const auto own_weights = [](const ShapeAxis& axis, std::size_t first, std::size_t count) {
     return axis.weights.middleCols(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count));
   };
-  const RowMajor sigma_weights = own_weights(plan.sigma, range.first_sigma, range.sigmas).transpose();
-  const RowMajor q_weights = own_weights(plan.q, range.first_q, range.qs);
-  const Eigen::Index qs = q_weights.cols();
-  const auto between_sigmas = [&](const RowMajor& weights, const RowMajor& nodes) {
-    return weighted_sums(weights, nodes.reshaped<Eigen::RowMajor>(weights.cols(), nodes.size() / weights.cols()));
+  const auto sigma_weights = own_weights(plan.sigma, range.first_sigma, range.sigmas).transpose();
+  const auto q_weights = own_weights(plan.q, range.first_q, range.qs);
+  const RowMajor values = weighted_sums(sigma_weights, block.values);
+  const RowMajor bounds = weighted_sums(sigma_weights.cwiseAbs(), block.bounds);
+  const Eigen::Index q_nodes = q_weights.rows();
+  Eigen::Index first = 0;
+  const auto next = [&](const auto& take) {
+    const RowMajor value = weighted_sums(values.middleCols(first, q_nodes), q_weights);
+    const RowMajor bound = weighted_sums(bounds.middleCols(first, q_nodes), q_weights.cwiseAbs());
+    for (std::size_t i = 0; i < moments.size(); ++i) take(moments[i], value.data()[i], bound.data()[i]);
+    first += q_nodes;
   };
-  const RowMajor values = between_sigmas(sigma_weights, block.values);
-  const RowMajor bounds = between_sigmas(sigma_weights.cwiseAbs(), block.bounds);
-  const auto between_qs = [&](const RowMajor& weights, const RowMajor& nodes, Eigen::Index sigma) {
-    const auto by_q = nodes.row(sigma).reshaped<Eigen::RowMajor>(weights.rows(), nodes.cols() / weights.rows());
-    return weighted_sums(by_q.transpose(), weights);
-  };
-  for (Eigen::Index sigma = 0; sigma < values.rows(); ++sigma) {
-    const RowMajor value = between_qs(q_weights, values, sigma);
-    const RowMajor bound = between_qs(q_weights.cwiseAbs(), bounds, sigma);
-    for (Eigen::Index q = 0; q < qs; ++q)
-      set_moments(plan, value.col(q), bound.col(q), moments[static_cast<std::size_t>(sigma * qs + q)]);
+  for (const auto& [member, error] : interpolated_members(plan)) {
+    next([&](Moments& entry, double value, double bound) {
+      entry.*member = value;
+      entry.*error = bound;
+    });
+  }
+  const auto columns = static_cast<std::size_t>((values.cols() - first) / (q_nodes * kPartsOfAColumn));
+  for (Moments& entry : moments) entry.columns.assign(columns, {});
+  for (std::size_t k = 0; k < columns; ++k) {
+    for (double ColumnMoments::*part : kColumnParts) {
+      next([&](Moments& entry, double value, double bound) {
+        entry.columns[k].*part = value;
+        entry.columns[k].error = std::max(entry.columns[k].error, bound);
+      });
+    }
   }
 }
 
@@ -308,19 +289,39 @@ std::optional<PointPlan> point_plan(const MomentsRequest& points) {
 }
 
 std::vector<ShapeBlock> panel_blocks(const PointPlan& plan, std::span<const Moments> nodes) {
-  const auto directions = std::ssize(plan.in_panel);
-  const auto sigmas = std::ssize(plan.shapes.sigma.nodes), qs = std::ssize(plan.shapes.q.nodes);
-  const auto count = static_cast<std::size_t>(directions * sigmas * qs);
-  std::vector<ShapeBlock> panels;
-  for (std::size_t first = 0; first < nodes.size(); first += count) {
-    ShapeBlock& panel = panels.emplace_back(node_moments(plan.shapes, nodes.subspan(first, count)));
-    add_tails(panel, plan.coefficients, 1, directions);
-    add_tails(panel, plan.shapes.sigma.coefficients, directions, sigmas);
-    add_tails(panel, plan.shapes.q.coefficients, directions * sigmas, qs);
-    const Eigen::Index moments = panel.values.cols();
-    const RowMajor largest =
-        panel.bounds.reshaped<Eigen::RowMajor>(directions, sigmas * qs * moments).colwise().maxCoeff();
-    panel.bounds = largest.reshaped<Eigen::RowMajor>(sigmas * qs, moments);
+  const auto columns = static_cast<Eigen::Index>(nodes.front().columns.size());
+  const auto moments = static_cast<Eigen::Index>(interpolated_members(plan.shapes).size()) + kPartsOfAColumn * columns;
+  const auto directions = static_cast<Eigen::Index>(plan.in_panel.size());
+  const auto sigmas = static_cast<Eigen::Index>(plan.shapes.sigma.nodes.size());
+  const auto qs = static_cast<Eigen::Index>(plan.shapes.q.nodes.size());
+  std::vector<ShapeBlock> panels(kPanelEnds_deg.size() - 1);
+  for (ShapeBlock& panel : panels) {
+    RowMajor bounds(directions * sigmas * qs, moments);
+    panel.values.resize(bounds.rows(), moments);
+    for (Eigen::Index row = 0; row < bounds.rows(); ++row, nodes = nodes.subspan(1)) {
+      Eigen::Index moment = 0;
+      const auto add = [&](double value, double bound) {
+        panel.values(row, moment) = value;
+        bounds(row, moment++) = bound;
+      };
+      for (const auto& [value, error] : interpolated_members(plan.shapes))
+        add(nodes.front().*value, nodes.front().*error);
+      for (const ColumnMoments& column : nodes.front().columns) {
+        for (double ColumnMoments::*part : kColumnParts) add(column.*part, column_bound(column, part));
+      }
+    }
+    const auto add_tails = [&](const Eigen::MatrixXd& coefficients, Eigen::Index outer, Eigen::Index count) {
+      const Eigen::Index inner = bounds.size() / (outer * count);
+      for (Eigen::Index i = 0; i < outer; ++i) {
+        const RowMajor values = Eigen::Map<const RowMajor>(panel.values.data() + i * count * inner, count, inner);
+        Eigen::Map<RowMajor>(bounds.data() + i * count * inner, count, inner).rowwise() += tails(coefficients, values);
+      }
+    };
+    add_tails(plan.coefficients, 1, directions);
+    add_tails(plan.shapes.sigma.coefficients, directions, sigmas);
+    add_tails(plan.shapes.q.coefficients, directions * sigmas, qs);
+    const auto by_direction = Eigen::Map<const RowMajor>(bounds.data(), directions, sigmas * qs * moments);
+    panel.bounds = by_direction.colwise().maxCoeff().reshaped<Eigen::RowMajor>(sigmas * qs, moments);
   }
   return panels;
 }
@@ -337,7 +338,18 @@ Moments interpolate(const PointPlan& plan, std::span<const ShapeBlock> panels, d
   const Eigen::RowVectorXd values = of_nodes.reshaped<Eigen::RowMajor>().transpose() * panel.values;
   const Eigen::RowVectorXd bounds = of_zeniths.cwiseAbs().sum() * (shape_row.cwiseAbs() * panel.bounds);
   Moments moments;
-  set_moments(plan.shapes, values, bounds, moments);
+  Eigen::Index moment = 0;
+  for (const auto& [member, error] : interpolated_members(plan.shapes)) {
+    moments.*member = values(moment);
+    moments.*error = bounds(moment++);
+  }
+  moments.columns.resize(static_cast<std::size_t>((values.cols() - moment) / kPartsOfAColumn));
+  for (ColumnMoments& column : moments.columns) {
+    for (double ColumnMoments::*part : kColumnParts) {
+      column.*part = values(moment);
+      column.error = std::max(column.error, bounds(moment++));
+    }
+  }
   return moments;
 }
 

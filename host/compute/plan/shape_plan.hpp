@@ -38,7 +38,7 @@ struct ShapePlan {
 std::optional<ShapePlan> shape_plan(const MomentsRequest& request);
 
 /// The known moments of a bundle. `bounds` has their error bounds and the estimated errors of
-/// interpolation. Shape: (nodes of sigma x nodes of q) x moments. The moments are those of kMomentMembers, without the
+/// interpolation. Shape: nodes of sigma x (moments x nodes of q). The moments are those of kMomentMembers, without the
 /// direct emission if the request does not want it, then i and q of each column.
 struct ShapeBlock {
   RowMajor values, bounds;

@@ -63,28 +63,36 @@ double mean_weight(const SpectralSample& sample, MeanLight light, double cos_the
 MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Reflectance> reflectances,
                                  double cos_theta) {
   const MeanLight light = mean_light(rule, cos_theta);
-  const auto sample_weight = [&](std::size_t j) { return mean_weight(rule.samples[j], light, cos_theta); };
-  double total = 0.0;
-  for (std::size_t j = 0; j < reflectances.size(); ++j) total += sample_weight(j);
+  const auto sample_weight = [&](const SpectralSample& sample) { return mean_weight(sample, light, cos_theta); };
   MeanReflectance mean;
-  // Sums a part of rho. Returns the error of the sum.
-  const auto take_sum = [&](double MeanReflectance::*sum, double Reflectance::*rho, double Reflectance::*rho_error) {
-    double error = 0.0;
-    for (std::size_t j = 0; j < reflectances.size(); ++j) {
-      const Reflectance& r = reflectances[j];
-      mean.*sum += sample_weight(j) * r.*rho;
-      error += std::abs(sample_weight(j)) * (r.*rho_error + rule.relative_error * std::abs(r.*rho));
-    }
-    const auto term = [&](std::size_t j, std::size_t m) { return sample_weight(j) * (reflectances[m].*rho); };
-    return error + panel_error(rule, term);
+  double total = 0.0;
+  double rho_i_error = 0.0;
+  double rho_q_error = 0.0;
+  double rho_u_error = 0.0;
+  for (std::size_t j = 0; j < reflectances.size(); ++j) {
+    const Reflectance& r = reflectances[j];
+    const double weight = sample_weight(rule.samples[j]);
+    total += weight;
+    mean.rho_i += weight * r.rho_i;
+    mean.rho_q += weight * r.rho_q;
+    mean.rho_u += weight * r.rho_u;
+    rho_i_error += std::abs(weight) * (r.rho_i_error + rule.relative_error * std::abs(r.rho_i));
+    rho_q_error += std::abs(weight) * (r.rho_q_error + rule.relative_error * std::abs(r.rho_q));
+    rho_u_error += std::abs(weight) * (r.rho_u_error + rule.relative_error * std::abs(r.rho_u));
+  }
+  const auto spectral_error = [&](double Reflectance::*rho) {
+    return panel_error(
+        rule, [&](std::size_t j, std::size_t m) { return sample_weight(rule.samples[j]) * (reflectances[m].*rho); });
   };
-  const double i_error = take_sum(&MeanReflectance::rho_i, &Reflectance::rho_i, &Reflectance::rho_i_error);
-  const double q_error = take_sum(&MeanReflectance::rho_q, &Reflectance::rho_q, &Reflectance::rho_q_error);
-  const double u_error = take_sum(&MeanReflectance::rho_u, &Reflectance::rho_u, &Reflectance::rho_u_error);
-  mean.error = std::max({i_error, q_error, u_error}) / total;
+  rho_i_error += spectral_error(&Reflectance::rho_i);
+  rho_q_error += spectral_error(&Reflectance::rho_q);
+  rho_u_error += spectral_error(&Reflectance::rho_u);
   if (rule.diffuse && light == MeanLight::kIncident)
     mean.rho_i += rule.diffuse->surroundings + cos_theta * rule.diffuse->irradiance;
-  for (double* const rho : {&mean.rho_i, &mean.rho_q, &mean.rho_u}) *rho /= total;
+  mean.rho_i /= total;
+  mean.rho_q /= total;
+  mean.rho_u /= total;
+  mean.error = std::max({rho_i_error, rho_q_error, rho_u_error}) / total;
   return mean;
 }
 

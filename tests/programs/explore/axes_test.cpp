@@ -1,8 +1,10 @@
 // The axes of the plots: ends that a user types, logarithmic axes, and the colours of the map.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "explore/window/style.hpp"
 #include "explore_support.hpp"
@@ -106,6 +108,33 @@ TEST(HeatMap, EachPairOfAxes_HasTheValuesOfTheScene) {
       EXPECT_NEAR(shown, exact[Quantity::kDolp], 2.0 * exact[Quantity::kErrorEstimate]) << column << ' ' << row;
     }
   }
+}
+
+TEST(HeatMap, Jobs_HaveFewTemperatures) {
+  for (const auto& [x, y] : {std::pair("theta", "temperature"), {"temperature", "theta"}}) {
+    Session session(paint());
+    session.set_view({.map_x = x, .map_y = y});
+    std::size_t most = 0;
+    for (Job& job : session.wanted()) {
+      const std::vector<double>& all_K = job.list["temperature_K"];
+      most = std::max(most, std::set<double>(all_K.begin(), all_K.end()).size());
+    }
+    EXPECT_EQ(most, HeatMap::kLevels[0].batch) << x;
+  }
+}
+
+TEST(HeatMap, JobsThatArrived_StayWhileAnotherMapIsWanted) {
+  const Scene scene = paint().scene();
+  const MapAxis sigma{.name = "sigma", .label = "σ", .key = "surface.sigma", .scale = {0.1, 1.0}};
+  HeatMap map(scene);
+  map.follow("one", scene, false, {}, sigma, 0.0);
+  const std::vector<Job> jobs = map.wanted(0);
+  EXPECT_TRUE(map.take(done(jobs[0])));
+  map.follow("another", scene, false, {}, sigma, 0.0);
+  EXPECT_FALSE(map.is_arriving());
+  map.follow("one", scene, false, {}, sigma, 0.0);
+  EXPECT_EQ(map.wanted(0).front().key, jobs[1].key);
+  EXPECT_TRUE(map.take(done(jobs[1])));
 }
 
 TEST(HeatMap, Axes_FollowTheScene) {

@@ -117,7 +117,7 @@ Settings fitted_settings(const ComparedModel& fitted) {
   return all;
 }
 
-/// What the fitted model predicts for `data`. Empty if Model refuses the scene, for example without a bracket.
+/// The predictions of the fitted model for `data`. Empty if Model refuses the scene, for example without a bracket.
 std::optional<fit::Prediction> predicted(const ComparedModel& best, MeasuredData data, const FitOptions& options,
                                          ModelError error, ModelEvaluator& evaluator) {
   data.has_uncertainties = true;  // Model wants them with a bracket; the prediction does not depend on them

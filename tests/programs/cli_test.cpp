@@ -107,6 +107,14 @@ TEST_F(CommandLine, Eval_StdinToStdout_ReportOnStderr) {
   EXPECT_TRUE(contains(outcome.err, "3 points"));
 }
 
+TEST_F(CommandLine, Eval_PointsOfATable_GivesItsNumbers) {
+  const std::string settings =
+      "--evaluator cpu --quiet --set grid.n=[1.4,1.6] --set grid.k=[0,0.1] --set grid.theta_deg=[0,40,70]";
+  succeeded(dolp(joined("table scene.toml -o t.csv", settings)));
+  const Outcome at_points = dolp(joined("eval scene.toml --points t.csv -o -", settings));
+  EXPECT_EQ(parse_csv(at_points.out), parse_csv(content("t.csv")));
+}
+
 TEST_F(CommandLine, Eval_OwnSlopesAlongAndAcross_HaveRhoU) {
   put("points.csv", "theta_deg,surface_azimuth_deg,sigma_cross\n40,30,0.2\n");
   const std::string no_masking = "--set surface.masking=none --evaluator cpu --quiet";

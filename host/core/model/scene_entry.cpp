@@ -185,6 +185,7 @@ SceneEntries SceneEntries::part(const GridBox& box) const {
 }
 
 bool SceneEntries::has_own_cross_slopes() const {
+  if (is_grid_) return !axes_[Axis::kSigmaCross].empty();
   return std::ranges::any_of(points_, [](const SceneEntry& entry) { return entry.shape.sigma_cross > 0.0; });
 }
 

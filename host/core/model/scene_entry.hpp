@@ -53,6 +53,7 @@ struct SceneEntry {
   std::uint32_t variant = 0;              ///< position in SceneEntries::variants
   /// Zenith of the view, and azimuth between source and view; nullopt means the scene's values.
   std::optional<double> view_zenith_deg = {}, relative_azimuth_deg = {};
+  friend bool operator==(const SceneEntry&, const SceneEntry&) = default;
 };
 
 /// The n, k, thickness or its spread of one film, which an entry uses instead of the scene's value.
@@ -119,7 +120,7 @@ class SceneEntries {
   std::size_t entries_per_direction() const {
     return is_grid_ ? sigma().size() * q().size() * counts_[Axis::kSigmaCross] * counts_[Axis::kSurfaceAzimuth] : 1;
   }
-  bool has_own_cross_slopes() const;  ///< true if points of a list have a sigma_cross
+  bool has_own_cross_slopes() const;  ///< true if entries have their own sigma_cross, instead of the scene's
   bool has_own_index() const;         ///< true if some entries have their own n or k
   /// The n and k that entries have: the combinations of both axes of a grid, or n and k of each point that has them.
   std::vector<OpticalConstants> own_indices() const;

@@ -125,7 +125,10 @@ Report Evaluator::write_points(const Scene& scene, const std::filesystem::path& 
       csv.append(run_columns(layout.quantities, std::move(results)));
       rows_s += seconds_since(start);
     };
-    RunOutcome outcome = run.compute(write_rows);
+    CollectedResults collected(run.entries());  // parts of a grid do not come in the order of the points
+    const bool is_grid = run.entries().is_grid();
+    RunOutcome outcome = run.compute(is_grid ? collected.sink() : Sink(write_rows));
+    if (is_grid) write_rows(run.entries(), collected.take(), outcome.summary);
     const std::optional<ScatteringGap> gap = timed_gap(values, run.entries(), outcome);
     const Clock::time_point start = Clock::now();
     csv.commit();

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <dolp/errors.hpp>
 #include <map>
+#include <ranges>
 #include <set>
 
 #include <dolp/number_range.hpp>
@@ -47,8 +48,10 @@ void check_columns(const SceneValues& scene, const Points& points) {
   }
 }
 
-std::vector<std::pair<Axis, std::vector<double>>> variant_columns(const SceneValues& scene, const Points& points) {
-  std::vector<std::pair<Axis, std::vector<double>>> columns;
+using VariantColumns = std::vector<std::pair<Axis, std::vector<double>>>;
+
+VariantColumns variant_columns(const SceneValues& scene, const Points& points) {
+  VariantColumns columns;
   for (const Axis axis : kVariantAxes) {
     if (!points[axis] || points.size() == 0) continue;
     if (axis == Axis::kTemperature && !scene.emission)
@@ -135,6 +138,40 @@ void check_cross_slopes(const SceneValues& scene, const SlopeShape& shape, const
       where, format_number(shape.sigma), format_number(shape.sigma_cross), most, scene.accuracy.tolerance));
 }
 
+// A longer list is no grid, because the results of all parts of such a grid are kept until the last one is there.
+constexpr std::size_t kMostGridPoints = 1U << 20U;
+
+/// The only grid that can have the same entries as the points, in their order; nullopt if none can.
+std::optional<SceneEntries> grid_like(const SceneValues& scene, const Points& points, const VariantColumns& columns) {
+  if (!points.films.empty() || points.size() > kMostGridPoints) return std::nullopt;
+  AxisArray<Points::Column> coordinates = points.coordinates;
+  for (const auto& [axis, values] : columns) coordinates[axis] = values;
+  Axes axes = make_axes({scene.grid[Axis::kTheta].front()}, {scene.surface.sigma}, {scene.surface.q});
+  std::size_t together = 1;  // points that differ only on the axes so far
+  for (const Axis axis : std::views::reverse(kAllAxes)) {
+    if (!coordinates[axis]) continue;
+    const std::vector<double>& column = *coordinates[axis];
+    axes[axis].clear();
+    for (std::size_t row = 0; row < column.size() && (row == 0 || column[row] != column.front()); row += together)
+      axes[axis].push_back(axis == Axis::kSigma ? shape_at(scene, points, row).sigma : column[row]);
+    together *= axes[axis].size();
+  }
+  return SceneEntries::grid(std::move(axes), scene.surface.material.constant, scene.cross_slopes());
+}
+
+bool has_same_entries(const SceneEntries& grid, const SceneEntries& list) {
+  EntryReader reader(grid);
+  if (grid.size() != list.size()) return false;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    SceneEntry entry = reader[i];
+    const SceneEntry listed = list[i];
+    if (grid.variants()[entry.variant] != list.variants()[listed.variant]) return false;
+    entry.variant = listed.variant;
+    if (entry != listed) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 void check_surface(const SceneValues& scene, const Points& points) {
@@ -186,15 +223,8 @@ SceneEntries point_entries(const SceneValues& scene, const Points& points) {
   check_surface(scene, points);
   const Surface& surface = scene.surface;
   const bool has_own_index = points[Axis::kN] || points[Axis::kK];
-  const auto columns = variant_columns(scene, points);
-  const bool has_variants = !columns.empty() || !points.films.empty();
-  const bool has_views = points[Axis::kViewZenith] || points[Axis::kRelativeAzimuth];
-  const bool has_shapes =
-      points[Axis::kSigma] || points[Axis::kQ] || points[Axis::kSigmaCross] || points[Axis::kSurfaceAzimuth];
-  if (points[Axis::kTheta] && !has_shapes && !has_views && !has_own_index && !has_variants) {
-    check_cross_slopes(scene, scene.cross_slopes().shape(surface.sigma, surface.q), scene.path_name);
-    return SceneEntries::grid(make_axes(*points[Axis::kTheta], {surface.sigma}, {surface.q}), {}, scene.cross_slopes());
-  }
+  const bool has_own_widths = points[Axis::kSigma] || points[Axis::kSigmaCross];
+  const VariantColumns columns = variant_columns(scene, points);
   if (points[Axis::kWavelength] && points.size() > 0) check_wavelengths(scene, points);
   std::map<SceneVariant, std::uint32_t> variants;
   std::vector<SceneEntry> entries;
@@ -203,7 +233,7 @@ SceneEntries point_entries(const SceneValues& scene, const Points& points) {
     SceneEntry entry;
     entry.theta_deg = value_or(points[Axis::kTheta], row, scene.grid[Axis::kTheta].front());
     entry.shape = shape_at(scene, points, row);
-    check_cross_slopes(scene, entry.shape, points.where(row));
+    check_cross_slopes(scene, entry.shape, has_own_widths ? points.where(row) : scene.path_name);
     const OpticalConstants& index = surface.material.constant;
     if (has_own_index)
       entry.index =
@@ -217,7 +247,10 @@ SceneEntries point_entries(const SceneValues& scene, const Points& points) {
   }
   std::vector<SceneVariant> all(std::max<std::size_t>(1, variants.size()));
   for (const auto& [variant, position] : variants) all[position] = variant;
-  return {std::move(entries), std::move(all), scene.cross_slopes().wind_model};
+  SceneEntries list(std::move(entries), std::move(all), scene.cross_slopes().wind_model);
+  std::optional<SceneEntries> grid = grid_like(scene, points, columns);
+  if (grid && has_same_entries(*grid, list)) return std::move(*grid);
+  return list;
 }
 
 }  // namespace dolp

@@ -182,6 +182,7 @@ TEST(CrossSlopes, ImpossibleScenes_AreRefusedWithTheirKeys) {
   for (const auto& [settings, part] : cases)
     EXPECT_TRUE(contains(error_text([&, own = settings] { grid_entries(brushed(own)); }), part));
   Points points;
+  points.count = 1;
   points[Axis::kTheta] = {10.0};
   EXPECT_TRUE(contains(error_text([&] { point_entries(brushed({{"surface.sigma", 0.0}}), points); }), "quotient"));
 }

@@ -80,6 +80,21 @@ TEST(PointEntries, AbsentColumns_ComeFromTheScene) {
   EXPECT_EQ(entries[0].index, (OpticalConstants{kAbsorbing.n, 0.25}));
 }
 
+TEST(PointEntries, AllCombinationsInTheOrderOfATable_AreAGrid) {
+  const SceneValues scene = make_scene(Distribution::kCauchy, Masking::kNone, kAbsorbing);
+  const auto grid_of = [&](const char* csv) {
+    const auto entries = point_entries(scene, parse_points(csv, "p.csv", PointsKind::kDirections));
+    return entries.is_grid() ? std::optional(entries.axes()) : std::nullopt;
+  };
+  const auto axes = grid_of("q,n,theta_deg\n4,1.5,50\n3,1.5,50\n4,1.5,20\n3,1.5,20\n4,2,50\n3,2,50\n4,2,20\n3,2,20\n");
+  ASSERT_TRUE(axes);
+  EXPECT_EQ(*axes, make_axes({50.0, 20.0}, {scene.surface.sigma}, {4.0, 3.0}, {}, {1.5, 2.0}));
+  EXPECT_TRUE(grid_of("theta_deg\n7\n"));
+  for (const char* csv : {"q,theta_deg\n4,50\n4,20\n3,50\n3,20\n", "q,theta_deg\n4,50\n3,50\n4,20\n",
+                          "q,theta_deg\n4,50\n3,50\n4,20\n2,20\n", "theta_deg\n50\n20\n50\n20\n"})
+    EXPECT_FALSE(grid_of(csv)) << csv;
+}
+
 TEST(EvaluateScene_OwnIndexOfTheMaterial_GivesTheSameAsTheMaterial, OverABand) {
   SceneValues scene = band_scene();
   scene.surface.material = {};

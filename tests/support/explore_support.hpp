@@ -41,27 +41,25 @@ inline SceneEdits paint(const std::vector<std::string>& overrides = {}) {
   return SceneEdits(Scene::from_text(kPaint, settings_from_text(overrides), "paint.toml"));
 }
 
-inline Evaluate on_the_cpu(Evaluator& evaluator) {
-  return [&evaluator](const Scene& scene, const PointList& list, const RunOptions& options) {
-    return evaluate(evaluator, scene, list, options);
-  };
+inline Results on_the_cpu(const Scene& scene, const std::vector<Column>& points, const RunOptions& options = {}) {
+  thread_local Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
+  return evaluator.evaluate(scene, points, options);
 }
 
-/// A session and its worker, which computes on the CPU.
-class Driver {
+/// A session with its worker, which computes on the CPU.
+class Driver : public Session {
  public:
-  explicit Driver(SceneEdits edits, const View& view = {})
-      : session(std::move(edits)), worker_(on_the_cpu(evaluator_), [] {}) {
-    session.set_view(view);
+  explicit Driver(SceneEdits edits, const View& view = {}) : Session(std::move(edits)), worker_(on_the_cpu, [] {}) {
+    set_view(view);
     settle();
   }
 
   /// Does what the window does for each frame: takes results and requests new ones. Returns false if all is done.
   bool frame() {
     const bool was_idle = worker_.is_idle();
-    session.take(worker_.take_news());
-    const bool is_changed = session.take_changed();
-    std::vector<Job> jobs = is_changed ? session.wanted() : std::vector<Job>{};
+    take(worker_.take_news());
+    const bool is_changed = take_changed();
+    std::vector<Job> jobs = is_changed ? wanted() : std::vector<Job>{};
     if (was_idle && jobs.empty()) return false;
     if (is_changed) worker_.want(std::move(jobs));
     return true;
@@ -71,28 +69,26 @@ class Driver {
     while (frame()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 
-  Session session;
-
  private:
-  Evaluator evaluator_{EvaluatorOptions{.evaluator = "cpu"}};
   Worker worker_;
 };
 
 inline std::vector<Point> truth(const Scene& scene, const PointList& list) {
-  Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
-  return result_points(list, evaluator.evaluate(scene, list.columns()));
+  return result_points(list, on_the_cpu(scene, list.columns()));
 }
 
-/// Accurate results of the scene at the zeniths of `points`.
-inline std::vector<Point> truth(const Scene& scene, const std::vector<Point>& points) {
-  std::vector<double> theta_deg;
-  for (const Point& point : points) theta_deg.push_back(point.theta_deg);
-  return truth(scene, points_at(scene, theta_deg));
+inline JobResult done(const Job& job) {
+  const Scene scene = job.scene.with(job.settings);
+  return {.key = job.key, .scene = scene, .list = job.list, .points = truth(scene, job.list)};
 }
 
-/// The result of a job that has only one part.
-inline JobPart done(const Job& job) {
-  return {.key = job.key, .scene = job.scene, .points = truth(job.scene, job.parts.front()), .is_last = true};
+/// Compares a shown point with an accurate result for `scene` at this zenith.
+inline void expect_agreement(const Point& shown, const Scene& scene, double theta_deg) {
+  const Point exact = truth(scene, points_at(scene, {theta_deg})).front();
+  if (std::isnan(shown[Quantity::kDolp]) || std::isnan(exact[Quantity::kDolp])) return;
+  EXPECT_NEAR(shown[Quantity::kDolp], exact[Quantity::kDolp],
+              shown[Quantity::kErrorEstimate] + exact[Quantity::kErrorEstimate])
+      << surface_name(scene) << " at " << theta_deg;
 }
 
 inline void expect_same(const std::vector<Point>& a, const std::vector<Point>& b) {

@@ -41,18 +41,7 @@ void BackgroundTask::finish() {
 
 void Sweep::follow(Job job, const std::string& column) {
   job_ = std::move(job);
-  if (std::exchange(column_, column) == column) return;
-  points_.clear();  // the old points belong to another axis
-  at_.clear();
-}
-
-bool Sweep::take(const JobPart& news) {
-  if (!job_ || news.key != job_->key) return false;
-  shown_key_ = news.key;
-  points_ = news.points;
-  csv_ = news.csv;
-  at_ = job_->parts.front()[column_];
-  return true;
+  if (std::exchange(column_, column) != column) shown_.reset();  // the old points belong to another axis
 }
 
 Worker::Worker(Evaluate evaluate, std::function<void()> on_news)
@@ -82,25 +71,24 @@ void Worker::want(std::vector<Job> jobs) {
 }
 
 void Worker::run() {
-  const auto is_open = [](const Task& task) { return !task.is_done(); };
   std::unique_lock lock(mutex_);
   for (;;) {
-    changed_.wait(lock, [&] { return is_stopping_ || std::ranges::any_of(tasks_, is_open); });
+    changed_.wait(lock, [&] { return is_stopping_ || !std::ranges::all_of(tasks_, &Task::is_done); });
     if (is_stopping_) return;
-    Task task = *std::ranges::find_if(tasks_, is_open);
+    const Job job = std::ranges::find(tasks_, false, &Task::is_done)->job;
     is_running_ = true;
     lock.unlock();
-    std::optional<JobPart> part;
+    std::optional<JobResult> result;
     try {
-      part = advance(task);
+      result = compute(job);
     } catch (const Cancelled&) {
-      // The job is no longer wanted, or the worker ends. If the job is wanted again, this loop computes the part again.
+      // The job is no longer wanted, or the worker ends. If the job is wanted again, this loop computes it again.
     }
     lock.lock();
     is_running_ = false;
-    Task* const wanted = find(task.job.key);
-    if (part && (wanted || task.job.is_brief)) news_.push_back(std::move(*part));
-    if (part && wanted) *wanted = std::move(task);
+    Task* const wanted = find(job.key);
+    if (result && wanted) wanted->is_done = true;
+    if (result && (wanted || job.is_brief)) news_.push_back(std::move(*result));
     lock.unlock();
     arrived_.notify_all();
     on_news_();
@@ -108,35 +96,23 @@ void Worker::run() {
   }
 }
 
-JobPart Worker::advance(Task& task) {
-  Job& job = task.job;
-  if (job.tolerance > job.scene.number("accuracy.tolerance"))
-    job.scene = job.scene.with("accuracy.tolerance", job.tolerance);
-  const PointList& list = job.parts[task.next_part];
+JobResult Worker::compute(const Job& job) {
+  JobResult news{.key = job.key, .scene = job.scene, .list = job.list};
+  std::vector<Setting> settings = job.settings;
+  if (job.tolerance > job.scene.number("accuracy.tolerance")) settings.push_back({"accuracy.tolerance", job.tolerance});
   const auto start = std::chrono::steady_clock::now();
   const auto progress = [&](std::size_t, std::size_t) { return may_continue(job); };
-  JobPart news{.key = job.key, .part = task.next_part, .scene = job.scene};
-  Results results;
   try {
-    results = evaluate_(job.scene, list, {.keep_all = job.keep_all, .progress = progress});
+    if (!settings.empty()) news.scene = job.scene.with(settings);
+    news.results = evaluate_(news.scene, job.list.columns(), {.keep_all = job.keep_all, .progress = progress});
   } catch (const InputError& error) {
     news.refusal = error.what();
-    results.status.assign(list.size(), kOutsideModelDomain);
+    news.results.status.assign(job.list.size(), kOutsideModelDomain);
   }
-  news.points = result_points(list, results);
-  task.wall_s += seconds_since(start);
-  task.evaluations += results.integrand_evaluations;
-  news.is_last = ++task.next_part == job.parts.size();
-  if (!news.is_last) return news;
-  news.wall_s = task.wall_s;
-  news.evaluations = task.evaluations;
-  if (job.parts.size() == 1) news.csv = to_csv(list.columns(), results);
-  if (!job.wants_effects || !news.refusal.empty()) return news;
-  for (const Attribute& attribute : results.attributes) {
-    const bool is_device = attribute.name == "device" || attribute.name == "driver";
-    if (is_device) news.device += (news.device.empty() ? "" : ", ") + std::get<std::string>(attribute.value);
-  }
-  news.effects = effects(job.scene, list.columns(), job.keep_all);
+  news.points = result_points(job.list, news.results);
+  news.wall_s = seconds_since(start);
+  const bool has_effects = job.wants_effects && news.refusal.empty();
+  if (has_effects) news.effects = effects(news.scene, job.list.columns(), job.keep_all);
   return news;
 }
 

@@ -79,63 +79,65 @@ class BackgroundTask {
 struct Job {
   std::string key;  ///< jobs with the same key have the same content
   Scene scene;
-  std::vector<PointList> parts;  ///< lists of points, computed one after the other; more urgent jobs may run in between
-  double tolerance = 0.0;        ///< the job has the larger one of this tolerance and its scene's tolerance
+  std::vector<Setting> settings = {};  ///< changes of the scene
+  PointList list;
+  double tolerance = 0.0;  ///< the job has the larger one of this tolerance and its scene's tolerance
   bool keep_all = false;
-  bool wants_effects = false;  ///< the last part of the job then has JobPart::effects
+  bool wants_effects = false;  ///< the result then has JobResult::effects
   bool is_brief = false;       ///< once begun, the job runs to its end even if it is no longer wanted
 };
 
-struct JobPart {
+struct JobResult {
   std::string key = {};
-  std::size_t part = 0;  ///< position in Job::parts
-  Scene scene;           ///< Job::scene with the tolerance that was used for `points`
-  std::vector<Point> points = {};
-  std::string csv = {};      ///< `points` as CSV with the columns of `dolp eval`; empty if the job has several parts
-  std::string refusal = {};  ///< why no point has a value: slope widths that differ too much; "" if they have
-  bool is_last = false;
-  // The members below belong to the whole job. Only the last part of a job has them.
+  Scene scene;  ///< Job::scene with the settings and the tolerance that were used for `points`
+  PointList list = {};
+  Results results = {};
+  std::vector<Point> points = {};  ///< the points of `list` with their `results`
+  std::string refusal = {};        ///< why no point has a value: slope widths that differ too much; "" if they have
   std::vector<Effect> effects = {};
   double wall_s = 0.0;
-  double evaluations = 0.0;
-  std::string device = {};  ///< name and driver of the device; empty unless Job::wants_effects
+
+  std::string csv() const { return to_csv(list.columns(), results); }  ///< with the columns of `dolp eval`
 };
 
-/// Holds the points of one job, which has one part. While a new job is computed, points() still returns the old points.
+/// Holds the result of one job. While a new job is computed, points() still returns the old points.
 class Sweep {
  public:
   /// Sets the job to compute. `column` is the column of the job's PointList that at() returns.
   void follow(Job job, const std::string& column = "theta_deg");
   std::optional<Job> wanted() const { return is_finished() ? std::nullopt : job_; }
-  bool take(const JobPart& news);
-  bool is_finished() const { return job_ && shown_key_ == job_->key; }  ///< points() belong to the newest job
-  const std::vector<Point>& points() const { return points_; }
-  const std::vector<double>& at() const { return at_; }  ///< values of `column`, one per point
-  const std::string& csv() const { return csv_; }        ///< JobPart::csv of points()
+  void take(const JobResult& news) {
+    if (job_ && news.key == job_->key) shown_ = news;
+  }
+  bool is_finished() const { return job_ && shown_ && shown_->key == job_->key; }  ///< points() are of the newest job
+  std::vector<Point> points() const { return shown_ ? shown_->points : std::vector<Point>(); }
+  std::vector<double> at() const {  // values of `column`, one per point
+    return shown_ ? PointList(shown_->list)[column_] : std::vector<double>();
+  }
+  std::string csv() const { return shown_.value().csv(); }
 
  private:
   std::optional<Job> job_;
-  std::string column_, shown_key_, csv_;
-  std::vector<Point> points_;
-  std::vector<double> at_;
+  std::string column_;
+  std::optional<JobResult> shown_;
 };
 
-/// A function that computes points, such as explore::evaluate(). Only the thread of the Worker calls this function.
-using Evaluate = std::function<Results(const Scene& scene, const PointList& list, const RunOptions& options)>;
+/// A function that computes points, as Evaluator::evaluate() does. Only the thread of the Worker calls this function.
+using Evaluate = std::function<Results(const Scene&, const std::vector<Column>& points, const RunOptions&)>;
 
 /// A thread that computes the jobs of want() in order. When the evaluator reports progress on a job that is no longer
 /// wanted, the thread cancels this job, unless Job::is_brief is true.
 class Worker {
  public:
-  /// The thread of the worker calls `on_news` after each part of a job and after a failure.
+  /// The thread of the worker calls `on_news` after each job and after a failure.
   Worker(Evaluate evaluate, std::function<void()> on_news);
   ~Worker();
 
   /// Replaces the list of wanted jobs, the most urgent first. A running job continues if its key is in the new list.
   void want(std::vector<Job> jobs);
 
-  /// The parts of jobs that were computed since the last call. Errors: the exception that ended the worker.
-  std::vector<JobPart> take_news() {
+  /// The results since the last call. Errors: the exception that ended the worker.
+  std::vector<JobResult> take_news() {
     if (end_.valid() && is_ended(end_)) end_.get();
     const std::scoped_lock lock(mutex_);
     return std::exchange(news_, {});
@@ -155,15 +157,11 @@ class Worker {
  private:
   struct Task {
     Job job;
-    std::size_t next_part = 0;
-    double wall_s = 0.0;       ///< total of the finished parts
-    double evaluations = 0.0;  ///< total of the finished parts
-
-    bool is_done() const { return next_part == job.parts.size(); }
+    bool is_done = false;
   };
 
   void run();
-  JobPart advance(Task& task);
+  JobResult compute(const Job& job);
   Task* find(const std::string& key) {  // null if no wanted task has this key
     const auto found = std::ranges::find(tasks_, key, [](const Task& task) { return task.job.key; });
     return found == tasks_.end() ? nullptr : &*found;
@@ -180,7 +178,7 @@ class Worker {
   std::condition_variable arrived_;
   std::vector<Task> tasks_;  ///< the wanted jobs, the most urgent first
   bool is_running_ = false;
-  std::vector<JobPart> news_;
+  std::vector<JobResult> news_;
   bool is_stopping_ = false;
   std::future<void> end_;  ///< holds the exception that ended the worker
   std::jthread thread_;    ///< declared last: its destructor waits for the thread before other members disappear

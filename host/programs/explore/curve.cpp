@@ -22,43 +22,38 @@ double upper_dolp(const Point& point) { return point_dolp(point) + point[Quantit
 struct Removal {
   const char* effect;
   bool radiates;
-  const char* key;               ///< scene key; its value shows whether a scene has the effect
   std::vector<Setting> changes;  ///< settings that remove the effect from a scene
 
   bool is_in(const Scene& scene) const {
-    const bool is_number = described(key).type == Key::Type::kNumber;
-    if (!is_number) return scene.word(key) && *scene.word(key) != plain_text(changes.front().value);
-    const bool is_table = changes.front().key.find('.') == std::string::npos;
-    return is_table ? scene.number(key).has_value() : scene.number(key) > 0.0;
+    const std::string& key = changes.front().key;
+    const bool is_table = key.find('.') == std::string::npos;
+    if (is_table) return has_effect(scene, key);
+    if (described(key).type == Key::Type::kNumber) return scene.number(key) > 0.0;
+    return scene.word(key) && *scene.word(key) != plain_text(changes.front().value);
   }
 };
 
 const std::vector<Removal>& removals() {
   static const std::vector<Removal> all = {
-      {"emission", true, "emission.temperature_K", {{"emission", {}}}},
-      {"source", true, "source.scale", {{"source", {}}}},
-      {"surroundings", true, "surroundings.temperature_K", {{"surroundings", {}}}},
-      {"surroundings", true, "surroundings.profile", {{"surroundings", {}}}},
-      {"surroundings", true, kZenithSky, {{"surroundings", {}}}},
-      {"path", false, "path.transmittance", {{"path", {}}}},
-      {"diffuse", false, "surface.diffuse", {{"surface.diffuse", 0.0}}},
-      {"specular", false, "surface.specular", {{"surface.specular", 0.0}}},
-      {"masking", false, "surface.masking", {{"surface.masking", "none"}}},
-      {"scattering", false, "surface.scattering", {{"surface.scattering", "single"}}},
-      {"roughness",
-       false,
-       "surface.sigma",
-       {{"surface.sigma", 0.0}, {kSigmaCross, Value()}, {"grid.sigma_cross", Value()}}},
+      {"emission", true, {{"emission", {}}}},
+      {"source", true, {{"source", {}}}},
+      {"surroundings", true, {{"surroundings", {}}}},
+      {"path", false, {{"path", {}}}},
+      {"diffuse", false, {{"surface.diffuse", 0.0}}},
+      {"specular", false, {{"surface.specular", 0.0}}},
+      {"masking", false, {{"surface.masking", "none"}}},
+      {"scattering", false, {{"surface.scattering", "single"}}},
+      {"roughness", false, {{"surface.sigma", 0.0}, {kSigmaCross, Value()}, {"grid.sigma_cross", Value()}}},
   };
   return all;
 }
 
-std::vector<WithoutEffect> without_each(const Scene& scene, const SceneEdits& edits) {
+std::vector<WithoutEffect> without_each(const Scene& scene) {
   std::vector<WithoutEffect> without;
   for (const Removal& removal : removals()) {
     if (!removal.is_in(scene)) continue;
     try {
-      without.push_back({removal.effect, removal.radiates, edits.scene().with(removal.changes)});
+      without.push_back({removal.effect, removal.radiates, scene.with(removal.changes)});
     } catch (const InputError&) {
       // The scene is invalid without this effect, for example if nothing else radiates. So the list lacks it.
     }
@@ -89,14 +84,14 @@ std::optional<Job> Curve::wanted(Stage stage) const {
   const bool is_coarse = stage == Stage::kCoarse;
   return Job{.key = job_key(stage),
              .scene = scene_,
-             .parts = {points_at(scene_, Scale{0.0, 90.0}.values(is_coarse ? kCoarseCount : kFineCount))},
+             .list = points_at(scene_, Scale{0.0, 90.0}.values(is_coarse ? kCoarseCount : kFineCount)),
              .tolerance = is_coarse ? kCoarseTolerance : 0.0,
              .keep_all = keep_all_,
              .wants_effects = !is_coarse,
              .is_brief = is_coarse};
 }
 
-bool Curve::take(const JobPart& news) {
+bool Curve::take(const JobResult& news) {
   const bool is_fine = news.key == job_key(Stage::kFine);
   if (!is_fine && news.key != job_key(Stage::kCoarse)) return false;
   if (is_fine) finished_ = news;
@@ -104,7 +99,7 @@ bool Curve::take(const JobPart& news) {
   return true;
 }
 
-bool Curve::take_earlier(const JobPart& news) {
+bool Curve::take_earlier(const JobResult& news) {
   if (!news.key.starts_with(key_prefix(Stage::kCoarse))) return false;
   if (!is_current()) shown_ = news;
   return true;
@@ -141,7 +136,7 @@ std::string true_error(const Curve& curve, const Progress& progress) {
                      (*worst)[Quantity::kErrorEstimate], stated.size());
 }
 
-void Peak::follow(const Curve& curve, const SceneEdits& edits, double theta_max_deg) {
+void Peak::follow(const Curve& curve, double theta_max_deg) {
   const std::string key = "up to " + format_number(theta_max_deg) + ' ' + curve.key();
   if (key == key_) return;
   key_ = key;
@@ -156,26 +151,26 @@ void Peak::follow(const Curve& curve, const SceneEdits& edits, double theta_max_
   const double low = (best == curve_.begin() ? best : best - 1)->theta_deg;
   const double high = (best + 1 == curve_.end() ? best : best + 1)->theta_deg;
   theta_deg_ = Scale{low, high}.values(static_cast<std::size_t>(std::lround((high - low) / kStepDeg)) + 1);
-  without_ = without_each(scene_, edits);
+  without_ = without_each(scene_);
 }
 
 std::vector<Job> Peak::wanted() const {
   std::vector<Job> jobs;
   if (theta_deg_.empty()) return jobs;
   if (!answer_) {
-    jobs.push_back({.key = "peak " + key_, .scene = scene_, .parts = {points_at(scene_, theta_deg_)}});
+    jobs.push_back({.key = "peak " + key_, .scene = scene_, .list = points_at(scene_, theta_deg_)});
     return jobs;
   }
   for (const WithoutEffect& removed : without_) {
     if (removed.at_cursor) continue;
     jobs.push_back({.key = job_key(removed),
                     .scene = removed.scene,
-                    .parts = {points_at(removed.scene, {cursor_.theta_deg, answer_->at.theta_deg})}});
+                    .list = points_at(removed.scene, {cursor_.theta_deg, answer_->at.theta_deg})});
   }
   return jobs;
 }
 
-bool Peak::take(const JobPart& news) {
+bool Peak::take(const JobResult& news) {
   if (news.key == "peak " + key_) {
     answer_from(news.points);
     return true;

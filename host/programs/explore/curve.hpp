@@ -23,9 +23,9 @@ class Curve {
   void follow(const std::string& key, const Scene& scene, bool keep_all);
 
   std::optional<Job> wanted(Stage stage) const;  ///< job that computes a stage; empty if the stage is done
-  bool take(const JobPart& news);  ///< stores results for the current scene; returns false for other results
+  bool take(const JobResult& news);  ///< stores results for the current scene; returns false for other results
   /// Shows a coarse curve of an earlier scene until the current scene has points. Returns false for other results.
-  bool take_earlier(const JobPart& news);
+  bool take_earlier(const JobResult& news);
 
   const Scene& scene() const { return scene_; }
   const std::string& key() const { return key_; }
@@ -35,7 +35,7 @@ class Curve {
   const std::vector<Point>& points() const { return shown_.points; }
   std::vector<Point> drawn() const;  ///< points(), and the point of the maximum as soon as it is known
   void set_peak(const Point& peak) { peak_ = peak; }
-  const JobPart& finished() const { return finished_; }  ///< results of the last finished fine curve; empty at first
+  const JobResult& finished() const { return finished_; }  ///< results of the last finished fine curve; empty at first
 
   double worst_error() const {  // largest error bound of DOLP among good points
     double worst = 0.0;
@@ -54,8 +54,8 @@ class Curve {
   std::string key_;
   Scene scene_;
   bool keep_all_ = false;
-  JobPart shown_;
-  JobPart finished_;
+  JobResult shown_;
+  JobResult finished_;
   std::optional<Point> peak_;  ///< point of the maximum, from set_peak()
 };
 
@@ -97,13 +97,13 @@ class Peak {
 
   explicit Peak(const Scene& scene) : scene_(scene) {}
 
-  /// Begins the search for the peak of `curve`, up to the zenith `theta_max_deg`. `edits` holds the scene of `curve`.
-  void follow(const Curve& curve, const SceneEdits& edits, double theta_max_deg);
+  /// Begins the search for the peak of `curve`, up to the zenith `theta_max_deg`.
+  void follow(const Curve& curve, double theta_max_deg);
   void set_cursor(const Point& at);  ///< the point of the curve at the cursor
   const Point& cursor() const { return cursor_; }
 
   std::vector<Job> wanted() const;
-  bool take(const JobPart& news);
+  bool take(const JobResult& news);
 
   const std::optional<PeakAnswer>& answer() const { return answer_; }  ///< empty if not known yet or no point is good
   const std::vector<WithoutEffect>& without() const { return without_; }  ///< one per effect that can be removed

@@ -245,7 +245,7 @@ void save_scene(Session& session, const std::string& path) {
 
 void save_curve(const Session& session, const std::string& path) {
   if (!session.curve().is_finished()) throw InputError("the curve is not finished yet");
-  write_text_atomically(path, session.curve().finished().csv);
+  write_text_atomically(path, session.curve().finished().csv());
 }
 
 void save_sweep(const Session& session, const std::string& path) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "explore/scene_edits.hpp"
 
@@ -41,7 +42,8 @@ const std::vector<AxisOfNumber>& axes_of_numbers() {
 
 /// The range of the values that the scene's grid has on `axis`. Without two different values, returns axis.scale.
 Scale grid_range(const Scene& scene, const MapAxis& axis) {
-  const std::vector<double> grid = axis.is_of_tables() ? scene.numbers("grid." + axis.column()) : std::vector<double>();
+  const bool is_film = axis.key.starts_with("surface.coating");
+  const std::vector<double> grid = is_film ? std::vector<double>() : scene.numbers("grid." + axis.column());
   if (grid.empty()) return axis.scale;
   const auto [low, high] = std::ranges::minmax(grid);
   const bool has_range = low < high && !(axis.scale.is_log && low <= 0.0);
@@ -95,27 +97,24 @@ std::vector<MapAxis> map_axes(const Scene& scene, double theta_max_deg) {
   return axes;
 }
 
+std::size_t MapAxis::rank() const {
+  const std::string table_column = column() == kWind.column ? describe(Axis::kSigma).column : column();
+  const auto found =
+      std::ranges::find_if(kAxes, [&](const AxisDescription& axis) { return table_column == axis.column; });
+  return found == kAxes.end() ? 0 : 1 + static_cast<std::size_t>(found - kAxes.begin());
+}
+
 Scale known_part(const Scene& scene, const MapAxis& axis) {
   constexpr int kHalvings = 8;
   const double inside = scene.number(axis.key).value();
   Scale range = axis.scale;
-  for (const BuiltInMaterial& known : materials()) {
-    if (known.name != scene.word("surface.material")) continue;
-    range = {std::max(range.from, known.from_um), std::min(range.to, known.to_um), range.is_log};
-  }
+  if (const auto known = built_in_material(scene))
+    range = {std::max(range.from, known->from_um), std::min(range.to, known->to_um), range.is_log};
   for (double Scale::*end : {&Scale::from, &Scale::to}) {
     for (int i = 0; i < kHalvings && !refusal(scene, axis, {range.*end, range.*end}).empty(); ++i)
       range.*end = i + 1 < kHalvings ? std::sqrt(range.*end * inside) : inside;
   }
   return range;
-}
-
-std::size_t MapAxis::rank() const {
-  const std::string table_column = column() == kWind.column ? describe(Axis::kSigma).column : column();
-  const auto found =
-      std::ranges::find_if(kAxes, [&](const AxisDescription& axis) { return table_column == axis.column; });
-  if (found != kAxes.end()) return 2 + static_cast<std::size_t>(found - kAxes.begin());
-  return table_column.empty() ? 0 : 1;
 }
 
 std::string refusal(const Scene& scene, const MapAxis& axis, const Scale& range) {
@@ -156,54 +155,60 @@ void HeatMap::follow(const std::string& key, const Scene& scene, bool keep_all, 
   theta_deg_ = theta_deg;
 }
 
-PointList HeatMap::part(std::size_t level, std::size_t first) const {
-  const std::size_t count = kLevels[level].count;
-  const std::vector<double> fast = faster().scale.values(count), all = slower().scale.values(count);
-  const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
-  const std::vector<double> slow(begin, begin + static_cast<std::ptrdiff_t>(batch(level)));
+PointList HeatMap::lines(std::size_t level, std::size_t first) const {
+  const auto [count, tolerance, batch] = kLevels[level];
+  const MapAxis& across = is_turned() ? y_ : x_;
+  const MapAxis& along = is_turned() ? x_ : y_;
+  const std::vector<double> all_across = across.scale.values(count), all_along = along.scale.values(count);
+  std::vector<double> values_across, values_along;
+  for (std::size_t line = first; line < first + batch; ++line) {
+    values_across.insert(values_across.end(), count, all_across[line]);
+    values_along.insert(values_along.end(), all_along.begin(), all_along.end());
+  }
   PointList list = points_at(scene_, {theta_deg_});
-  list.is_grid = faster().is_of_tables() && slower().rank() != 1;
-  const bool has_column = !slower().column().empty();
-  if (!has_column) list.changes = {{slower().key, slow.front()}};
-  if (list.is_grid) {
-    if (has_column) list[slower().column()] = slow;
-    list[faster().column()] = fast;
-    return list;
-  }
-  // A grid cannot have the thickness of a film as an axis. So the list names each pair of values as a point.
-  std::vector<double> all_slow, all_fast;
-  for (const double value : slow) {
-    all_fast.insert(all_fast.end(), fast.begin(), fast.end());
-    all_slow.insert(all_slow.end(), fast.size(), value);
-  }
-  if (has_column) list[slower().column()] = all_slow;
-  list[faster().column()] = all_fast;
+  list[across.column()] = std::move(values_across);
+  list[along.column()] = std::move(values_along);
   return list;
 }
 
-std::optional<Job> HeatMap::wanted(std::size_t level) const {
-  if (key_.empty() || (is_current() && is_complete(level))) return std::nullopt;
-  const Level& next = kLevels[level];
-  Job job{.key = job_key(level), .scene = scene_, .parts = {}, .tolerance = next.tolerance, .keep_all = keep_all_};
-  for (std::size_t i = 0; i < next.count; i += batch(level)) job.parts.push_back(part(level, i));
-  return job;
+std::string HeatMap::job_key(std::size_t level, std::size_t first) const {
+  return fmt::format("map {} from {}, {}", kLevels[level].count, first, key_);
 }
 
-bool HeatMap::take(const JobPart& news) {
-  std::size_t level = 0;
-  while (level < kLevels.size() && news.key != job_key(level)) ++level;
-  if (level == kLevels.size()) return false;
-  const bool is_first = level == 0 && !is_current();
-  if (is_first && (std::exchange(arriving_key_, key_) != key_ || news.part == 0)) arriving_.clear();
-  std::vector<Point>& points = is_first ? arriving_ : points_[level];
-  points.insert(points.end(), news.points.begin(), news.points.end());
-  if (is_first && news.is_last) {
-    points_ = {};
-    points_[0] = std::exchange(arriving_, {});
-    shown_key_ = key_;
+std::vector<Job> HeatMap::wanted(std::size_t level) const {
+  std::vector<Job> jobs;
+  if (key_.empty() || (level > 0 && !is_current())) return jobs;
+  const auto [count, tolerance, batch] = kLevels[level];
+  std::vector<Setting> settings;
+  // Points can have a sigma_cross only if their scene has one.
+  if (x_.key == kSigmaCross || y_.key == kSigmaCross)
+    settings.push_back({kSigmaCross, control(kSigmaCross).value(scene_).value()});
+  for (std::size_t first = known(level); first < count; first += batch) {
+    jobs.push_back({.key = job_key(level, first),
+                    .scene = scene_,
+                    .settings = settings,
+                    .list = lines(level, first),
+                    .tolerance = tolerance,
+                    .keep_all = keep_all_});
   }
-  ++version_;
-  return true;
+  return jobs;
+}
+
+bool HeatMap::take(const JobResult& news) {
+  const std::size_t levels = is_current() ? kLevels.size() : 1;
+  for (std::size_t level = 0; level < levels; ++level) {
+    if (news.key != job_key(level, known(level))) continue;
+    if (!is_current() && std::exchange(arriving_key_, key_) != key_) arriving_.clear();
+    std::vector<Point>& points = is_current() ? points_[level] : arriving_;
+    points.insert(points.end(), news.points.begin(), news.points.end());
+    ++version_;
+    if (arriving_.size() == entries(0)) {
+      points_ = {std::exchange(arriving_, {})};
+      shown_key_ = key_;
+    }
+    return true;
+  }
+  return false;
 }
 
 const Point& HeatMap::point_at(std::size_t finest, std::size_t row, std::size_t column) const {
@@ -211,8 +216,8 @@ const Point& HeatMap::point_at(std::size_t finest, std::size_t row, std::size_t 
   for (std::size_t level = finest;; --level) {
     const std::size_t last = kLevels[level].count - 1;
     const auto nearest = [&](std::size_t i) { return (2 * i * last + steps) / (2 * steps); };
-    const auto [slow, fast] = is_turned() ? std::pair(column, row) : std::pair(row, column);
-    const std::size_t position = nearest(slow) * kLevels[level].count + nearest(fast);
+    const auto [line, place] = is_turned() ? std::pair(row, column) : std::pair(column, row);
+    const std::size_t position = nearest(line) * kLevels[level].count + nearest(place);
     if (level == 0 || position < points_[level].size()) return points_[level][position];
   }
 }

@@ -11,16 +11,12 @@ struct MapAxis {
   std::string key = {};  ///< scene key of the axis; empty for the zenith
   Scale scale = {0.0, 90.0};
 
-  /// Name of the axis in PointList::values. Empty for the temperature, because it is set by PointList::changes.
-  std::string column() const {
+  std::string column() const {  // name of the axis in PointList::values
     if (key.empty()) return "theta_deg";
-    if (key == "emission.temperature_K") return {};
     return key.starts_with("surface.coating") ? key : key.substr(key.find('.') + 1);
   }
-  /// A map lists its points sorted by the axis with the smaller rank, then by the other axis. Rank 0 is the
-  /// temperature, rank 1 the thickness of a film. Higher ranks are the axes of tables, in the order of the enum Axis.
+  /// Axes in the order of tables, after films. Points in this order form a grid, and find samples for few spectra.
   std::size_t rank() const;
-  bool is_of_tables() const { return rank() >= 2; }  ///< true if a table of `dolp table` can have this axis
   friend bool operator==(const MapAxis&, const MapAxis&) = default;
 };
 
@@ -57,9 +53,9 @@ class HeatMap {
   struct Level {
     std::size_t count;  ///< number of rows, and of columns
     double tolerance;   ///< the map has the larger one of this tolerance and the scene's tolerance
-    std::size_t batch;  ///< largest number of values of slower() in a JobPart
+    std::size_t batch;  ///< number of columns, or of rows if the map is turned, that one job computes
   };
-  // While the user drags a slider, the curve waits for the JobPart that is running. So the parts of level 0 are small.
+  // While the user drags a slider, the curve waits for the job that is running. So the jobs of level 0 are small.
   static constexpr std::array<Level, 3> kLevels = {{{16, 1e-2, 2}, {64, 1e-2, 8}, {128, 0.0, 4}}};
 
   explicit HeatMap(const Scene& scene) : scene_(scene) {}
@@ -69,11 +65,10 @@ class HeatMap {
   void follow(const std::string& key, const Scene& scene, bool keep_all, const MapAxis& x, const MapAxis& y,
               double theta_deg);
 
-  std::optional<Job> wanted(std::size_t level) const;
+  std::vector<Job> wanted(std::size_t level) const;
   /// Stores results for this map; returns false for other results. The first level is shown only when it is complete.
-  bool take(const JobPart& news);
+  bool take(const JobResult& news);
   bool is_finished() const { return is_current() && is_complete(kLevels.size() - 1); }
-  bool is_coarse_done() const { return is_current() && !points_[0].empty(); }
   bool is_arriving() const { return arriving_key_ == key_ && !arriving_.empty(); }  ///< level 0 has some points
   bool is_stale() const { return !shown_key_.empty() && !is_current(); }  ///< the map on display is an earlier one
 
@@ -103,13 +98,14 @@ class HeatMap {
   static constexpr std::size_t entries(std::size_t level) { return kLevels[level].count * kLevels[level].count; }
   bool is_current() const { return shown_key_ == key_; }
   bool is_complete(std::size_t level) const { return points_[level].size() == entries(level); }
-  std::string job_key(std::size_t level) const { return "map " + std::to_string(kLevels[level].count) + ' ' + key_; }
-  bool is_turned() const { return x_.rank() < y_.rank(); }  ///< true if x is slower()
-  const MapAxis& slower() const { return is_turned() ? x_ : y_; }
-  const MapAxis& faster() const { return is_turned() ? y_ : x_; }  ///< has a new value at each point of part()
-  std::size_t batch(std::size_t level) const { return slower().column().empty() ? 1 : kLevels[level].batch; }
-  /// The points for all values of faster() and for batch() values of slower(), beginning with value number `first`.
-  PointList part(std::size_t level, std::size_t first) const;
+  std::string job_key(std::size_t level, std::size_t first) const;
+  bool is_turned() const { return y_.rank() < x_.rank(); }      ///< true if jobs have rows and not columns
+  PointList lines(std::size_t level, std::size_t first) const;  ///< points of the job that begins at a column or row
+  /// Number of columns or rows of a level that the wanted map has.
+  std::size_t known(std::size_t level) const {
+    const std::size_t points = is_current() ? points_[level].size() : is_arriving() ? arriving_.size() : 0;
+    return points / kLevels[level].count;
+  }
   const Point& point_at(std::size_t finest, std::size_t row, std::size_t column) const;
 
   std::string key_;
@@ -118,9 +114,9 @@ class HeatMap {
   MapAxis x_, y_{.name = "sigma"};
   double theta_deg_ = 0.0;
   std::string shown_key_;                                  ///< key of the map on display
-  std::array<std::vector<Point>, kLevels.size()> points_;  ///< points of each level, sorted by slower()
+  std::array<std::vector<Point>, kLevels.size()> points_;  ///< points of each level, job after job
   std::string arriving_key_;
-  std::vector<Point> arriving_;  ///< points of the first level while it is incomplete
+  std::vector<Point> arriving_;  ///< points of the first level of the map arriving_key_ while it is incomplete
   std::size_t version_ = 0;
 };
 

@@ -38,7 +38,7 @@ void Residuals::follow(const std::string& key, const Scene& scene) {
   }
   PointList list = points_at(scene, std::move(theta_deg));
   if (!wavelength_um.empty()) list["wavelength_um"] = std::move(wavelength_um);
-  model_.follow({.key = fmt::format("measured {} {}", loads_, key), .scene = scene, .parts = {list}, .keep_all = true});
+  model_.follow({.key = fmt::format("measured {} {}", loads_, key), .scene = scene, .list = list, .keep_all = true});
 }
 
 std::vector<Measurement> Residuals::measured(Plotted quantity) const {
@@ -50,9 +50,10 @@ std::vector<Measurement> Residuals::measured(Plotted quantity) const {
 std::vector<Measurement> Residuals::residuals(Plotted quantity) const {
   std::vector<Measurement> residuals;
   if (!is_known()) return residuals;
-  for (std::size_t i = 0; i < model_.points().size(); ++i) {
+  const std::vector<Point> model = model_.points();
+  for (std::size_t i = 0; i < model.size(); ++i) {
     Measurement residual = data_->measurements[i];
-    residual.value -= described(quantity).value(model_.points()[i]);
+    residual.value -= described(quantity).value(model[i]);
     if (plotted(residual.observable) == quantity && std::isfinite(residual.value)) residuals.push_back(residual);
   }
   return residuals;
@@ -77,13 +78,6 @@ FitRange fit_range(const FitMarks& marks, const Scene& scene, const Control& con
   const Scale slider = range_in(scene, control);
   const double low = key.ends_with(".k") ? kLeastK : std::min(slider.from, value);
   return {key, low, std::max(slider.to, value), std::max(low, value)};
-}
-
-Fit run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress,
-            const std::function<void(const std::string&)>& phase) {
-  Fit fit = evaluator.fit(job.edits.scene(), {job.data}, {.vary = job.vary, .progress = progress, .phase = phase});
-  if (!fit.has_minimum) throw InputError("no minimum was found: no descent converged");
-  return fit;
 }
 
 std::size_t nearest_minimum(const Fit& fit, const FitJob& job) {

@@ -23,7 +23,7 @@ class Residuals {
   void follow(const std::string& key, const Scene& scene);
 
   std::optional<Job> wanted() const { return data_ ? model_.wanted() : std::nullopt; }
-  void take(const JobPart& news) { model_.take(news); }
+  void take(const JobResult& news) { model_.take(news); }
 
   const std::optional<MeasuredData>& data() const { return data_; }
   const Scene& loaded_for() const { return loaded_for_; }
@@ -55,10 +55,6 @@ struct FitJob {
   MeasuredData data;
   std::vector<FitRange> vary;
 };
-
-/// Fits as `dolp fit` does. Errors: InputError if no minimum was found, and the errors of Evaluator::fit.
-Fit run_fit(const FitJob& job, Evaluator& evaluator, const Progress& progress,
-            const std::function<void(const std::string&)>& phase = {});
 
 /// Position in Fit::minima of the minimum nearest to the start. Distances are measured in FitRange::coordinate().
 std::size_t nearest_minimum(const Fit& fit, const FitJob& job);

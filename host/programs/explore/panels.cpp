@@ -16,9 +16,7 @@ constexpr double kSpecularAzimuth_deg = 180.0;  // azimuth from the source to th
 
 std::pair<double, double> known_um(const Scene& scene) {  // range of the wavelengths in material_curve()
   const auto spectrum = spectrum_um(scene);
-  for (const BuiltInMaterial& known : materials()) {
-    if (known.name == scene.word("surface.material")) return {known.from_um, known.to_um};
-  }
+  if (const auto known = built_in_material(scene)) return {known->from_um, known->to_um};
   return spectrum.first < spectrum.second ? spectrum : std::pair{0.8 * spectrum.first, 1.25 * spectrum.second};
 }
 

@@ -2,26 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "base/text.hpp"
 
 namespace dolp::explore {
 namespace {
-
-/// The scene with the axes of `list` as its grid. A further axis of the scene's grid gets the value of its key.
-Scene with_grid(const Scene& scene, const PointList& list) {
-  std::vector<Setting> axes;
-  for (const auto& [name, values] : list.values) axes.push_back({name, values});
-  for (const Axis axis : kAllAxes) {
-    const std::string key = describe(axis).key, column = describe(axis).column;
-    if (key.empty() || describe(axis).is_required || std::ranges::count(axes, column, &Setting::key) > 0) continue;
-    if (!scene.numbers("grid." + column).empty()) axes.push_back({column, scene.number(key).value()});
-  }
-  const AxisLabels& labels = scene.labels();
-  if (!labels[Axis::kMaterial].empty()) axes.push_back({"material", scene.word("surface.material").value()});
-  if (!labels[Axis::kBand].empty()) axes.push_back({"band_um", scene.numbers("spectrum.band_um")});
-  return scene.with_grid(axes);
-}
 
 template <Quantity kQuantity>
 double point_value(const Point& point) {
@@ -54,22 +40,14 @@ const std::array<PlottedDescription, 9> kAllPlotted = {{
     {Plotted::kAlbedo, "albedo", "A(θ), ρ of perfectly reflecting facets", "", true, point_value<Quantity::kAlbedo>},
 }};
 
-Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list, const RunOptions& options) {
-  const Scene changed = list.changes.empty() ? scene : scene.with(list.changes);
-  if (!list.is_grid) return evaluator.evaluate(changed, list.columns(), options);
-  const Table table = evaluator.table(with_grid(changed, list), options);
-  return {table.values(), table.values().quantities(), table.values().stokes_units};
-}
-
 std::vector<double>& PointList::operator[](const std::string& name) {
   const auto found = std::ranges::find(values, name, &decltype(values)::value_type::first);
   return found == values.end() ? values.emplace_back(name, std::vector<double>()).second : found->second;
 }
 
 std::size_t PointList::size() const {
-  std::size_t size = 1;
-  for (const auto& [name, column] : values) size = is_grid ? size * column.size() : std::max(size, column.size());
-  return size;
+  const auto column_size = [](const auto& column) { return column.second.size(); };
+  return std::ranges::max(values | std::views::transform(column_size));
 }
 
 bool has_wind(const Scene& scene) { return scene.number("surface.wind_m_s").has_value(); }

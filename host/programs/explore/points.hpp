@@ -11,14 +11,11 @@
 
 namespace dolp::explore {
 
-/// Points to compute: a grid with axes, or a list with columns. A column has one value per point, or one value for all.
+/// Points to compute. A column has one value per point, or one value for all.
 struct PointList {
-  std::vector<std::pair<std::string, std::vector<double>>> values;  ///< columns or axes, named as in `dolp eval`
-  /// True: `values` are axes. The points are all combinations of their values, in the order that `dolp table` uses.
-  bool is_grid = false;
-  std::vector<Setting> changes = {};  ///< settings of the scene that hold for all points
+  std::vector<std::pair<std::string, std::vector<double>>> values;  ///< columns, named as in `dolp eval`
 
-  std::vector<double>& operator[](const std::string& name);  ///< adds a column or axis `name` if it is missing
+  std::vector<double>& operator[](const std::string& name);  ///< adds a column `name` if it is missing
   std::size_t size() const;                                  ///< number of points
   std::vector<Column> columns() const {
     std::vector<Column> columns;
@@ -33,11 +30,9 @@ bool has_cross_slopes(const Scene& scene);  ///< true if slopes differ along and
 /// Points at the zeniths `theta_deg` with the scene's slope distribution. The zenith is the first column.
 PointList points_at(const Scene& scene, std::vector<double> theta_deg);
 
-Results evaluate(Evaluator& evaluator, const Scene& scene, const PointList& list, const RunOptions& options);
-
 /// The results at a point, in the units that `dolp table` uses.
 struct Point : PointResult {
-  double theta_deg = 0.0;  ///< from the first column of the list; meaningless for a grid
+  double theta_deg = 0.0;  ///< from the first column of the list
 
   /// True if the status has no bit that makes DOLP meaningless or voids its error bound.
   bool is_good() const { return promises_dolp(status) && std::isfinite(values[Quantity::kDolp]); }

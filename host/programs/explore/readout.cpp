@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
 
 #include "base/text.hpp"
 
@@ -34,10 +37,10 @@ std::vector<Part> radiating_parts(const Session& session, const Point& with) {
     parts.push_back({away.effect, WithoutEffect::contribution(with, *away.at_cursor)});
     rest -= parts.back().q_over_i;
   }
-  const auto has = [&](const char* key) { return session.scene().number(key).has_value(); };
   const bool has_emission = !parts.empty() && parts.front().name == "emission";
   if (has_emission) return parts;
-  const char* name = has("emission.temperature_K") ? "emission" : has("source.scale") ? "source" : "surroundings";
+  const auto has = [&](const char* effect) { return has_effect(session.scene(), effect); };
+  const char* name = has("emission") ? "emission" : has("source") ? "source" : "surroundings";
   const bool is_known = std::ranges::any_of(parts, [&](const Part& part) { return part.name == name; });
   if (!is_known) parts.insert(parts.begin(), {name, rest});
   return parts;
@@ -83,6 +86,67 @@ std::string without_spectrum(const std::string& title) {  // "Paint, 8-14 um" be
 }
 
 bool has_q_over_i(const Point& point) { return point.is_good() && std::isfinite(point[Quantity::kQOverI]); }
+
+using nlohmann::json;
+
+json axis_json(const std::string& label, const Scale& scale) {
+  return {{"label", label}, {"from", scale.from}, {"to", scale.to}, {"is_log", scale.is_log}};
+}
+
+/// `style` is "curve", "overlay", or the number of a pin's colour (Pin::colour).
+json curve_json(const std::string& name, const json& style, const std::vector<Point>& points, Plotted quantity) {
+  const PlottedDescription& description = described(quantity);
+  json curve = {{"name", name}, {"style", style}};
+  for (const char* list : {"at", "values", "good", "low", "high"}) curve[list] = json::array();
+  double last = std::numeric_limits<double>::quiet_NaN();
+  for (const Point& point : points) {
+    const double value = description.shown(point);
+    const auto band_end = [&](Quantity end) {
+      const bool has_band = quantity == Plotted::kDolp && style == "curve" && point.is_good() && point.has_bracket();
+      return has_band ? json(description.scale() * point[end]) : json();
+    };
+    curve["at"].push_back(point.theta_deg);
+    curve["values"].push_back(description.jumps(std::exchange(last, value), value) ? json() : json(value));
+    curve["good"].push_back(point.is_good());
+    curve["low"].push_back(band_end(Quantity::kDolpLow));
+    curve["high"].push_back(band_end(Quantity::kDolpHigh));
+  }
+  return curve;
+}
+
+/// The curve over another number of the scene (Session::sweep()), with its axes. Null if the window does not show it.
+json sweep_json(const Session& session) {
+  const Sweep& sweep = session.sweep();
+  const std::string name = swept_name(session.view().panel);
+  if (name.empty() || !sweep.is_finished()) return {};
+  const PlottedDescription& quantity = described(session.view().quantity);
+  json curve = curve_json(sweep_name(session), "curve", sweep.points(), quantity.quantity);
+  curve["at"] = sweep.at();
+  return {{"x", axis_json(session.sweep_axis().label, session.sweep_axis().scale)},
+          {"y", axis_json(quantity.label(), sweep_values(session))},
+          {"curves", {curve}},
+          {"measured", json::array()}};
+}
+
+json map_json(const Session& session) {
+  const PlottedDescription& description = described(session.view().quantity);
+  const MapField field = session.map().field(description.quantity);
+  if (session.view().panel != Panel::kMap || field.count == 0) return {};
+  json rows(field.count, json::array());
+  for (std::size_t i = 0; i < field.values.size(); ++i)
+    rows[i / field.count].push_back(description.scale() * field.values[i]);  // in JSON a NaN becomes null
+  json colours;                                                              // null unless the user typed a range
+  if (const auto& typed = session.view().range(View::kColours)) {
+    colours = {{"from", description.scale() * typed->from}, {"to", description.scale() * typed->to}};
+  }
+  return {{"x", axis_json(session.map().x().label, session.map().x().scale)},
+          {"y", axis_json(session.map().y().label, session.map().y().scale)},
+          {"label", description.label()},
+          {"is_log", session.view().is_log},
+          {"is_signed", description.is_signed},
+          {"colours", colours},
+          {"rows", rows}};
+}
 
 }  // namespace
 
@@ -277,7 +341,11 @@ std::string without_words(const Session& session, const std::string& effect) {
 }
 
 std::vector<std::string> about_lines(const Session& session) {
-  const std::string& device = session.curve().finished().device;
+  std::string device;
+  for (const Attribute& attribute : session.curve().finished().results.attributes) {
+    const bool is_device = attribute.name == "device" || attribute.name == "driver";
+    if (is_device) device += (device.empty() ? "" : ", ") + std::get<std::string>(attribute.value);
+  }
   return {"version  " + version(), "commit   " + commit(), "device   " + (device.empty() ? "…" : device)};
 }
 
@@ -312,9 +380,42 @@ std::vector<std::string> cost_lines(const Session& session) {
   constexpr double kMicroseconds = 1e6;
   return {fmt::format("time    {:.1f} ms for {} directions, {:.0f} µs each", kMilliseconds * wall_s, points,
                       kMicroseconds * wall_s / points),
-          fmt::format("work    {:.0f} integrand evaluations an entry", curve.finished().evaluations / points),
+          fmt::format("work    {:.0f} integrand evaluations an entry",
+                      curve.finished().results.integrand_evaluations / points),
           fmt::format("error   DOLP ≤ {:.2g}; tolerance {:.2g}", curve.worst_error(),
                       *curve.scene().number("accuracy.tolerance"))};
+}
+
+std::string plot_json(const Session& session, const Scale& x, const Scale& y) {
+  const Plotted quantity = session.view().quantity;
+  json curves = json::array();
+  const auto add = [&](const std::string& name, const json& style, const Curve& curve) {
+    curves.push_back(curve_json(name, style, curve.drawn(), quantity));
+  };
+  add(curve_name(session), "curve", session.curve());
+  if (session.overlay()) add(overlay_name(session), "overlay", *session.overlay());
+  for (const Pin& pin : session.pins()) {
+    if (!pin.is_visible) continue;
+    const Scene& scene = pin.curve.shown_scene();
+    std::string name = pin.name.empty() ? surface_name(scene) : pin.name;
+    if (name == surface_name(session.curve().shown_scene())) name = pin_name(session, pin);
+    add(name, pin.colour, pin.curve);
+  }
+  json measured = json::array();
+  const double scale = described(quantity).scale();
+  for (const Measurement& point : session.residuals().measured(quantity)) {
+    measured.push_back({{"at", point.theta_deg},
+                        {"value", scale * point.value},
+                        {"uncertainty", scale * point.uncertainty.value_or(0.0)}});
+  }
+  return json{{"title", figure_title(session.edits())},
+              {"x", axis_json(zenith_label(session.scene()), x)},
+              {"y", axis_json(described(quantity).label(), y)},
+              {"curves", curves},
+              {"measured", measured},
+              {"map", map_json(session)},
+              {"sweep", sweep_json(session)}}
+      .dump();
 }
 
 }  // namespace dolp::explore

@@ -82,40 +82,38 @@ bool has_value(const Scene& scene, const Key& key) {
 std::vector<Control> controls_without_films() {
   const auto key = [](const char* name) { return &described(name); };
   constexpr const char* kDiffuse = "f_d = (k_d/π)(cos θi cos θr)^c, eq. (14)";
-  constexpr const char* kNeedsDiffuse = "a diffuse part, k_d > 0";
-  constexpr const char* kNeedsIndex = "n and k instead of measured reflectances";
-  constexpr const char* kNeedsAir = "the sky clear-sky or overcast";
   constexpr const char* kSkyEnds = "brightness temperature; a straight line in the zenith angle between both ends";
-  constexpr const char* kNeedsSkyEnds = "the sky zenith and horizon";
-  constexpr const char* kNeedsBistatic = "the mode bistatic";
   constexpr const char* kXAxis = "from the viewer's direction to the surface's x axis (upwind, or along the brush)";
   constexpr const char* kAir = "Idso (1981): radiance of the sky from vapour and temperature of the air at the ground";
+  constexpr const char* kCross =
+      "the slope width along the surface's y axis, manual section 12; at most 3 times more or less than σ";
+  using Need = Control::Need;
+  constexpr Need kDiffusePart{is_diffuse, "a diffuse part, k_d > 0"};
+  constexpr Need kIndex{has_index, "n and k instead of measured reflectances"};
+  constexpr Need kOneWidth{may_have_cross,
+                           "the masking none or v-cavity (or smith with the emissivity direct), and no wind"};
+  constexpr Need kBuiltInSky{has_air, "the sky clear-sky or overcast"};
+  constexpr Need kTwoTemperatures{has_sky_ends, "the sky zenith and horizon"};
+  constexpr Need kBistatic{is_bistatic, "the mode bistatic"};
   return {
       {key("surface.distribution"), "distribution", "D(α): eq. (8) cauchy, eq. (1) gaussian"},
       {key("surface.masking"), "masking", "G: eqs. (9)–(13) for integral"},
       {key("surface.scattering"), "scattering", "only the first facet, or all bounces in V-grooves"},
-      {key("surface.diffuse_polarisation"), "diffuse light", "1 − R on the way out", {}, is_diffuse, kNeedsDiffuse},
-      {key("surface.n"), "n", "N = n + ik", {1.0, 40.0, true}, has_index, kNeedsIndex},
-      {key("surface.k"), "k", "N = n + ik, k ≥ 0 absorbs", {0.0, 100.0}, has_index, kNeedsIndex},
-      {key("surface.sigma"), "σ", "m² = 2σ²; D(α) of eq. (8) or (1)", {0.01, 2.0, true}, has_no_wind, "no wind"},
-      {key(kSigmaCross),
-       "σ_c",
-       "the slope width along the surface's y axis, manual section 12; at most 3 times more or less than σ",
-       {0.01, 2.0, true},
-       may_have_cross,
-       "the masking none or v-cavity (or smith with the emissivity direct), and no wind",
-       "surface.sigma"},
+      {key("surface.diffuse_polarisation"), "diffuse light", "1 − R on the way out", {}, kDiffusePart},
+      {key("surface.wind_model"), "wind", "σ² = 0.00316 U upwind, 0.003 + 0.00192 U across", {}, {has_wind, "a wind"}},
+      {key("surface.n"), "n", "N = n + ik", {1.0, 40.0, true}, kIndex},
+      {key("surface.k"), "k", "N = n + ik, k ≥ 0 absorbs", {0.0, 100.0}, kIndex},
+      {key("surface.sigma"), "σ", "m² = 2σ²; D(α) of eq. (8) or (1)", {0.01, 2.0, true}, {has_no_wind, "no wind"}},
+      {key(kSigmaCross), "σ_c", kCross, {0.01, 2.0, true}, kOneWidth, "surface.sigma"},
       {key("surface.wind_m_s"), "U", "m² = 0.003 + 0.00512 U (Cox and Munk 1954), D(α) of eq. (1)", {0.0, 30.0}},
-      {key("surface.wind_model"), "wind", "σ² = 0.00316 U upwind, 0.003 + 0.00192 U across", {}, has_wind, "a wind"},
       {key("surface.q"),
        "q",
        "D = (q−1)/(π m² cos⁴α) · (1 + tan²α/m²)^(−q), eq. (8)",
        {1.1, 20.0, true},
-       is_cauchy,
-       "the distribution cauchy"},
+       {is_cauchy, "the distribution cauchy"}},
       {key("surface.specular"), "k_s", "f_s = k_s D G M / (4 cos θi cos θr), eqs. (7), (15)", {0.0, 1.0}},
       {key("surface.diffuse"), "k_d", kDiffuse, {0.0, 1.0}},
-      {key("surface.diffuse_exponent"), "c", kDiffuse, {-0.95, 0.0}, is_diffuse, kNeedsDiffuse},
+      {key("surface.diffuse_exponent"), "c", kDiffuse, {-0.95, 0.0}, kDiffusePart},
       {key("emission.model"), "emissivity",
        "1 − ρ of the rough surface, 1 − R(θ) of the smooth one, or (1 − R) G of the facets in view"},
       {key("emission.bracket"), "bracket", "ε_I between the direct emission and 1 − ρ_I"},
@@ -124,10 +122,10 @@ std::vector<Control> controls_without_films() {
       {key("source.relative_irradiance"), "e", "e = E0/(π B(T)), eq. (18)", {0.001, 10.0, true}},
       {key("source.scale"), "scale", "E0 → scale · E0", {0.01, 100.0, true}},
       {key("surroundings.temperature_K"), "T_surr", "reflects B(λ, T_surr) ρ", {0.0, 400.0}},
-      {key(kZenithSky), "T_zenith", kSkyEnds, {150.0, 350.0}, has_sky_ends, kNeedsSkyEnds},
-      {key(kHorizonSky), "T_horizon", kSkyEnds, {150.0, 350.0}, has_sky_ends, kNeedsSkyEnds},
-      {key("surroundings.vapour_cm"), "water", kAir, {0.0, 2.7}, has_air, kNeedsAir, "1.27"},
-      {key("surroundings.air_temperature_K"), "T_air", kAir, {230.0, 320.0}, has_air, kNeedsAir, "288.15"},
+      {key(kZenithSky), "T_zenith", kSkyEnds, {150.0, 350.0}, kTwoTemperatures},
+      {key(kHorizonSky), "T_horizon", kSkyEnds, {150.0, 350.0}, kTwoTemperatures},
+      {key("surroundings.vapour_cm"), "water", kAir, {0.0, 2.7}, kBuiltInSky, "1.27"},
+      {key("surroundings.air_temperature_K"), "T_air", kAir, {230.0, 320.0}, kBuiltInSky, "288.15"},
       {key("path.transmittance"), "τ", "I → τ I + L_path", {0.0, 1.0}},
       {key("path.temperature_K"), "T_path", "L_path = (1 − τ) B(λ, T_path)", {0.0, 400.0}},
       {key("path.radiance"), "L_path", "I → τ I + L_path", {0.001, 100.0, true}},
@@ -136,22 +134,11 @@ std::vector<Control> controls_without_films() {
        "response",
        "weight R, or R λ/λ0 if R is per photon",
        {},
-       has_response,
-       "a response of the camera"},
+       {has_response, "a response of the camera"}},
       {key("geometry.mode"), "mode", "eq. (18) all around, or f of eq. (7) for one source and view"},
-      {key("geometry.view_zenith_deg"),
-       "θv",
-       "direction of the view, eq. (2)",
-       {0.0, 90.0},
-       is_bistatic,
-       kNeedsBistatic},
-      {key("geometry.relative_azimuth_deg"),
-       "Δφ",
-       "cos 2β = ωi · ωr, eq. (2)",
-       {0.0, 360.0},
-       is_bistatic,
-       kNeedsBistatic},
-      {key(kSurfaceAzimuth), "φ_w", kXAxis, {0.0, 180.0}, has_cross_slopes, "slopes that differ along and across"},
+      {key("geometry.view_zenith_deg"), "θv", "direction of the view, eq. (2)", {0.0, 90.0}, kBistatic},
+      {key("geometry.relative_azimuth_deg"), "Δφ", "cos 2β = ωi · ωr, eq. (2)", {0.0, 360.0}, kBistatic},
+      {key(kSurfaceAzimuth), "φ_w", kXAxis, {0.0, 180.0}, {has_cross_slopes, "slopes that differ along and across"}},
       {key("accuracy.tolerance"), "tolerance", "|δDOLP|, |δρ|/ρ_I ≤ tolerance", {1e-9, 1e-2, true}},
       {key("accuracy.precision"), "precision", "arithmetic of the device"},
   };
@@ -279,7 +266,7 @@ bool ControlRows::stays(const Scene& scene, const Control& control) const {
 }
 
 std::string unused_text(const Scene& scene, const Control& control) {
-  if (!control.may_apply(scene)) return fmt::format("{}: needs {}", control.key->key, control.needs);
+  if (!control.may_apply(scene)) return fmt::format("{}: needs {}", control.key->key, control.need.text);
   for (const std::string& rival : control.key->rivals) {
     if (has_value(scene, described(rival))) return fmt::format("{}: the scene has {} instead", control.key->key, rival);
   }
@@ -411,23 +398,33 @@ Setting coating_setting(const std::vector<Film>& films) {
 }
 
 std::vector<Setting> medium_change(const Scene& scene, const std::string& table, const std::vector<Setting>& medium) {
-  if (table == "surface") {
-    std::vector<Setting> changes = medium;
+  std::vector<Setting> changes = medium;
+  const std::size_t layer = described(table + ".n").layer;
+  if (layer == 0) {
     for (Setting& change : changes) change.key = table + '.' + change.key;
     return changes;
   }
   std::vector<Film> films = scene_films(scene);
-  for (std::size_t layer = 1; layer <= films.size(); ++layer) {
-    if (table != fmt::format("{}.{}", kCoating, layer)) continue;
-    const Film& old = films[layer - 1];  // keeps the thickness and its spread, which are last in a Film
-    Film changed = medium;
-    changed.insert(changed.end(), std::ranges::find(old, "thickness_um", &Setting::key), old.end());
-    films[layer - 1] = std::move(changed);
-  }
+  Film& film = films.at(layer - 1);  // keeps the thickness and its spread, which are last in a Film
+  changes.insert(changes.end(), std::ranges::find(film, "thickness_um", &Setting::key), film.end());
+  film = std::move(changes);
   return {coating_setting(films)};
 }
 
 bool has_sky_profile(const Scene& scene) { return scene.word("surroundings.profile") || has_sky_ends(scene); }
+
+bool has_effect(const Scene& scene, const std::string& table) {
+  if (table == "source") return scene.number("source.scale").has_value();
+  if (table == "path") return scene.number("path.transmittance").has_value();
+  if (table == "surroundings" && has_sky_profile(scene)) return true;
+  return scene.number(table + ".temperature_K").has_value();
+}
+
+std::optional<BuiltInMaterial> built_in_material(const Scene& scene) {
+  const std::vector<BuiltInMaterial> all = materials();
+  const auto found = std::ranges::find(all, scene.word("surface.material"), &BuiltInMaterial::name);
+  return found == all.end() ? std::nullopt : std::optional(*found);
+}
 
 std::vector<BuiltInMaterial> sorted_materials() {
   std::vector<BuiltInMaterial> all = materials();

@@ -14,13 +14,17 @@ namespace dolp::explore {
 
 /// The control of a scene key in the window: a slider for a number, a list for a word, a check box for a flag.
 struct Control {
+  /// What a scene needs to use a key. By default every scene that has the key uses it.
+  struct Need {
+    bool (*is_met)(const Scene& scene) = nullptr;
+    const char* text = "";
+  };
+
   const Key* key;
   std::string label;     ///< symbol of a number, or name of a choice, in UTF-8
   const char* equation;  ///< formula or explanation for a tooltip, in UTF-8
   Scale slider = {};     ///< range of the slider; the user can also type other values
-  /// True if the scene uses the key. Null: every scene that has the key uses it.
-  bool (*is_used)(const Scene& scene) = nullptr;
-  const char* needs = "";  ///< what a scene needs to use the key, if `is_used` is not null
+  Need need = {};
   /// The value, or the key of another number, that replaces an omitted number. Empty: then no number is used.
   std::string standard = {};
 
@@ -30,7 +34,7 @@ struct Control {
   std::optional<std::size_t> word(const Scene& scene) const;
   std::string label_with_unit() const;    ///< for a number with a unit: "λ [µm]"
   std::string text(double number) const;  ///< "λ 10 µm"
-  bool may_apply(const Scene& scene) const { return !is_used || is_used(scene); }
+  bool may_apply(const Scene& scene) const { return !need.is_met || need.is_met(scene); }
   bool applies(const Scene& scene) const { return value(scene) || word(scene); }
   bool is_number() const { return key->type == Key::Type::kNumber; }
 };
@@ -118,7 +122,10 @@ Setting coating_setting(const std::vector<Film>& films);  ///< setting that give
 std::vector<Setting> medium_change(const Scene& scene, const std::string& table, const std::vector<Setting>& medium);
 inline constexpr const char* kZenithSky = "surroundings.zenith_temperature_K";
 inline constexpr const char* kHorizonSky = "surroundings.horizon_temperature_K";
-bool has_sky_profile(const Scene& scene);         ///< the radiance of the surroundings depends on the zenith
+bool has_sky_profile(const Scene& scene);  ///< the radiance of the surroundings depends on the zenith
+/// True if the scene has the part of the radiation in `table`: "emission", "source", "surroundings" or "path".
+bool has_effect(const Scene& scene, const std::string& table);
+std::optional<BuiltInMaterial> built_in_material(const Scene& scene);  ///< material of the surface, if it is built in
 std::vector<BuiltInMaterial> sorted_materials();  ///< the materials of one kind after the other, each kind by name
 /// True if `text` contains each word of `search`. Ignores case.
 bool has_words(const std::string& text, const std::string& search);

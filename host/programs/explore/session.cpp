@@ -283,7 +283,7 @@ void Session::follow() {
 }
 
 void Session::estimate_influences() {
-  const JobPart& curve = curve_.finished();
+  const JobResult& curve = curve_.finished();
   // The estimate takes as long as a coarse curve. So it is made only for a new finished curve or a new zenith.
   std::pair<std::string, double> wanted{curve.key, state_.theta_deg};
   if (influences_of_ == wanted) return;
@@ -350,7 +350,7 @@ void Session::follow_over_axis(Sweep& sweep, const Scene& swept, std::size_t cou
   const std::string key =
       fmt::format("{} {} from {} to {}, {} at {}\n{}", count, sweep_axis_.name, range.from, range.to, range.is_log,
                   state_.theta_deg, content_key(swept, state_.edits.changes_without({sweep_axis_.key}), keep_all));
-  sweep.follow({.key = key, .scene = swept, .parts = {list}, .keep_all = keep_all}, sweep_axis_.column());
+  sweep.follow({.key = key, .scene = swept, .list = list, .keep_all = keep_all}, sweep_axis_.column());
 }
 
 void Session::follow_sweep() {
@@ -369,7 +369,7 @@ void Session::follow_smooth(const std::string& content) {
   const Scene smooth = smooth_scene(scene());
   smooth_.follow({.key = "smooth\n" + content,
                   .scene = smooth,
-                  .parts = {points_at(smooth, Scale{0.0, 90.0}.values(Curve::kFineCount))},
+                  .list = points_at(smooth, Scale{0.0, 90.0}.values(Curve::kFineCount)),
                   .keep_all = true});
   if (find_sweep_axis("wavelength")) follow_over_axis(smooth_spectrum_, smooth_scene(sweep_scene_), kWavelengths);
 }
@@ -382,7 +382,7 @@ std::vector<const Sweep*> Session::shown_sweeps() const {
 std::vector<Job> Session::wanted_in_drag() const {
   JobList list;
   const auto add_other = [&](bool is_map) {
-    if (is_map && shows(Panel::kMap) && !map_.is_coarse_done()) list.add(map_.wanted(0));
+    if (is_map && shows(Panel::kMap)) list.add(map_.wanted(0));
     if (is_map && shows(Panel::kSky)) list.add(sky_.wanted(0));
     if (!is_map && overlay_) list.add(overlay_->wanted(Curve::Stage::kCoarse));
   };
@@ -414,26 +414,26 @@ std::vector<Job> Session::wanted() const {
   return list.jobs;
 }
 
-void Session::take(const std::vector<JobPart>& news) {
-  for (const JobPart& part : news) {
-    const bool is_curve = curve_.take(part) || curve_.take_earlier(part);
-    if (overlay_ && !overlay_->take(part)) overlay_->take_earlier(part);
-    for (Pin& pin : state_.pins) pin.curve.take(part);
-    const bool is_map = map_.take(part);
+void Session::take(const std::vector<JobResult>& news) {
+  for (const JobResult& result : news) {
+    const bool is_curve = curve_.take(result) || curve_.take_earlier(result);
+    if (overlay_ && !overlay_->take(result)) overlay_->take_earlier(result);
+    for (Pin& pin : state_.pins) pin.curve.take(result);
+    const bool is_map = map_.take(result);
     is_curve_next_ = !is_curve;
     if (!is_curve) is_map_next_ = !is_map;
-    if (is_map && part.is_last && is_dragged()) follow();
-    sky_.take(part);
-    for (Sweep* sweep : {&sweep_, &smooth_, &smooth_spectrum_}) sweep->take(part);
-    if (peak_.take(part) && peak_.answer()) {
+    if (is_map && !map_.is_arriving() && is_dragged()) follow();
+    sky_.take(result);
+    for (Sweep* sweep : {&sweep_, &smooth_, &smooth_spectrum_}) sweep->take(result);
+    if (peak_.take(result) && peak_.answer()) {
       for (Pin& pin : state_.pins) {
         if (pin.curve.key() == curve_.key()) pin.curve.set_peak(peak_.answer()->at);
       }
       curve_.set_peak(peak_.answer()->at);
     }
-    residuals_.take(part);
-    if (!part.refusal.empty()) tell(part.refusal, true);
-    is_changed_ = is_changed_ || part.is_last;
+    residuals_.take(result);
+    if (!result.refusal.empty()) tell(result.refusal, true);
+    is_changed_ = true;
   }
   follow_peak();
   if (curve_.is_finished() && !news.empty()) estimate_influences();

@@ -122,7 +122,7 @@ class Session {
 
   std::vector<Job> wanted() const;                                   ///< the most urgent job first
   bool take_changed() { return std::exchange(is_changed_, false); }  ///< true if wanted() must be called again
-  void take(const std::vector<JobPart>& news);
+  void take(const std::vector<JobResult>& news);
 
   const SceneEdits& edits() const { return state_.edits; }
   const Scene& scene() const { return state_.edits.scene(); }
@@ -183,7 +183,7 @@ class Session {
   void follow_peak() {
     if (!curve_.is_finished()) return;
     peak_.set_cursor(*at_cursor());
-    peak_.follow(curve_, state_.edits, state_.view.theta_max_deg);
+    peak_.follow(curve_, state_.view.theta_max_deg);
   }
   std::vector<const Sweep*> shown_sweeps() const;
   std::vector<Job> wanted_in_drag() const;
@@ -213,7 +213,7 @@ class Session {
   std::optional<SceneEdits> visited_;    ///< the scene after the last visit_minimum()
   std::size_t minimum_ = 0;
   std::vector<Effect> effects_;
-  std::pair<std::string, double> influences_of_;  ///< curve (JobPart::key) and zenith of the influences in effects_
+  std::pair<std::string, double> influences_of_;  ///< curve (JobResult::key) and zenith of the influences in effects_
   Message message_;
   std::vector<std::string> remarks_;  ///< remarks on the scene that message() has shown before
   bool is_changed_ = true;

@@ -1,8 +1,10 @@
 // The axes of the plots: ends that a user types, logarithmic axes, and the colours of the map.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "explore/window/style.hpp"
 #include "explore_support.hpp"
@@ -68,7 +70,7 @@ TEST(HeatMap, EachPairOfAxes_HasTheValuesOfTheScene) {
   const SceneEdits glint =
       paint({"geometry.mode=bistatic", "source.irradiance=20", "grid.view_zenith_deg=[20, 70]", "grid.theta_deg=40"});
   const SceneEdits brushed = paint({"surface.sigma_cross=0.3", "grid.surface_azimuth_deg=[0, 90]"});
-  Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
+  const SceneEdits direct = paint({"surface.masking=smith", "emission.model=direct", "surroundings=none"});
   for (const auto& [x, y, edits] : {std::tuple("theta", "sigma", oxide),
                                     {"sigma", "theta", oxide},
                                     {"theta", "temperature", oxide},
@@ -82,17 +84,14 @@ TEST(HeatMap, EachPairOfAxes_HasTheValuesOfTheScene) {
                                     {"theta", "view zenith", glint},
                                     {"theta", "surface azimuth", brushed},
                                     {"surface azimuth", "sigma cross", brushed},
+                                    {"theta", "sigma cross", direct},
                                     {"theta", "sigma", many},
                                     {"temperature", "theta", many}}) {
     SCOPED_TRACE(std::string(x) + ' ' + y);
     Session session(edits);
     session.set_view({.map_x = x, .map_y = y});
-    const std::vector<Job> jobs = session.wanted();
-    const Job& job = *std::ranges::find_if(jobs, [](const Job& wanted) { return wanted.key.starts_with("map 16 "); });
-    for (std::size_t i = 0; i < job.parts.size(); ++i) {
-      JobPart part{.key = job.key, .part = i, .scene = job.scene, .is_last = i + 1 == job.parts.size()};
-      part.points = result_points(job.parts[i], evaluate(evaluator, job.scene, job.parts[i], {}));
-      session.take({part});
+    for (const Job& job : session.wanted()) {
+      if (job.key.starts_with("map 16 ")) session.take({done(job)});
     }
     const HeatMap& map = session.map();
     ASSERT_EQ(map.finished_count(), 16U);
@@ -109,6 +108,33 @@ TEST(HeatMap, EachPairOfAxes_HasTheValuesOfTheScene) {
       EXPECT_NEAR(shown, exact[Quantity::kDolp], 2.0 * exact[Quantity::kErrorEstimate]) << column << ' ' << row;
     }
   }
+}
+
+TEST(HeatMap, Jobs_HaveFewTemperatures) {
+  for (const auto& [x, y] : {std::pair("theta", "temperature"), {"temperature", "theta"}}) {
+    Session session(paint());
+    session.set_view({.map_x = x, .map_y = y});
+    std::size_t most = 0;
+    for (Job& job : session.wanted()) {
+      const std::vector<double>& all_K = job.list["temperature_K"];
+      most = std::max(most, std::set<double>(all_K.begin(), all_K.end()).size());
+    }
+    EXPECT_EQ(most, HeatMap::kLevels[0].batch) << x;
+  }
+}
+
+TEST(HeatMap, JobsThatArrived_StayWhileAnotherMapIsWanted) {
+  const Scene scene = paint().scene();
+  const MapAxis sigma{.name = "sigma", .label = "σ", .key = "surface.sigma", .scale = {0.1, 1.0}};
+  HeatMap map(scene);
+  map.follow("one", scene, false, {}, sigma, 0.0);
+  const std::vector<Job> jobs = map.wanted(0);
+  EXPECT_TRUE(map.take(done(jobs[0])));
+  map.follow("another", scene, false, {}, sigma, 0.0);
+  EXPECT_FALSE(map.is_arriving());
+  map.follow("one", scene, false, {}, sigma, 0.0);
+  EXPECT_EQ(map.wanted(0).front().key, jobs[1].key);
+  EXPECT_TRUE(map.take(done(jobs[1])));
 }
 
 TEST(HeatMap, Axes_FollowTheScene) {
@@ -133,77 +159,68 @@ TEST(HeatMap, Axes_FollowTheScene) {
 
 class Axes : public Window {
  protected:
-  void double_click(ImVec2 at) {
-    move_to(at);
-    xdotool({"click", "--repeat", "2", "--delay", "20", "1"});
-    frames(2 * kFrames);
-  }
   /// Types both ends of an axis. Empty text leaves an end as it is.
   void type_ends(ImVec2 numbers, const std::string& from, const std::string& to) {
     double_click(numbers);
     if (!from.empty()) type(from);
-    xdotool({"key", "Tab"});  // not keys(), which holds a key long enough to move on by two fields
-    frames();
+    send({"key", "Tab"});  // not keys(), which holds a key long enough to move on by two fields
     if (!to.empty()) type(to);
     keys("Return");
     settle();
   }
-  ImVec2 below(const Area& plot) const {
-    const ImVec2 at = plot.at(0.5F, 1.0F);
+  ImVec2 below_curve() const {
+    const ImVec2 at = area("plot curve").at(0.5F, 1.0F);
     return {at.x, at.y + ImGui::GetTextLineHeight()};
-  }
-  ImVec2 beside(const Area& plot) const {
-    const ImVec2 at = plot.at(0.0F, 0.5F);
-    return {at.x - ImGui::GetTextLineHeight(), at.y};
   }
 };
 
 TEST_F(Axes, NumbersDoubleClicked_TakeTypedEnds_AndCloseAfterARefusedEndIsTakenBack) {
-  const CurveView& curves = app_->curve_view();
-  double_click(below(curves.area()));
+  const CurveView& curves = app_->ui().curves;
+  double_click(below_curve());
   type("95");
   keys("Return");
   keys("Escape");
-  EXPECT_TRUE(app_->axis_editor().is_open());
+  EXPECT_TRUE(app_->ui().axis_editor.is_open());
   keys("Escape");
-  EXPECT_FALSE(app_->axis_editor().is_open());
-  double_click(below(curves.area()));
-  click(app_->control_area("logarithmic").at(0.1F, 0.5F));
+  EXPECT_FALSE(app_->ui().axis_editor.is_open());
+  double_click(below_curve());
+  click(area("logarithmic").at(0.1F, 0.5F));
   EXPECT_EQ(curves.x(), (Scale{0.5, 90.0, true}));
-  click(app_->control_area("logarithmic").at(0.1F, 0.5F));
+  click(area("logarithmic").at(0.1F, 0.5F));
   keys("Escape");
-  type_ends(below(curves.area()), "20", "70");
+  type_ends(below_curve(), "20", "70");
   EXPECT_EQ(curves.x(), (Scale{20.0, 70.0}));
-  type_ends(below(curves.area()), "", "95");
+  type_ends(below_curve(), "", "95");
   EXPECT_EQ(curves.x(), (Scale{20.0, 70.0}));
-  type_ends(beside(curves.area()), "1", "4");
+  const ImVec2 left = area("plot curve").at(0.0F, 0.5F);
+  type_ends({left.x - ImGui::GetTextLineHeight(), left.y}, "1", "4");
   EXPECT_EQ(curves.y(), (Scale{1.0, 4.0}));
 }
 
 TEST_F(Axes, DragOfASlider_GivesCoarseCurves_AndHoldsZenithsAndColours_WhichCanBeTyped) {
   show_map();
-  const MapView& map = app_->map_view();
+  const MapView& map = app_->ui().map;
   session().set_view(&View::quantity, Plotted::kSignedDolp);
   settle();
-  const Scale colours = map.colours(), zeniths = app_->curve_view().x();
+  const Scale colours = map.colours(), zeniths = app_->ui().curves.x();
   EXPECT_EQ(colours.from, -colours.to);
-  const Area area = app_->control_area("surface.n");
-  move_to(area.at(0.3F, 0.5F));
-  press("mousedown");
+  const Area slider = area("surface.n");
+  move_to(slider.at(0.3F, 0.5F));
+  send({"mousedown", "1"});
   for (const float part : {0.4F, 0.5F}) {
-    move_to(area.at(part, 0.5F));
+    move_to(slider.at(part, 0.5F));
     settle();
     EXPECT_TRUE(session().is_dragged());
     EXPECT_EQ(session().curve().points().size(), Curve::kCoarseCount);
     EXPECT_TRUE(curve_name(session()).ends_with(", coarse"));
-    EXPECT_EQ(app_->curve_view().x(), zeniths);
+    EXPECT_EQ(app_->ui().curves.x(), zeniths);
     EXPECT_EQ(map.colours(), colours);
   }
-  press("mouseup");
+  send({"mouseup", "1"});
   settle();
   EXPECT_TRUE(session().curve().is_finished());
   EXPECT_NE(map.colours(), colours);
-  const ImVec2 right = map.area().at(1.0F, 0.5F);
+  const ImVec2 right = area("plot map").at(1.0F, 0.5F);
   type_ends({right.x + 3.0F * ImGui::GetTextLineHeight(), right.y}, "-8", "8");
   EXPECT_EQ(map.colours(), (Scale{-0.08, 0.08}));
 }

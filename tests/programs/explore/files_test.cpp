@@ -66,40 +66,39 @@ void fill(Session& session, const std::string& measured) {
 TEST_F(ExploreFiles, Session_SavedAndOpened_IsTheSame) {
   put("points.csv", "theta_deg,dolp\n40,0.02\n60,0.05\n");
   Driver saved(paint({"surface.q=4"}));
-  fill(saved.session, at("points.csv"));
-  save_session(saved.session, at("all.toml"));
+  fill(saved, at("points.csv"));
+  save_session(saved, at("all.toml"));
   Driver opened(paint());
-  open_file(opened.session, at("all.toml"));
-  ASSERT_FALSE(opened.session.message().is_error) << opened.session.message().text;
+  open_file(opened, at("all.toml"));
+  ASSERT_FALSE(opened.message().is_error) << opened.message().text;
   saved.settle();
   opened.settle();
-  const Session& a = saved.session;
-  const Session& b = opened.session;
-  EXPECT_EQ(b.scene().toml(), a.scene().toml());
-  EXPECT_EQ(b.edits().opened().toml(), a.edits().opened().toml());
-  EXPECT_TRUE(b.edits().is_changed());
-  expect_same(b.curve().points(), a.curve().points());
-  ASSERT_EQ(b.pins().size(), 2U);
-  EXPECT_EQ(b.pins()[0].name, "as opened");
+  EXPECT_EQ(opened.scene().toml(), saved.scene().toml());
+  EXPECT_EQ(opened.edits().opened().toml(), saved.edits().opened().toml());
+  EXPECT_TRUE(opened.edits().is_changed());
+  expect_same(opened.curve().points(), saved.curve().points());
+  ASSERT_EQ(opened.pins().size(), 2U);
+  EXPECT_EQ(opened.pins()[0].name, "as opened");
   for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_EQ(b.pins()[i].is_visible, i == 0);
-    EXPECT_EQ(b.pins()[i].colour, 1 - i);
-    expect_same(b.pins()[i].curve.points(), a.pins()[i].curve.points());
+    EXPECT_EQ(opened.pins()[i].is_visible, i == 0);
+    EXPECT_EQ(opened.pins()[i].colour, 1 - i);
+    expect_same(opened.pins()[i].curve.points(), saved.pins()[i].curve.points());
   }
-  ASSERT_EQ(b.snapshots().size(), 1U);
-  EXPECT_EQ(b.snapshots()[0].name, a.snapshots()[0].name);
-  EXPECT_EQ(b.snapshots()[0].edits.scene().toml(), a.snapshots()[0].edits.scene().toml());
-  ASSERT_EQ(b.residuals().residuals(Plotted::kDolp).size(), 2U);
-  EXPECT_EQ(b.residuals().residuals(Plotted::kDolp)[1].value, a.residuals().residuals(Plotted::kDolp)[1].value);
-  EXPECT_TRUE(b.varies("surface.n") && b.varies("surface.k"));
-  EXPECT_FALSE(b.marked().at("surface.n"));
-  EXPECT_EQ(b.marked().at("surface.k")->high, 2.0);
-  EXPECT_EQ(b.view(), a.view());
-  EXPECT_EQ(b.theta_deg(), 42.5);
+  ASSERT_EQ(opened.snapshots().size(), 1U);
+  EXPECT_EQ(opened.snapshots()[0].name, saved.snapshots()[0].name);
+  EXPECT_EQ(opened.snapshots()[0].edits.scene().toml(), saved.snapshots()[0].edits.scene().toml());
+  ASSERT_EQ(opened.residuals().residuals(Plotted::kDolp).size(), 2U);
+  EXPECT_EQ(opened.residuals().residuals(Plotted::kDolp)[1].value,
+            saved.residuals().residuals(Plotted::kDolp)[1].value);
+  EXPECT_TRUE(opened.varies("surface.n") && opened.varies("surface.k"));
+  EXPECT_FALSE(opened.marked().at("surface.n"));
+  EXPECT_EQ(opened.marked().at("surface.k")->high, 2.0);
+  EXPECT_EQ(opened.view(), saved.view());
+  EXPECT_EQ(opened.theta_deg(), 42.5);
   // The file must not contain a path of this machine. A session that is opened and saved again gives the same text.
   const std::string text = content("all.toml");
   EXPECT_FALSE(contains(text, at("")));
-  save_session(opened.session, at("again.toml"));
+  save_session(opened, at("again.toml"));
   EXPECT_EQ(content("again.toml"), text);
 }
 
@@ -149,14 +148,14 @@ TEST_F(ExploreFiles, BadValueInASession_IsNamed) {
 }
 
 TEST(ExplorePlots, Json_HasTheVisibleCurvesAndTheMap) {
-  Driver driver(paint({"emission.bracket=true"}));
-  driver.session.pin();
-  driver.session.pins()[0].name = "first";
-  driver.session.set("surface.sigma", 0.3);
-  driver.session.pin();
-  driver.session.pins()[1].is_visible = false;
-  driver.settle();
-  const auto json = [&] { return nlohmann::json::parse(plot_json(driver.session, {0.0, 90.0}, {0.01, 20.0, true})); };
+  Driver session(paint({"emission.bracket=true"}));
+  session.pin();
+  session.pins()[0].name = "first";
+  session.set("surface.sigma", 0.3);
+  session.pin();
+  session.pins()[1].is_visible = false;
+  session.settle();
+  const auto json = [&] { return nlohmann::json::parse(plot_json(session, {0.0, 90.0}, {0.01, 20.0, true})); };
   const nlohmann::json plots = json();
   EXPECT_EQ(plots["title"], "Paint with σ 0.3");
   EXPECT_EQ(plots["y"]["label"], "DOLP [%]");
@@ -165,33 +164,33 @@ TEST(ExplorePlots, Json_HasTheVisibleCurvesAndTheMap) {
   EXPECT_EQ(plots["curves"][2]["name"], "first");
   const auto& curve = plots["curves"][0];
   EXPECT_EQ(curve["style"], "curve");
-  const std::vector<Point> points = driver.session.curve().drawn();
+  const std::vector<Point> points = session.curve().drawn();
   ASSERT_EQ(curve["values"].size(), points.size());
   EXPECT_EQ(curve["values"][100], 100.0 * points[100][Quantity::kDolp]);
   EXPECT_EQ(curve["low"][100], 100.0 * points[100][Quantity::kDolpLow]);
   EXPECT_TRUE(plots["curves"][1]["low"][100].is_null());
-  const MapField field = driver.session.map().field(Plotted::kDolp);
+  const MapField field = session.map().field(Plotted::kDolp);
   EXPECT_EQ(field.count, 128U);
   EXPECT_EQ(plots["map"]["rows"].size(), field.count);
   EXPECT_EQ(plots["map"]["rows"][2][5], 100.0 * field.values[2 * field.count + 5]);
   EXPECT_TRUE(plots["map"]["colours"].is_null() && !plots["map"]["is_signed"]);
   // The name of a pinned curve states how its surface differs from the surface of the main curve. From now on both
   // surfaces are equal. So the name states the temperature, in which the scenes differ.
-  driver.session.pins()[0].name = "";
-  driver.session.set({{"surface.sigma", 0.15}, {"emission.temperature_K", 310.0}});
-  driver.settle();
+  session.pins()[0].name = "";
+  session.set({{"surface.sigma", 0.15}, {"emission.temperature_K", 310.0}});
+  session.settle();
   const std::string name = json()["curves"][2]["name"];
   EXPECT_EQ(name, "T 290 K, n 1.5 k 0.1");
-  driver.session.set_view(&View::ranges, {{View::kColours, {0.01, 0.08}}});
+  session.set_view(&View::ranges, {{View::kColours, {0.01, 0.08}}});
   EXPECT_EQ(json()["map"]["colours"]["to"], 8.0);
   EXPECT_TRUE(json()["sweep"].is_null());
-  driver.session.set_view({.panel = Panel::kSpectrum});
-  driver.settle();
+  session.set_view({.panel = Panel::kSpectrum});
+  session.settle();
   EXPECT_TRUE(json()["map"].is_null());
   const auto sweep = json()["sweep"];
   EXPECT_EQ(sweep["x"]["label"], "λ [µm]");
   EXPECT_EQ(sweep["curves"][0]["name"], "θ = 60°");
-  EXPECT_EQ(sweep["curves"][0]["at"], driver.session.sweep().at());
+  EXPECT_EQ(sweep["curves"][0]["at"], session.sweep().at());
 }
 
 TEST_F(ExploreFiles, Preferences_KeepThemeZoomAndRecentFilesThatExist) {

@@ -135,15 +135,15 @@ TEST_F(FitWindow, CancelClicked_EndsTheFitAndLeavesTheScene) {
   measure("surface.k=0.22");
   for (const char* key : {"surface.n", "surface.k", "surface.sigma", "surface.q"})
     click_control(std::string("vary ") + key);
-  const float top = app_->control_area("surface.n").min.y;
+  const float top = area("surface.n").min.y;
   keys("ctrl+f");
-  EXPECT_EQ(app_->control_area("surface.n").min.y, top);
+  EXPECT_EQ(area("surface.n").min.y, top);
   click_control("cancel fit");
   settle();
   EXPECT_FALSE(session().last_fit());
   EXPECT_FALSE(session().edits().is_changed());
   EXPECT_EQ(session().message().text, "cancelled");
-  EXPECT_EQ(app_->control_area("surface.n").min.y, top);
+  EXPECT_EQ(area("surface.n").min.y, top);
 }
 
 }  // namespace

@@ -303,30 +303,29 @@ constexpr auto kMoment = std::chrono::milliseconds(1);
 /// An evaluator whose calls wait until is_open is true.
 struct SlowEvaluator {
   Evaluate evaluate() {
-    return [this](const Scene& scene, const PointList& list, const RunOptions& options) {
+    return [this](const Scene& scene, const std::vector<Column>& points, const RunOptions& options) {
       for (++calls; !is_open; std::this_thread::sleep_for(kMoment)) {
         if (options.progress(0, 1)) continue;
         ++cancelled;
         throw Cancelled("no file was written");
       }
-      return explore::evaluate(cpu, scene, list, options);
+      return on_the_cpu(scene, points, options);
     };
   }
   static void wait_for(const std::atomic<int>& count) {
     while (count == 0) std::this_thread::sleep_for(kMoment);
   }
 
-  Evaluator cpu{EvaluatorOptions{.evaluator = "cpu"}};
   std::atomic<int> calls = 0, cancelled = 0;
   std::atomic<bool> is_open = false;
 };
 
 Job job_of(const std::string& key) {
   const Scene scene = paint().scene();
-  return {.key = key, .scene = scene, .parts = {points_at(scene, {10.0, 20.0, 30.0, 40.0})}};
+  return {.key = key, .scene = scene, .list = points_at(scene, {10.0, 20.0, 30.0, 40.0})};
 }
 
-std::vector<JobPart> finish(Worker& worker) {
+std::vector<JobResult> finish(Worker& worker) {
   while (!worker.is_idle()) std::this_thread::sleep_for(kMoment);
   return worker.take_news();
 }
@@ -352,42 +351,39 @@ TEST(ExploreWorker, RunningJob_EndsWhenItIsNoLongerWantedUnlessItIsBrief) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));  // time in which a wrong cancellation would occur
     evaluator.is_open = true;
     std::vector<std::string> keys;
-    for (const JobPart& part : finish(worker)) keys.push_back(part.key);
+    for (const JobResult& result : finish(worker)) keys.push_back(result.key);
     EXPECT_EQ(keys, expected);
     EXPECT_EQ(evaluator.cancelled, cancelled);
   }
 }
 
-TEST(ExploreWorker, Parts_ComeInOrderAtTheWiderTolerance_AJobOfHigherRankBetweenThem) {
+TEST(ExploreWorker, Jobs_AreComputedInOrderAtTheWiderTolerance_OneOfHigherRankBetweenThem) {
   for (const auto& [wanted, taken] : {std::pair{1e-2, 1e-2}, {1e-6, 1e-3}}) {
     SlowEvaluator evaluator;
     Worker worker(evaluator.evaluate(), [] {});
-    Job job = job_of("parts");
-    job.tolerance = wanted;
-    job.parts = {points_at(job.scene, {10.0, 20.0, 30.0}), points_at(job.scene, {40.0})};
-    worker.want({job});
+    Job first = job_of("first"), second = job_of("second");
+    first.tolerance = second.tolerance = wanted;
+    worker.want({first, second});
     evaluator.wait_for(evaluator.calls);
-    worker.want({job_of("urgent"), job});
+    worker.want({job_of("urgent"), first, second});
     evaluator.is_open = true;
-    const std::vector<JobPart> news = finish(worker);
+    const std::vector<JobResult> news = finish(worker);
     ASSERT_EQ(news.size(), 3U);
     EXPECT_EQ(news[1].key, "urgent");
-    for (const auto& [part, position] : {std::pair{0U, 0U}, {1U, 2U}}) {
-      EXPECT_EQ(news[position].part, part);
-      EXPECT_EQ(news[position].is_last, part == 1U);
-      EXPECT_EQ(news[position].scene.number("accuracy.tolerance"), taken);
-      expect_same(news[position].points, truth(news[position].scene, job.parts[part]));
+    for (const std::size_t i : {0U, 2U}) {
+      EXPECT_EQ(news[i].key, i == 0 ? "first" : "second");
+      EXPECT_EQ(news[i].scene.number("accuracy.tolerance"), taken);
+      expect_same(news[i].points, truth(news[i].scene, first.list));
     }
-    EXPECT_GT(news[2].evaluations, 0.0);
+    EXPECT_GT(news[2].results.integrand_evaluations, 0.0);
   }
 }
 
 TEST(ExploreWorker, RefusedJob_HasPointsWithoutValues_AndTheReasonIsTold) {
-  Evaluator evaluator(EvaluatorOptions{.evaluator = "cpu"});
-  Worker worker(on_the_cpu(evaluator), [] {});
+  Worker worker(on_the_cpu, [] {});
   const Scene scene = paint({"surface.sigma_cross=10"}).scene();
-  worker.want({{.key = "wide", .scene = scene, .parts = {points_at(scene, {10.0, 20.0})}, .wants_effects = true}});
-  const std::vector<JobPart> news = finish(worker);
+  worker.want({{.key = "wide", .scene = scene, .list = points_at(scene, {10.0, 20.0}), .wants_effects = true}});
+  const std::vector<JobResult> news = finish(worker);
   ASSERT_EQ(news.size(), 1U);
   ASSERT_EQ(news[0].points.size(), 2U);
   for (const Point& point : news[0].points) EXPECT_EQ(point.status, kOutsideModelDomain);
@@ -398,7 +394,7 @@ TEST(ExploreWorker, RefusedJob_HasPointsWithoutValues_AndTheReasonIsTold) {
 }
 
 TEST(ExploreWorker, LostDevice_IsThrownToWhoAsksForNews) {
-  const auto lost = [](const Scene&, const PointList&, const RunOptions&) -> Results { throw DeviceError("lost"); };
+  const auto lost = [](const auto&...) -> Results { throw DeviceError("lost"); };
   Worker worker(lost, [] {});
   worker.want({job_of("any")});
   while (!worker.is_idle()) std::this_thread::sleep_for(kMoment);
@@ -436,20 +432,20 @@ TEST(Measured, Emissivities_AreThoseThatAFitCompares) {
 }
 
 TEST(Measured, Residuals_AreMeasuredMinusModelAtTheMeasuredPoints) {
-  Driver driver(paint());
+  Driver session(paint());
   for (const auto& [column, plotted, quantity] :
        {std::tuple{"dolp", Plotted::kDolp, Quantity::kDolp}, {"q_over_i", Plotted::kSignedDolp, Quantity::kQOverI}}) {
     const TemporaryFile file(".csv", std::string("theta_deg,") + column + "\n33.3,0.05\n61.7,0.06\n");
-    driver.session.load_measured(file.path());
-    driver.settle();
-    const Scene& scene = driver.session.scene();
+    session.load_measured(file.path());
+    session.settle();
+    const Scene& scene = session.scene();
     const std::vector<Point> model = truth(scene, points_at(scene, {33.3, 61.7}));
-    const std::vector<Measurement> residuals = driver.session.residuals().residuals(plotted);
+    const std::vector<Measurement> residuals = session.residuals().residuals(plotted);
     ASSERT_EQ(residuals.size(), 2U);
     EXPECT_EQ(residuals[0].value, 0.05 - model[0][quantity]);
     EXPECT_EQ(residuals[1].value, 0.06 - model[1][quantity]);
     EXPECT_DOUBLE_EQ(*residual_rms(residuals), std::hypot(residuals[0].value, residuals[1].value) / std::sqrt(2.0));
-    EXPECT_FALSE(residual_rms(driver.session.residuals().residuals(Plotted::kAlbedo)));
+    EXPECT_FALSE(residual_rms(session.residuals().residuals(Plotted::kAlbedo)));
   }
 }
 

@@ -16,10 +16,8 @@ class WindowFiles : public Window {
  protected:
   void SetUp() override {
     Window::SetUp();
-    std::string other = kEdited;
-    other.replace(other.find("Painted"), 7, "Other");
     std::filesystem::create_directory(at("folder"));
-    put("folder/other.toml", other);
+    put("folder/other.toml", paint({"title=Other"}).scene().toml());
     put("folder/notes.txt", "");
   }
   /// Opens a file from the list of the dialog: the first click selects the file, the second click opens it.
@@ -39,21 +37,21 @@ TEST_F(WindowFiles, SceneOfTheList_IsOpened_IsUndone_AndIsAmongTheRecentOnes) {
   keys("ctrl+p");
   keys("ctrl+o");
   frames();
-  EXPECT_NO_THROW(app_->control_area("scene.toml"));
+  EXPECT_NO_THROW(area("scene.toml"));
   click_control("folder/");
-  EXPECT_THROW(app_->control_area("notes.txt"), std::out_of_range);
+  EXPECT_THROW(area("notes.txt"), std::out_of_range);
   click_control("other.toml");
-  EXPECT_EQ(title(), "Painted");
+  EXPECT_EQ(title(), "Paint");
   click_control("other.toml");
   settle();
   EXPECT_EQ(title(), "Other");
   EXPECT_EQ(number("surface.sigma"), 0.15);
   EXPECT_FALSE(session().edits().is_changed());
-  EXPECT_EQ(session().pins()[0].curve.scene().title(), "Painted");
+  EXPECT_EQ(session().pins()[0].curve.scene().title(), "Paint");
   EXPECT_EQ(session().curve().shown_scene().title(), "Other");
   EXPECT_TRUE(contains(content("config/dolp/window.toml"), "folder/other.toml"));
   keys("ctrl+z");
-  EXPECT_EQ(title(), "Painted");
+  EXPECT_EQ(title(), "Paint");
   EXPECT_NE(number("surface.sigma"), 0.15);
   click_control("menu File");
   click_control("recent");
@@ -65,25 +63,25 @@ TEST_F(WindowFiles, OpenDialog_TakesAPathByKeyboard_AndRefusesAMissingOne) {
   keys("ctrl+o");
   click_control("folder/");
   click_control("../");
-  EXPECT_NO_THROW(app_->control_area("scene.toml"));
+  EXPECT_NO_THROW(area("scene.toml"));
   keys("Escape");
   answer("ctrl+o", "folder/missing.toml");
-  EXPECT_EQ(title(), "Painted");
+  EXPECT_EQ(title(), "Paint");
   type("folder");
   keys("Return");
-  EXPECT_NO_THROW(app_->control_area("other.toml"));
+  EXPECT_NO_THROW(area("other.toml"));
   type("other.toml");
   keys("Return");
   settle();
   EXPECT_EQ(title(), "Other");
-  session().go_to(SceneEdits(Scene::from_text(kEdited, {}, "built-in")));
+  session().go_to(SceneEdits(Scene::from_text(kPaint, {}, "built-in")));
   keys("ctrl+o");
-  EXPECT_NO_THROW(app_->control_area("../"));
+  EXPECT_NO_THROW(area("../"));
   keys("Escape");
   EXPECT_FALSE(session().message().is_error);
   put("bad.toml", "[surface]\nsigma = -1\n");
   answer("ctrl+o", at("bad.toml").string());
-  EXPECT_EQ(title(), "Painted");
+  EXPECT_EQ(title(), "Paint");
   EXPECT_TRUE(session().message().is_error);
   EXPECT_TRUE(contains(session().message().text, "bad.toml"));
 }
@@ -115,7 +113,7 @@ TEST_F(WindowFiles, Plots_SavedByShortcut_AreLinesAndTextOfWhatIsShown) {
   EXPECT_EQ(save("plot.svg").text, "saved " + at("plot.svg").string());
   const std::string svg = content("plot.svg");
   const std::string pinned = surface_name(session().pins()[0].curve.shown_scene());
-  for (const std::string& text : std::vector<std::string>{"Painted", curve_name(session()), overlay_name(session()),
+  for (const std::string& text : std::vector<std::string>{"Paint", curve_name(session()), overlay_name(session()),
                                                           pinned, "measured", "DOLP [%]", "zenith θ [°]"})
     EXPECT_TRUE(contains(svg, text));
   session().set_view(&View::panel, Panel::kSpectrum);
@@ -130,7 +128,7 @@ TEST_F(WindowFiles, Plots_SavedByShortcut_AreLinesAndTextOfWhatIsShown) {
 
 TEST_F(WindowFiles, ExportMenu_HasTwoEntries_WhoseFormatGivesTheName) {
   click_control("menu Export");
-  EXPECT_NO_THROW(app_->control_area("Figure…"));
+  EXPECT_NO_THROW(area("Figure…"));
   click_control("Data…");
   frames();
   click_control("format the table of the scene's grid, CSV");
@@ -144,7 +142,7 @@ TEST_F(WindowFiles, TitleClicked_TakesATypedOne_WhichUndoTakesBack) {
   frames();
   EXPECT_EQ(title(), "Mine");
   keys("ctrl+z");
-  EXPECT_EQ(title(), "Painted");
+  EXPECT_EQ(title(), "Paint");
 }
 
 TEST_F(WindowFiles, Snapshot_Clicked_RestoresTheState_AndTakesATypedName) {
@@ -157,9 +155,8 @@ TEST_F(WindowFiles, Snapshot_Clicked_RestoresTheState_AndTakesATypedName) {
   EXPECT_EQ(number("surface.sigma"), 0.15);
   keys("ctrl+z");
   EXPECT_NE(number("surface.sigma"), 0.15);
-  move_to(app_->control_area("snapshot 0").at(0.5F, 0.5F));
-  xdotool({"click", "3"});
-  frames();
+  move_to(area("snapshot 0").at(0.5F, 0.5F));
+  send({"click", "3"});
   type("dry");
   EXPECT_TRUE(session().snapshots()[0].name.ends_with("dry")) << session().snapshots()[0].name;
   EXPECT_EQ(session().pins()[0].name, "");

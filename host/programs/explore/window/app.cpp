@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "base/atomic_file.hpp"
 #include "base/stopwatch.hpp"
@@ -32,8 +33,7 @@ std::string times_text(std::vector<double> times_s) {
 App::App(SceneEdits edits, const AppOptions& options)
     : session_(std::move(edits)),
       evaluator_({.device = options.device, .is_interactive = true}),
-      worker_([this](const Scene& scene, const PointList& list,
-                     const RunOptions& run) { return evaluate(evaluator_, scene, list, run); },
+      worker_(std::bind_front(&Evaluator::evaluate, &evaluator_),
               [this] {
                 if (!is_catching_up_) glfwPostEmptyEvent();
               }),

@@ -19,9 +19,7 @@ class App {
   Session& session() { return session_; }
   /// The area of a named item in the last frame. Errors: std::out_of_range if the last frame did not draw this item.
   Area control_area(const std::string& name) { return input_.areas().at(name); }
-  const CurveView& curve_view() const { return ui_.curves; }
-  const MapView& map_view() const { return ui_.map; }
-  const AxisEditor& axis_editor() const { return ui_.axis_editor; }
+  const Ui& ui() const { return ui_; }
 
   /// Takes input and results, and draws one frame. Returns false if the user has closed the window.
   /// Errors: DeviceError if no device can compute, or if the device is lost.

@@ -102,9 +102,10 @@ void Actions::fit() {
   }
   const auto work = [this, job = *job](const Progress& progress) -> BackgroundTask::Ending {
     const auto phase = [this](const std::string& name) { fit_task.set_phase(name); };
-    return [this, job, fit = run_fit(job, fit_evaluator_, progress, phase)] {
-      return fit_text(fit, session_.take_fit(fit, job));
-    };
+    const Fit fit =
+        fit_evaluator_.fit(job.edits.scene(), {job.data}, {.vary = job.vary, .progress = progress, .phase = phase});
+    if (!fit.has_minimum) throw InputError("no minimum was found: no descent converged");
+    return [this, job, fit] { return fit_text(fit, session_.take_fit(fit, job)); };
   };
   if (start(fit_task, "the last fit", work)) session_.tell("");
 }

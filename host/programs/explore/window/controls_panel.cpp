@@ -51,13 +51,6 @@ std::string note_on(const Control& control, const Session& session) {
   return note;
 }
 
-bool has_effect(const Scene& scene, const std::string& table) {
-  if (table == "source") return scene.number("source.scale").has_value();
-  if (table == "path") return scene.number("path.transmittance").has_value();
-  if (table == "surroundings" && has_sky_profile(scene)) return true;
-  return scene.number(table + ".temperature_K").has_value();
-}
-
 /// n and k of the surface or film whose keys are in `table`, at the first wavelength of the scene's spectrum.
 std::pair<double, double> material_index(const Scene& scene, const std::string& table) {
   Scene bare = scene.without("surface.coating");
@@ -103,8 +96,8 @@ struct Controls {
     for (const std::string& field : ids) fields.draw_reason(field);
   }
 
-  /// Draws a slider with a text field beside it.
-  void draw_slider(const Control& control, double value) {
+  /// Draws a slider with a text field beside it, and below it the range for a fit.
+  void draw_number(const Control& control, double value) {
     const std::string& key = control.key->key;
     const Scale scale = range_in(session.scene(), control);
     row_label(control.label_with_unit());
@@ -131,15 +124,9 @@ struct Controls {
       fields.draw(key, value, [&](const std::string& text) { return set({key, parse_value(text)}); });
     });
     fields.draw_reason(key);
-  }
-
-  void draw_number(const Control& control, double value) {
-    const std::string& key = control.key->key;
-    draw_slider(control, value);
-    if (!session.residuals().data()) return;
     const std::string fit_row = "fit " + key;
     if (session.varies(key)) rows.note(fit_row);
-    if (!rows.has(fit_row)) return;
+    if (!session.residuals().data() || !rows.has(fit_row)) return;
     ImGui::BeginDisabled(!session.varies(key));
     const FitRange range = fit_range(session.marked(), session.scene(), control, value);
     row_label("  fit from, to");
@@ -188,27 +175,18 @@ struct Controls {
     tooltip(unused_text(session.scene(), control));
   }
 
-  /// True if the control applies. Otherwise draws its greyed row, if the row stays.
-  bool may_draw(const Control& control) {
-    if (control.applies(session.scene())) {
-      rows.note(control.key->key);
-      return true;
-    }
-    if (rows.stays(session.scene(), control)) draw_unused(control);
-    return false;
+  /// Draws a control with its value, or its greyed row if the scene does not use it and the row stays.
+  void draw(const Control& control) {
+    const Scene& scene = session.scene();  // as it is now: an earlier control may have changed it
+    if (control.applies(scene)) rows.note(control.key->key);
+    if (const auto number = control.value(scene)) return draw_number(control, *number);
+    if (const auto word = control.word(scene)) return draw_choice(control, *word);
+    if (rows.stays(scene, control)) draw_unused(control);
   }
 
-  // The next two functions read each value when its control is drawn: an earlier control may have changed the scene.
-  void draw_choices(const std::string& table) {
+  void draw_table(const std::string& table) {
     for (const Control& control : controls()) {
-      if (control.is_number() || parent_table(control.key->key) != table || !may_draw(control)) continue;
-      draw_choice(control, *control.word(session.scene()));
-    }
-  }
-  void draw_numbers(const std::string& table) {
-    for (const Control& control : controls()) {
-      if (!control.is_number() || parent_table(control.key->key) != table || !may_draw(control)) continue;
-      draw_number(control, *control.value(session.scene()));
+      if (parent_table(control.key->key) == table) draw(control);
     }
   }
 
@@ -244,13 +222,6 @@ struct Controls {
     return medium_change(scene, table, {{"n", n}, {"k", k}});
   }
 
-  void draw_surface() {
-    const std::vector<Setting> chosen = draw_material("surface");
-    if (!chosen.empty()) session.set(chosen);
-    draw_choices("surface");
-    draw_numbers("surface");
-  }
-
   void draw_coating() {
     heading("Coating, from the outside in");
     std::vector<Film> films = scene_films(session.scene());
@@ -268,7 +239,7 @@ struct Controls {
       if (is_removed) films.erase(films.begin() + static_cast<std::ptrdiff_t>(layer) - 1);
       if (is_removed) return session.set({coating_setting(films)});
       if (!chosen.empty()) return session.set(chosen);
-      draw_numbers(film);
+      draw_table(film);
     }
   }
 
@@ -325,7 +296,7 @@ struct Controls {
     if (ImGui::Checkbox("band", &is_band))
       set(is_band ? Setting{kKey, {8.0, 14.0}} : Setting{"spectrum.wavelength_um", 10.6});
     const std::vector<double> ends = session.scene().numbers(kKey);
-    if (ends.empty()) return draw_numbers("spectrum");
+    if (ends.empty()) return draw(control("spectrum.wavelength_um"));
     row_label("λ1, λ2 [µm]");
     draw_ends(kKey, {ends[0], ends[1]}, [&](const std::string& low, const std::string& high) {
       return set({kKey, TomlText{fmt::format("[{}, {}]", low, high)}});
@@ -334,7 +305,7 @@ struct Controls {
 
   void draw_response() {
     const std::string file = session.scene().word("spectrum.response_file").value_or("");
-    draw_choices("spectrum");
+    draw(control("spectrum.response_per"));
     if (!rows.has("spectrum.response_per")) return;
     coloured_text(kDimColour, file.empty() ? "no response of the camera"
                                            : file_name(file) + "; a change of λ1 or λ2 makes it a band");
@@ -343,12 +314,12 @@ struct Controls {
   void draw_all() {
     rows.follow(session.edits().opened());
     heading("Surface");
-    draw_surface();
+    if (const std::vector<Setting> chosen = draw_material("surface"); !chosen.empty()) session.set(chosen);
+    draw_table("surface");
     draw_coating();
     heading("Radiation");
     for (const char* effect : {"emission", "source", "surroundings", "path"}) {
       draw_effect_box(effect);
-      draw_choices(effect);
       const bool is_there = has_effect(session.scene(), effect);
       if (is_there) rows.note(effect);
       if (!rows.has(effect)) continue;
@@ -356,24 +327,18 @@ struct Controls {
       if (effect == std::string_view("source")) draw_source_kind();
       if (effect == std::string_view("surroundings")) draw_sky();
       ImGui::EndDisabled();
-      draw_numbers(effect);
+      draw_table(effect);
     }
     heading("Spectrum and geometry");
     draw_spectrum();
     draw_response();
-    draw_choices("geometry");
-    draw_numbers("geometry");
-  }
-
-  void draw_accuracy() {
-    draw_numbers("accuracy");
-    draw_choices("accuracy");
+    draw_table("geometry");
   }
 };
 
 }  // namespace
 
 void draw_controls(Session& session, ControlState& state) { Controls{session, state}.draw_all(); }
-void draw_accuracy_controls(Session& session, ControlState& state) { Controls{session, state}.draw_accuracy(); }
+void draw_accuracy_controls(Session& session, ControlState& state) { Controls{session, state}.draw_table("accuracy"); }
 
 }  // namespace dolp::explore

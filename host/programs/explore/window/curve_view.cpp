@@ -35,13 +35,6 @@ std::vector<ShownCurve> shown_curves(const Session& session) {
   return curves;
 }
 
-const PeakAnswer* shown_peak(const Session& session) {  // null if the plot marks no peak
-  const Plotted quantity = session.view().quantity;
-  const bool is_marked = quantity == Plotted::kDolp || quantity == Plotted::kSignedDolp;
-  const std::optional<PeakAnswer>& peak = session.peak().answer();
-  return is_marked && peak && session.curve().is_finished() ? &*peak : nullptr;
-}
-
 std::vector<double> values_to_show(const Session& session, const std::vector<ShownCurve>& curves) {
   const Plotted quantity = session.view().quantity;
   std::vector<double> values;
@@ -110,6 +103,7 @@ Area add_entry(const char* id, const std::string& name, ImU32 colour = kTextColo
     ImGui::NewLine();
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImGui::InvisibleButton(id, {width, size.y});
+  name_item(std::string("legend ") + id);
   draw_text(ImGui::GetWindowDrawList(), {at.x + 2.3F * line, at.y}, {0.0F, 0.0F}, colour, text);
   ImGui::SameLine(0.0F, 1.2F * line);
   return {at, {at.x + 2.0F * line, at.y + line}};
@@ -151,8 +145,7 @@ void draw_legend(const std::vector<ShownCurve>& curves, Session& session) {
 
 void draw_cursor(const Plot& plot, const Session& session, const CurveStyle& style) {
   if (!plot.can_show(session.theta_deg(), 1.0)) return;
-  const float x = plot.at_position(plot.x().position(session.theta_deg()), 0.0).x;
-  plot.list()->AddLine({x, plot.min().y}, {x, plot.max().y}, kCursorColour, scaled(1.0F));
+  plot.draw_cursor(session.theta_deg());
   const Point* const shown = session.at_cursor();
   if (!shown) return;
   const Plotted quantity = session.view().quantity;
@@ -164,9 +157,11 @@ void draw_cursor(const Plot& plot, const Session& session, const CurveStyle& sty
 }
 
 void draw_peak(const Plot& plot, const Session& session) {
-  const PeakAnswer* const peak = shown_peak(session);
-  if (!peak) return;
-  const double value = described(session.view().quantity).shown(peak->at);
+  const Plotted quantity = session.view().quantity;
+  const bool is_marked = quantity == Plotted::kDolp || quantity == Plotted::kSignedDolp;
+  const std::optional<PeakAnswer>& peak = session.peak().answer();
+  if (!is_marked || !peak || !session.curve().is_finished()) return;
+  const double value = described(quantity).shown(peak->at);
   if (!plot.can_show(peak->at.theta_deg, value)) return;
   const bool is_low = value < 0.0;
   const ImVec2 at = plot.at(peak->at.theta_deg, value);
@@ -257,7 +252,7 @@ void CurveView::edit_axes(View& view, AxisEditor& editor, const Plot& plot, cons
     view.set_range(View::kZeniths, change->range);
     view.is_theta_log = change->is_log;
   }
-  if (const auto change = editor.draw(values, plot.y_numbers(), y_, [](const Scale&) { return ""; })) {
+  if (const auto change = editor.draw(values, plot.y_numbers(), y_)) {
     view.set_range(View::kValues, change->range);
     view.is_log = change->is_log;
   }
@@ -311,7 +306,6 @@ void CurveView::draw(Session& session, AxisEditor& editor, ImVec2 size) {
   }
   plot.unclip();
   draw_peak(plot, session);  // after unclip(), so that the mark is complete even at an end of the axis
-  area_ = plot.area();
   edit_axes(view, editor, plot, values.label);
   if (view != session.view()) session.set_view(view);
   if (has_residuals) draw_residuals(session, x_, {size.x, residual_height});

@@ -186,20 +186,16 @@ void draw_sky_marks(const Scene& scene, double source_zenith_deg, const Disc& di
 
 }  // namespace
 
-void ScatteringView::update(const Session& session) {
-  const std::string key = fmt::format("{} {}", session.theta_deg(), session.curve().key());
-  if (key == key_) return;
-  key_ = key;
-  reason_.clear();
-  try {
-    cut_ = scattering_cut(evaluator_, session.scene(), std::min(session.theta_deg(), 89.9), kCutCount);
-  } catch (const InputError& error) {
-    reason_ = error.what();
-  }
-}
-
 void ScatteringView::draw(Session& session, ImVec2 size) {
-  update(session);
+  const std::string key = fmt::format("{} {}", session.theta_deg(), session.curve().key());
+  if (std::exchange(key_, key) != key) {
+    reason_.clear();
+    try {
+      cut_ = scattering_cut(evaluator_, session.scene(), std::min(session.theta_deg(), 89.9), kCutCount);
+    } catch (const InputError& error) {
+      reason_ = error.what();
+    }
+  }
   View view = session.view();
   const float top = ImGui::GetCursorPosY();
   for (const auto& [name, position] : {std::pair{"row", &view.mueller_row}, {"column", &view.mueller_column}}) {

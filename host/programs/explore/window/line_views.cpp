@@ -54,8 +54,7 @@ void mark_spectrum(const Plot& plot, const Scene& scene) {
   plot.clip();
   for (std::size_t i = 0; i < parts; ++i) {
     const double start_um = from_um + static_cast<double>(i) * step_um;
-    const float from = plot.at_position(plot.x().position(start_um), 0.0).x;
-    const float to = plot.at_position(plot.x().position(start_um + step_um), 0.0).x;
+    const float from = plot.x_pixel(start_um), to = plot.x_pixel(start_um + step_um);
     const auto height = static_cast<float>(responses[i] / std::ranges::max(responses));
     plot.list()->AddRectFilled({from, std::lerp(plot.max().y, plot.min().y, height)},
                                {std::max(to, parts == 1 ? from + 1.5F : to), plot.max().y},
@@ -79,11 +78,6 @@ NamedLine sweep_line(const Sweep& sweep, Plotted quantity, const CurveStyle& sty
   return line;
 }
 
-void mark(const Plot& plot, double value) {
-  const float x = plot.at_position(plot.x().position(value), 0.0).x;
-  plot.list()->AddLine({x, plot.min().y}, {x, plot.max().y}, kCursorColour, scaled(1.0F));
-}
-
 /// Draws lines over the axis of the view. A drag sets the number on this axis, unless the scene has a band instead.
 void draw_over_axis(const char* id, Session& session, AxisEditor& editor, ImVec2 size,
                     const std::vector<NamedLine>& lines, PlotAxis values) {
@@ -93,14 +87,13 @@ void draw_over_axis(const char* id, Session& session, AxisEditor& editor, ImVec2
   values.scale = session.view().range(View::kSweepValues).value_or(values.scale);
   const Plot plot(id, size, {axis.label, axis.scale}, values);
   const std::optional<double> value = session.scene().number(axis.key);
-  axis.name == "wavelength" ? mark_spectrum(plot, session.scene()) : mark(plot, *value);
+  axis.name == "wavelength" ? mark_spectrum(plot, session.scene()) : plot.draw_cursor(*value);
   draw_lines(plot, sweep.at(), lines, true);
   const Scene& scene = session.sweep_scene();
   const auto change = editor.draw(axis.label, plot.x_numbers(), axis.scale,
                                   [&](const Scale& range) { return refusal(scene, axis, range); });
   if (change) set_range(session, axis, *change);
-  if (const auto typed =
-          editor.draw("view: " + values.label, plot.y_numbers(), values.scale, [](const Scale&) { return ""; })) {
+  if (const auto typed = editor.draw("view: " + values.label, plot.y_numbers(), values.scale)) {
     View view = session.view();
     view.set_range(View::kSweepValues, typed->range);
     view.is_log = typed->is_log;
@@ -158,7 +151,7 @@ void draw_smooth(Session& session, AxisEditor& editor, ImVec2 size) {
       {is_band ? "R_s, R_p, mean over the band" : "R_s, R_p", values_range(over_angle, session.view().is_log)});
   if (plot.is_dragged()) session.set_theta(plot.x().value(plot.mouse_x()));
   draw_lines(plot, session.smooth().at(), over_angle, true);
-  mark(plot, session.theta_deg());
+  plot.draw_cursor(session.theta_deg());
   draw_over_axis(
       "smooth spectrum", session, editor, half, over,
       {fmt::format("R_s, R_p at β = {:.4g}°", session.theta_deg()), values_range(over, session.view().is_log)});

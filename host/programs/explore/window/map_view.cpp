@@ -133,8 +133,7 @@ void MapView::edit_axes(Session& session, AxisEditor& editor, const Plot& plot) 
   }
   const float line = ImGui::GetTextLineHeight();
   const Area numbers{{plot.max().x + 0.5F * line, plot.min().y}, {plot.max().x + kBarRoom * line, plot.max().y}};
-  auto change = editor.draw("colours: " + quantity().label(), numbers, times(colour_scale_, quantity().scale()),
-                            [](const Scale&) { return ""; });
+  auto change = editor.draw("colours: " + quantity().label(), numbers, times(colour_scale_, quantity().scale()));
   if (!change) return;
   View view = session.view();
   if (change->range) change->range = times(*change->range, 1.0 / quantity().scale());
@@ -157,7 +156,6 @@ void MapView::draw(Session& session, AxisEditor& editor, ImVec2 size) {
   draw_map_cursor(session, plot);
   plot.unclip();
   draw_bar(plot);
-  area_ = plot.area();
   edit_axes(session, editor, plot);
 }
 

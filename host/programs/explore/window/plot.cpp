@@ -82,6 +82,7 @@ Plot::Plot(const char* id, ImVec2 size, PlotAxis x, PlotAxis y, float right, boo
   ImGui::SetCursorScreenPos(min());
   ImGui::InvisibleButton(id, {area_.width(), area_.height()},
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+  name_area(std::string("plot ") + id, area_);
   is_dragged_ = ImGui::IsItemActive() && ImGui::IsMouseDown(ImGuiMouseButton_Left);
   is_shifted_ = ImGui::IsItemActive() && ImGui::IsMouseDown(ImGuiMouseButton_Right);
   is_hovered_ = ImGui::IsItemHovered();
@@ -118,7 +119,7 @@ void Plot::follow_mouse(Zoom& zoom, const Scale& all_x) const {
 void Plot::draw_x_axis(bool has_grid) const {
   const float line = ImGui::GetTextLineHeight();
   for (const double tick : axis_ticks(x(), area_.width(), 3.4F * line)) {
-    const float at = at_position(x().position(tick), 0.0).x;
+    const float at = x_pixel(tick);
     if (has_grid) list_->AddLine({at, min().y}, {at, max().y}, kGridColour);
     list_->AddLine({at, max().y}, {at, max().y + 0.25F * line}, kDimColour);
     draw_text(list_, {at, max().y + 0.25F * line}, {0.5F, 0.0F}, kDimColour, tick_text(tick));

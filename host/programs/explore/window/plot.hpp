@@ -49,6 +49,10 @@ class Plot {
 
   ImVec2 at(double x_value, double y_value) const { return at_position(x().position(x_value), y().position(y_value)); }
   ImVec2 at_position(double x, double y) const { return area_.at(static_cast<float>(x), 1.0F - static_cast<float>(y)); }
+  float x_pixel(double x_value) const { return at_position(x().position(x_value), 0.0).x; }
+  void draw_cursor(double x_value) const {  // a vertical line
+    list_->AddLine({x_pixel(x_value), min().y}, {x_pixel(x_value), max().y}, kCursorColour, scaled(1.0F));
+  }
   bool is_dragged() const { return is_dragged_; }  ///< the left button went down in the plot and is still down
   bool is_hovered() const { return is_hovered_; }
   /// Changes `zoom` by the mouse input of this frame: the wheel zooms (with Shift only x, with Alt only y), the right

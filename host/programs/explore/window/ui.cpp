@@ -196,12 +196,6 @@ bool draw_tab(const std::string& name, bool is_shown, const std::string& refusal
   return is_clicked;
 }
 
-float panel_tabs_width() {
-  float width = 0.0F;
-  for (const char* name : kPanelNames) width += tab_width(name) + scaled(kTabGap);
-  return width;
-}
-
 void draw_panel_tabs(Ui& ui) {
   for (std::size_t i = 0; i < kPanelNames.size(); ++i) {
     const auto panel = static_cast<Panel>(i);
@@ -237,7 +231,8 @@ void draw_panel(Ui& ui, ImVec2 size) {
 void draw_plots(Ui& ui, ImVec2 size) {
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   // The buttons of the views have one line, unless the curve would have less than 47 % of the width.
-  const float beside_tabs = size.x - gap - panel_tabs_width();
+  float beside_tabs = size.x - gap;
+  for (const char* name : kPanelNames) beside_tabs -= tab_width(name) + scaled(kTabGap);
   const float curve_width = beside_tabs < 0.47F * size.x ? 0.5F * size.x : std::min(beside_tabs, 0.54F * size.x);
   constexpr ImGuiWindowFlags kStill = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
   ImGui::BeginChild("curves", {curve_width, size.y}, false, kStill);

@@ -38,7 +38,6 @@ struct ShownCurve {
 class CurveView {
  public:
   void draw(Session& session, AxisEditor& editor, ImVec2 size);
-  const Area& area() const { return area_; }  ///< area of the plot in the last frame
   const Scale& x() const { return x_; }
   const Scale& y() const { return y_; }
 
@@ -50,7 +49,6 @@ class CurveView {
 
   float draw_legend_above(const std::vector<ShownCurve>& curves, Session& session, ImVec2 size);
 
-  Area area_;
   Scale x_, y_;
   Plotted quantity_ = Plotted::kDolp;
   float legend_height_ = 0.0F;  ///< height of the legend's entries in the last frame
@@ -72,8 +70,6 @@ class ScatteringView {
   void draw(Session& session, ImVec2 size);
 
  private:
-  void update(const Session& session);
-
   Evaluator evaluator_{EvaluatorOptions{.evaluator = "cpu"}};
   std::string key_;
   ScatteringCut cut_;
@@ -102,7 +98,6 @@ class MapView {
  public:
   void draw(Session& session, AxisEditor& editor, ImVec2 size);
   const Scale& colours() const { return colour_scale_; }
-  const Area& area() const { return area_; }
 
  private:
   struct Contour {
@@ -127,7 +122,6 @@ class MapView {
   MapField field_;
   Texture cells_;
   std::vector<Contour> contours_;
-  Area area_;
 };
 
 }  // namespace dolp::explore

@@ -136,7 +136,7 @@ std::optional<AxisEditor::Change> AxisEditor::draw_content(const Scale& now, con
   const auto apply = [&](const std::string& low, const std::string& high) {
     Scale range = now;
     std::string why = parse_range(low, high, range);
-    if (why.empty()) why = check(range);
+    if (why.empty() && check) why = check(range);
     if (why.empty()) change = Change{range, range.is_log};
     return why;
   };

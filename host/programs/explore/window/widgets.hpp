@@ -75,10 +75,11 @@ class AxisEditor {
     std::optional<Scale> range;  ///< typed range; empty: an automatic one
     bool is_log = false;
   };
-  using Check = std::function<std::string(const Scale& range)>;  ///< returns why a range is refused, or ""
+  /// Returns why a range is refused, or "". A Check may be empty.
+  using Check = std::function<std::string(const Scale& range)>;
 
   /// Draws the small window if the user opened it for the axis `label`. `numbers` is the area of the axis's numbers.
-  std::optional<Change> draw(const std::string& label, const Area& numbers, const Scale& now, const Check& check);
+  std::optional<Change> draw(const std::string& label, const Area& numbers, const Scale& now, const Check& check = {});
 
   bool is_open() const { return !shown_.empty(); }
 

@@ -326,8 +326,8 @@ std::optional<ResponsePlan> response_plan(const MomentsRequest& request, Respons
   MomentsRequest passes = request.without_entries(), others = passes;
   others.basis = nullptr;
   passes.optics = {request.basis->reference()};
-  using Geometry = std::array<std::uint32_t, 3>;
-  std::unordered_map<Geometry, std::uint32_t, boost::hash<Geometry>> known_passes;
+  using GeometryKey = std::array<std::uint32_t, 3>;
+  std::unordered_map<GeometryKey, std::uint32_t, boost::hash<GeometryKey>> known_passes;
   std::unordered_map<std::uint32_t, std::uint32_t> known_others;  // from positions in request.optics to others.optics
   std::size_t reached = 0;
   for (const Bundle& bundle : request.bundles) {

@@ -91,6 +91,8 @@ void check_shapes(const SceneValues& scene, const Points& points) {
     throw InputError(points.where() +
                      ": column \"sigma_cross\" cannot be combined with surface.wind_model = \"directional\"");
   }
+  if (points[Axis::kSigmaCross] && scene.emission && scene.emission->has_bracket)
+    throw InputError(points.where() + ": column \"sigma_cross\" needs emission.bracket = false in the scene");
   if (points.has_winds && surface.distribution != Distribution::kGaussian) {
     throw InputError(points.where() + ": column \"wind_m_s\" needs surface.distribution = \"gaussian\"");
   }

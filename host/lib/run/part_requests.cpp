@@ -247,12 +247,11 @@ std::uint32_t PartRequests::shape_position(const PerAxis& on_axes) const {
 void PartRequests::request_grid(const SceneEntries& grid) {
   std::vector<double> zeniths = grid.axes()[moment_axis(scene_)];
   if (zeniths.empty()) zeniths = {scene_.geometry.view_zenith_deg};
-  std::vector<char> theta(zeniths.size(), 0);
-  for (std::size_t t = 0; t < theta.size(); ++t) {
-    for (const SlopeShape& shape : moments_.shapes) {
-      const SceneEntry entry{.theta_deg = zeniths[t], .shape = shape, .view_zenith_deg = zeniths[t]};
-      if (theta[t] == 0) theta[t] = wants_moments(scene_, entry, plan_) ? 1 : 0;
-    }
+  std::vector<char> theta;
+  for (const double zenith_deg : zeniths) {
+    theta.push_back(std::ranges::any_of(moments_.shapes, [&](const SlopeShape& shape) {
+      return wants_moments(scene_, {.theta_deg = zenith_deg, .shape = shape, .view_zenith_deg = zenith_deg}, plan_);
+    }));
   }
   if (std::ranges::find(theta, 1) == theta.end()) return;
   request_indices(grid);

@@ -40,6 +40,8 @@ TEST(PointEntries, Mistakes_AreToldWithFileLineColumnAndRange) {
   const SceneValues integral = make_scene(Distribution::kCauchy, Masking::kIntegral, kDielectric);
   SceneValues two_zeniths = integral;
   two_zeniths.grid[Axis::kTheta] = {0.0, 60.0};
+  SceneValues bracket = make_scene(Distribution::kCauchy, Masking::kVCavity, kDielectric);
+  bracket.emission.emplace().has_bracket = true;
   struct Case {
     SceneValues scene;
     const char* csv;
@@ -55,6 +57,8 @@ TEST(PointEntries, Mistakes_AreToldWithFileLineColumnAndRange) {
             "p.csv:3: q = 1.5: out of range; must be a number in (1.5, 1e4] with masking = \"smith\" and distribution "
             "= "
             "\"cauchy\""},
+           {bracket, "theta_deg,sigma_cross\n10,0.2\n",
+            "p.csv:1: column \"sigma_cross\" needs emission.bracket = false in the scene"},
            {two_zeniths, "sigma\n0.2\n",
             "p.csv:1: column \"theta_deg\" is missing, a number in [0, 90]; only a scene with a single grid.theta_deg "
             "does without"},

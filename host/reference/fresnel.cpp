@@ -11,8 +11,16 @@
 
 #include "base/interrupt.hpp"
 
+namespace boost::math::interpolators {}
+
 namespace dolp::reference {
 namespace {
+
+// Boost 1.74 has barycentric_rational in the first of these namespaces, Boost 1.83 in the second.
+namespace curves {
+using namespace boost::math;
+using namespace boost::math::interpolators;
+}  // namespace curves
 
 FresnelCoefficients bare_coefficients(const OpticalConstants& constants, double cos_beta) {
   const std::complex<double> refractive_index{constants.n, constants.k};
@@ -83,7 +91,7 @@ std::vector<std::pair<double, double>> thickness_rule(const Film& film, double c
   return rule;
 }
 
-using Curve = boost::math::barycentric_rational<double>;
+using Curve = curves::barycentric_rational<double>;
 
 /// 1 - R_s and 1 - R_p over sqrt(cos(beta)).
 struct MeanCurves {

@@ -109,7 +109,8 @@ TEST_F(CommandLine, Eval_StdinToStdout_ReportOnStderr) {
 
 TEST_F(CommandLine, Eval_PointsOfATable_GivesItsNumbers) {
   const std::string settings =
-      "--evaluator cpu --quiet --set grid.n=[1.4,1.6] --set grid.k=[0,0.1] --set grid.theta_deg=[0,40,70]";
+      "--evaluator cpu --quiet --set emission.temperature_K=300 --set grid.temperature_K=[290,310] "
+      "--set grid.theta_deg=[0,40,70] --set grid.sigma=[0.1,0.2,0.3,0.4] --set grid.q=[2,4]";
   succeeded(dolp(joined("table scene.toml -o t.csv", settings)));
   const Outcome at_points = dolp(joined("eval scene.toml --points t.csv -o -", settings));
   EXPECT_EQ(parse_csv(at_points.out), parse_csv(content("t.csv")));

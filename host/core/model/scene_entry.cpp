@@ -331,7 +331,8 @@ const SceneEntry& EntryReader::operator[](std::size_t position) {
   std::size_t axis = kAxisCount;  // the slowest axis on which the position changes
   while (is_next && axis-- > 0 && ++on_axes_[axis] == counts[axis]) on_axes_[axis] = 0;
   if (!is_next) on_axes_ = entries_.axis_positions(position);
-  if (axis != static_cast<std::size_t>(Axis::kQ)) return entry_ = entries_.grid_entry(on_axes_);
+  const bool is_only_q = counts[Axis::kSigmaCross] * counts[Axis::kSurfaceAzimuth] == 1;  // not q after a later axis
+  if (axis != static_cast<std::size_t>(Axis::kQ) || !is_only_q) return entry_ = entries_.grid_entry(on_axes_);
   entry_.shape.q = entries_.q()[on_axes_[axis]];
   return entry_;
 }

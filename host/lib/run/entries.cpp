@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <dolp/errors.hpp>
 #include <map>
@@ -11,6 +12,7 @@
 #include "base/text.hpp"
 #include "model/films.hpp"
 #include "plan/slope_orders.hpp"
+#include "run/part_requests.hpp"
 #include "run/scene_run.hpp"
 #include "scene/scene_reader.hpp"
 #include "table/table.hpp"
@@ -48,10 +50,8 @@ void check_columns(const SceneValues& scene, const Points& points) {
   }
 }
 
-using VariantColumns = std::vector<std::pair<Axis, std::vector<double>>>;
-
-VariantColumns variant_columns(const SceneValues& scene, const Points& points) {
-  VariantColumns columns;
+std::vector<std::pair<Axis, std::vector<double>>> variant_columns(const SceneValues& scene, const Points& points) {
+  std::vector<std::pair<Axis, std::vector<double>>> columns;
   for (const Axis axis : kVariantAxes) {
     if (!points[axis] || points.size() == 0) continue;
     if (axis == Axis::kTemperature && !scene.emission)
@@ -143,21 +143,29 @@ void check_cross_slopes(const SceneValues& scene, const SlopeShape& shape, const
 // A longer list is no grid, because the results of all parts of such a grid are kept until the last one is there.
 constexpr std::size_t kMostGridPoints = 1U << 20U;
 
-/// The only grid that can have the same entries as the points, in their order; nullopt if none can.
-std::optional<SceneEntries> grid_like(const SceneValues& scene, const Points& points, const VariantColumns& columns) {
-  if (!points.films.empty() || points.size() > kMostGridPoints) return std::nullopt;
-  AxisArray<Points::Column> coordinates = points.coordinates;
-  for (const auto& [axis, values] : columns) coordinates[axis] = values;
+bool is_monotonic(const std::vector<double>& values) {
+  return std::ranges::adjacent_find(values, std::ranges::greater_equal()) == values.end() ||
+         std::ranges::adjacent_find(values, std::ranges::less_equal()) == values.end();
+}
+
+/// The only grid that can have the same entries as the points, in their order. Nullopt if none can, or if a list shares
+/// more work: among several indices, or with few directions and slope distributions.
+std::optional<SceneEntries> grid_like(const SceneValues& scene, const Points& points) {
+  const auto is_column = [&](Axis axis) { return points[axis].has_value(); };
+  const std::array<Axis, 5> index_axes = {Axis::kMaterial, Axis::kBand, Axis::kWavelength, Axis::kN, Axis::kK};
+  if (!points.films.empty() || std::ranges::any_of(index_axes, is_column)) return std::nullopt;
+  if (points.size() > kMostGridPoints) return std::nullopt;
   Axes axes = make_axes({scene.grid[Axis::kTheta].front()}, {scene.surface.sigma}, {scene.surface.q});
   std::size_t together = 1;  // points that differ only on the axes so far
   for (const Axis axis : std::views::reverse(kAllAxes)) {
-    if (!coordinates[axis]) continue;
-    const std::vector<double>& column = *coordinates[axis];
+    if (!points[axis]) continue;
+    const std::vector<double>& column = *points[axis];
     axes[axis].clear();
     for (std::size_t row = 0; row < column.size() && (row == 0 || column[row] != column.front()); row += together)
       axes[axis].push_back(axis == Axis::kSigma ? shape_at(scene, points, row).sigma : column[row]);
     together *= axes[axis].size();
   }
+  if (!std::ranges::all_of(axes, is_monotonic) || !is_worth_responses(scene, axis_counts(axes))) return std::nullopt;
   return SceneEntries::grid(std::move(axes), scene.surface.material.constant, scene.cross_slopes());
 }
 
@@ -226,7 +234,7 @@ SceneEntries point_entries(const SceneValues& scene, const Points& points) {
   const Surface& surface = scene.surface;
   const bool has_own_index = points[Axis::kN] || points[Axis::kK];
   const bool has_own_widths = points[Axis::kSigma] || points[Axis::kSigmaCross];
-  const VariantColumns columns = variant_columns(scene, points);
+  const auto columns = variant_columns(scene, points);
   if (points[Axis::kWavelength] && points.size() > 0) check_wavelengths(scene, points);
   std::map<SceneVariant, std::uint32_t> variants;
   std::vector<SceneEntry> entries;
@@ -250,7 +258,7 @@ SceneEntries point_entries(const SceneValues& scene, const Points& points) {
   std::vector<SceneVariant> all(std::max<std::size_t>(1, variants.size()));
   for (const auto& [variant, position] : variants) all[position] = variant;
   SceneEntries list(std::move(entries), std::move(all), scene.cross_slopes().wind_model);
-  std::optional<SceneEntries> grid = grid_like(scene, points, columns);
+  std::optional<SceneEntries> grid = grid_like(scene, points);
   if (grid && has_same_entries(*grid, list)) return std::move(*grid);
   return list;
 }

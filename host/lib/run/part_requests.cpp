@@ -100,8 +100,7 @@ std::vector<FacetOptics> indices_of_points(const SceneValues& scene, const Scene
 }
 
 std::vector<FacetOptics> indices_of_grid(const SceneModel& scene, const EffectPlan& plan, const SceneEntries& entries) {
-  const PerAxis& counts = entries.whole();
-  if (counts[moment_axis(scene)] * counts[Axis::kSigma] * counts[Axis::kQ] < kLeastEntries) return {};
+  if (!is_worth_responses(scene, entries.whole())) return {};
   const SceneEntries whole = entries.whole_entries();
   std::vector<FacetOptics> indices;
   if (whole.has_own_index()) {
@@ -126,6 +125,10 @@ std::vector<FacetOptics> indices_of_grid(const SceneModel& scene, const EffectPl
 
 Axis moment_axis(const SceneModel& scene) {
   return scene.geometry.mode == Mode::kBistatic ? Axis::kViewZenith : Axis::kTheta;
+}
+
+bool is_worth_responses(const SceneModel& scene, const PerAxis& counts) {
+  return counts[moment_axis(scene)] * counts[Axis::kSigma] * counts[Axis::kQ] >= kLeastEntries;
 }
 
 bool wants_moments(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan) {

@@ -33,6 +33,9 @@ struct Selection {
 /// The axis of a grid that has the zeniths of the moments: in bistatic mode the view, otherwise theta.
 Axis moment_axis(const SceneModel& scene);
 
+/// True if a grid with so many values on its axes has enough entries per index to use responses (see run_basis).
+bool is_worth_responses(const SceneModel& scene, const PerAxis& counts);
+
 bool wants_moments(const SceneValues& scene, const SceneEntry& entry, const EffectPlan& plan);
 
 /// True if the specular pBRDF of an entry needs an evaluator; otherwise beam_without_evaluator() gives it.

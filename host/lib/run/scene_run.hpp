@@ -21,9 +21,9 @@ namespace dolp {
 /// The entries of the scene's grid. Errors: InputError for more than kMostTableEntries.
 SceneEntries grid_entries(const SceneValues& scene);
 
-/// The entries of points. Values that a point lacks come from the scene. Points that have all combinations of the
-/// values of their columns, in the order of a table, form a grid. Errors: InputError that names the file, the line, the
-/// column, and what is allowed.
+/// The entries of points. Values that a point lacks come from the scene. Points that have all combinations of
+/// directions, slopes and temperatures, in the order of a table, form a grid if it is large enough. Errors: InputError
+/// that names the file, the line, the column, and what is allowed.
 SceneEntries point_entries(const SceneValues& scene, const Points& points);
 
 /// The slope distribution of one of the points.

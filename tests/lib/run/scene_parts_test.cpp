@@ -33,6 +33,15 @@ std::vector<PointResult> in_parts(const SceneValues& scene, const std::vector<Sc
   return results.take().list();
 }
 
+TEST(EntryReader, EntriesInTurn_AreThoseOfTheGrid) {
+  Axes axes = make_axes({10.0, 20.0}, {0.1, 0.2}, {2.0, 3.0});
+  axes[Axis::kSigmaCross] = {0.15, 0.25};
+  axes[Axis::kSurfaceAzimuth] = {0.0, 45.0, 90.0};
+  const SceneEntries grid = SceneEntries::grid(axes, {});
+  EntryReader reader(grid);
+  for (std::size_t i = 0; i < grid.size(); ++i) EXPECT_EQ(reader[i], grid[i]) << i;
+}
+
 TEST(ChosenEntries, OfAGrid_HaveTheWavelengthsAmongThemAlone) {
   Axes axes = make_axes({10.0, 20.0}, {0.1}, {2.0});
   axes[Axis::kWavelength] = {8.0, 9.0, 10.0, 11.0};

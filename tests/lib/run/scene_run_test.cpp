@@ -86,17 +86,22 @@ TEST(PointEntries, AbsentColumns_ComeFromTheScene) {
 
 TEST(PointEntries, AllCombinationsInTheOrderOfATable_AreAGrid) {
   const SceneValues scene = make_scene(Distribution::kCauchy, Masking::kNone, kAbsorbing);
-  const auto grid_of = [&](const char* csv) {
+  const std::vector<double> thetas = {50.0, 40.0, 30.0, 20.0}, sigmas = {0.1, 0.2, 0.3}, qs = {3.0, 4.0};
+  const auto grid = [&](const std::vector<double>& theta_deg, const std::string& column = "", double last_q = 4.0) {
+    std::string csv = "q,sigma,theta_deg" + (column.empty() ? "" : ',' + column);
+    for (std::size_t i = 0; i < theta_deg.size() * 6; ++i) {
+      const double q = i + 1 == theta_deg.size() * 6 ? last_q : qs[i % 2];
+      csv += fmt::format("\n{},{},{}{}", q, sigmas[i / 2 % 3], theta_deg[i / 6], column.empty() ? "" : ",1.5");
+    }
     const auto entries = point_entries(scene, parse_points(csv, "p.csv", PointsKind::kDirections));
     return entries.is_grid() ? std::optional(entries.axes()) : std::nullopt;
   };
-  const auto axes = grid_of("q,n,theta_deg\n4,1.5,50\n3,1.5,50\n4,1.5,20\n3,1.5,20\n4,2,50\n3,2,50\n4,2,20\n3,2,20\n");
-  ASSERT_TRUE(axes);
-  EXPECT_EQ(*axes, make_axes({50.0, 20.0}, {scene.surface.sigma}, {4.0, 3.0}, {}, {1.5, 2.0}));
-  EXPECT_TRUE(grid_of("theta_deg\n7\n"));
-  for (const char* csv : {"q,theta_deg\n4,50\n4,20\n3,50\n3,20\n", "q,theta_deg\n4,50\n3,50\n4,20\n",
-                          "q,theta_deg\n4,50\n3,50\n4,20\n2,20\n", "theta_deg\n50\n20\n50\n20\n"})
-    EXPECT_FALSE(grid_of(csv)) << csv;
+  EXPECT_EQ(grid(thetas), make_axes(thetas, sigmas, qs));
+  EXPECT_FALSE(grid({50.0, 40.0, 30.0})) << "too few to share integrals among the wavelengths of a grid";
+  EXPECT_FALSE(grid({50.0, 40.0, 40.0, 30.0})) << "a zenith twice";
+  EXPECT_FALSE(grid({50.0, 20.0, 40.0, 30.0})) << "not in order";
+  EXPECT_FALSE(grid(thetas, "n")) << "lists share more among indices";
+  EXPECT_FALSE(grid(thetas, "", 3.0)) << "not all combinations";
 }
 
 TEST(EvaluateScene_OwnIndexOfTheMaterial_GivesTheSameAsTheMaterial, OverABand) {

@@ -178,4 +178,20 @@ TEST_F(TableAsScene, PlansNumbersOfValues_AreAboutEnough_AndHalfOfThemAreTooFew)
   EXPECT_GT(typical_error(thetas / 3, sigmas / 3), 1e-4);
 }
 
+// At a temperature between the values, the polarisation of the emission and of the reflected sky cancel, and DOLP is 0.
+// There linear interpolation errs in proportion to the spacing, not to its square.
+TEST_F(TableAsScene, PlansNumberOfValues_AtAKinkOfDolp_IsAboveOneThatDoesNotSuffice) {
+  for (const int count : {8, 20}) {
+    const Words scene = "plan scene.toml --tolerance 1e-4 --set surroundings.temperature_K=285.3";
+    const Words grid = fmt::format(
+        "--set grid.theta_deg=[60] --set grid.sigma=[0.2] --set grid.q=[3] --set "
+        "grid.temperature_K={{from=270,to=300,count={}}}",
+        count);
+    const json advice = report(joined(scene, grid))["between"];
+    ASSERT_EQ(advice.size(), 1U);
+    EXPECT_GT(advice[0]["largest"], 1e-4);
+    EXPECT_GT(advice[0]["needed_values"], 4 * count);
+  }
+}
+
 }  // namespace lookup_test

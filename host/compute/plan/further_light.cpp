@@ -22,6 +22,12 @@ constexpr double kLargestTheta_deg = 89.9;  // at 90 degrees the light of all bo
 constexpr double kSteepest = 1e6;           // steeper slopes would make the width of the groove 0
 constexpr int kMostBounces = 10;            // the light that is left then leaves; steep grooves have little weight
 
+// Intervals between the known angles of GrooveFacet.
+constexpr double kLeastIntervals = 32.0;
+constexpr double kIntervalsPerFringe = 16.0;
+constexpr double kMostIntervals = 256.0;
+constexpr double kLeastRoot = 1e-3;  // counts as the square root of the cosine 0, where films have no reflection
+
 /// Gauss nodes on [0, 1], with their weights.
 struct Node {
   double at = 0.0;
@@ -41,15 +47,8 @@ std::array<Node, kNodes> unit_nodes() {
 /// (I, Q, U, V) in the axes of the groove.
 using StokesVector = std::array<double, 4>;
 
-/// Mueller matrix of a facet in its own frame, as Bounce in shaders/physics/groove.glsl.
-struct Reflection {
-  double m00 = 0.0;
-  double m01 = 0.0;
-  std::complex<double> cross;  ///< conj(r_s) r_p, with the sign of r_p for which r_p = r_s at normal incidence
-};
-
 /// Equation: r_p / r_s = (c w - s^2) / (c w + s^2), with w = sqrt(N^2 - s^2), the cosine c and the sine s.
-Reflection bare_reflection(const OpticalConstants& index, double c) {
+GrooveFacet::Matrix bare_reflection(const OpticalConstants& index, double c) {
   const double sin2 = (1.0 - c) * (1.0 + c);
   const double re = (index.n - 1.0) * (index.n + 1.0) - index.k * index.k + c * c;
   const double im = 2.0 * index.n * index.k;
@@ -64,18 +63,8 @@ Reflection bare_reflection(const OpticalConstants& index, double c) {
   return {0.5 * (r_s + r_p), 0.5 * (r_s - r_p), cross};
 }
 
-Reflection reflection(const FacetOptics& optics, double cosine) {
-  if (optics.is_bare()) return bare_reflection(optics.index, cosine);
-  if (optics.measured) {
-    const SmoothAbsorptance absorbed = smooth_absorptance(optics, cosine);
-    return {1.0 - 0.5 * (absorbed.s + absorbed.p), 0.5 * (absorbed.p - absorbed.s), 0.0};
-  }
-  const FilmReflection r = film_reflection(optics, cosine);
-  return {0.5 * (r.r_s + r.r_p), 0.5 * (r.r_s - r.r_p), -r.cross};
-}
-
 /// Turns the light by the angle whose double has the cosine and sine `twice`, reflects it, and turns it back.
-StokesVector reflected(const Reflection& by, const CosSin& twice, const StokesVector& light) {
+StokesVector reflected(const GrooveFacet::Matrix& by, const CosSin& twice, const StokesVector& light) {
   const auto& [i, q_before, u_before, v] = light;
   const double q = twice.cos * q_before + twice.sin * u_before;
   const double u = twice.cos * u_before - twice.sin * q_before;
@@ -105,7 +94,7 @@ struct Light {
 };
 
 /// Follows the rays that first meet the facet with the slope t at the azimuth phi, as shaders/physics/groove.glsl does.
-Light followed(const CosSin& theta, double t, double phi, const FacetOptics& optics) {
+Light followed(const CosSin& theta, double t, double phi, const GrooveFacet& facet) {
   const double c = theta.cos;
   const double x = std::cos(phi);
   const double u = theta.sin * x;
@@ -128,7 +117,7 @@ Light followed(const CosSin& theta, double t, double phi, const FacetOptics& opt
     const std::complex<double> at = between * turn;
     const double cosine = std::clamp(at.imag(), 1e-15, 1.0);
     const CosSin twice = doubled(at.real(), along * at.imag());
-    const Reflection by = reflection(optics, cosine);
+    const GrooveFacet::Matrix by = facet.at(cosine);
     natural = reflected(by, twice, natural);
     polarised = reflected(by, twice, polarised);
     between = at * turn;
@@ -160,13 +149,14 @@ Arc second_bounce_arc(double cot_theta, double t) {
 }
 
 /// Sum over the azimuths of both sides, per unit of steeper_share().
-Light light_of_slope(const CosSin& theta, double t, const FacetOptics& optics, const std::array<Node, kNodes>& nodes) {
+Light light_of_slope(const CosSin& theta, double t, const GrooveFacet& facet,
+                     const std::array<Node, kNodes>& nodes) {
   const Arc arc = second_bounce_arc(theta.cos / theta.sin, t);
   Light sum;
   for (const auto& [from, to] : {std::pair{arc.first, arc.kink}, std::pair{arc.kink, arc.last}}) {
     if (to <= from) continue;
     for (const Node& node : nodes)
-      sum.add(node.weight * (to - from) / pi, followed(theta, t, std::lerp(from, to, node.at), optics));
+      sum.add(node.weight * (to - from) / pi, followed(theta, t, std::lerp(from, to, node.at), facet));
   }
   return sum;
 }
@@ -180,8 +170,31 @@ double slope_with_share(Distribution distribution, const SlopeShape& shape, doub
 
 }  // namespace
 
+GrooveFacet::GrooveFacet(const FacetOptics& optics) : optics_(optics) {
+  if (optics.films.empty()) return;
+  const double intervals = std::min(kLeastIntervals + kIntervalsPerFringe * fringe_count(optics), kMostIntervals);
+  for (double i = 0.0; i <= intervals; ++i) {
+    const double root = std::max(i / intervals, kLeastRoot);
+    const FilmReflection r = film_reflection(optics, root * root);
+    known_.push_back({0.5 * (r.r_s + r.r_p), 0.5 * (r.r_s - r.r_p), -r.cross});
+  }
+}
+
+GrooveFacet::Matrix GrooveFacet::at(double cosine) const {
+  if (optics_.is_bare()) return bare_reflection(optics_.index, cosine);
+  if (optics_.measured) {
+    const SmoothAbsorptance absorbed = smooth_absorptance(optics_, cosine);
+    return {1.0 - 0.5 * (absorbed.s + absorbed.p), 0.5 * (absorbed.p - absorbed.s), 0.0};
+  }
+  const double place = std::sqrt(cosine) * static_cast<double>(known_.size() - 1);
+  const std::size_t before = std::min(static_cast<std::size_t>(place), known_.size() - 2);
+  const double share = place - static_cast<double>(before);
+  const Matrix &a = known_[before], &b = known_[before + 1];
+  return {std::lerp(a.m00, b.m00, share), std::lerp(a.m01, b.m01, share), a.cross + share * (b.cross - a.cross)};
+}
+
 FurtherLight further_light(Distribution distribution, double theta_deg, const SlopeShape& shape,
-                           const FacetOptics& optics) {
+                           const GrooveFacet& facet) {
   static const std::array<Node, kNodes> nodes = unit_nodes();
   const double zenith_deg = std::min(theta_deg, kLargestTheta_deg);
   const CosSin theta = cos_sin_deg(zenith_deg);
@@ -194,7 +207,7 @@ FurtherLight further_light(Distribution distribution, double theta_deg, const Sl
     for (const Node& node : nodes) {
       const double share = std::lerp(from, to, node.at * node.at);  // nodes are close where the second bounce begins
       const double t = slope_with_share(distribution, shape, share);
-      sum.add(2.0 * node.at * node.weight * (from - to), light_of_slope(theta, t, optics, nodes));
+      sum.add(2.0 * node.at * node.weight * (from - to), light_of_slope(theta, t, facet, nodes));
     }
   }
   if (!(sum.second > 0.0)) return {};

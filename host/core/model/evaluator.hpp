@@ -69,8 +69,8 @@ inline double transfer_time(const EvaluationReport& before, const EvaluationRepo
   return std::max(call_s - (covered(after) - covered(before)), 0.0);
 }
 
-inline void note_precision(std::string& used, bool in_double) {
-  const char* name = in_double ? "double" : "float";
+/// Adds the precision `name` to those that were used: "float", "double", or "float and double".
+inline void note_precision(std::string& used, const std::string& name) {
   if (used.empty()) used = name;
   if (used != name) used = "float and double";
 }

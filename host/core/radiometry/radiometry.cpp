@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/container/small_vector.hpp>
 #include <cassert>
 #include <cmath>
 #include <numbers>
@@ -29,7 +28,7 @@ EmissionModel emission_model(const SceneModel& scene) {
 }
 
 void set_dolp(PointResult& result, const Stokes& sum) {
-  result[kDolp] = std::hypot(sum.q, sum.u) / sum.i;
+  result[kDolp] = polarised_part(sum.q, sum.u) / sum.i;
   result[kQOverI] = sum.q / sum.i + 0.0;  // adding 0 turns -0 into 0
   result[kAolp] = polarisation_angle_deg(sum.q, sum.u);
   const double i = std::abs(sum.i);
@@ -37,26 +36,22 @@ void set_dolp(PointResult& result, const Stokes& sum) {
   if (std::isnan(result[kDolp])) {
     result[kErrorEstimate] = kNan;
   } else if (margin > 0.0 && !std::isnan(sum.q_error) && !std::isnan(sum.u_error)) {
-    result[kErrorEstimate] = (std::hypot(sum.q_error, sum.u_error) + std::abs(result[kDolp]) * sum.i_error) / margin;
+    result[kErrorEstimate] =
+        (polarised_part(sum.q_error, sum.u_error) + std::abs(result[kDolp]) * sum.i_error) / margin;
   } else {
     result[kErrorEstimate] = kInfinity;
   }
 }
 
-void add_emissivity(PointResult& result, const SpectralRule& rule, std::span<const Emissivity> emissivities,
-                    double cos_theta) {
-  const MeanLight light = mean_light(rule, cos_theta);
-  double total = 0.0;
+void add_emissivity(PointResult& result, const PerSample<Emissivity>& emissivities, const MeanWeights& weights) {
   double i = 0.0;
   double q = 0.0;
   for (std::size_t j = 0; j < emissivities.size(); ++j) {
-    const double weight = mean_weight(rule.samples[j], light, cos_theta);
-    total += weight;
-    i += weight * emissivities[j].i;
-    q += weight * emissivities[j].q;
+    i += weights.list[j] * emissivities[j].i;
+    q += weights.list[j] * emissivities[j].q;
   }
-  result[kEmissivityS] = (i + q) / total;
-  result[kEmissivityP] = (i - q) / total;
+  result[kEmissivityS] = (i + q) / weights.total;
+  result[kEmissivityP] = (i - q) / weights.total;
 }
 
 std::uint32_t tolerance_status(const PointResult& result, double tolerance) {
@@ -70,7 +65,7 @@ std::uint32_t tolerance_status(const PointResult& result, double tolerance) {
 /// this is pi B (1 - rho_I - eps_I). Otherwise it is the change of I if the specular part of rho_I is divided by the
 /// albedo A. A is rho_I of facets that reflect all light. With all bounces A would be 1.
 double change_by_model(const SceneModel& scene, const SpectralRule& rule, std::span<const Moments> moments,
-                       std::span<const Reflectance> reflectances, std::span<const Emissivity> emissivities,
+                       const PerSample<Reflectance>& reflectances, const PerSample<Emissivity>& emissivities,
                        double cos_theta) {
   const Surface& surface = scene.surface;
   if (surface.scattering == Scattering::kMultiple || surface.specular == 0.0) return 0.0;
@@ -171,16 +166,16 @@ double dolp_with(const PointResult& result, double more_i, double more_q) {
   const double i = result[kStokesI] + more_i;
   const double q = result[kStokesQ] + more_q;
   const double u = result[kStokesU];
-  return i > 0.0 ? std::min((u == 0.0 ? std::abs(q) : std::hypot(q, u)) / i, 1.0) : 1.0;
+  return i > 0.0 ? std::min(polarised_part(q, u) / i, 1.0) : 1.0;
 }
 
 }  // namespace
 
 double polarisation_angle_deg(double q, double u) {
-  if (q == 0.0 && u == 0.0) return kNan;
-  const double angle_deg = 90.0 / pi * std::atan2(u + 0.0, q);  // adding 0 turns -0 into 0
+  if (u == 0.0) return q > 0.0 ? 0.0 : q < 0.0 ? kRightAngle_deg : kNan;
+  const double angle_deg = 90.0 / pi * std::atan2(u, q);
   const double positive_deg = angle_deg < 0.0 ? angle_deg + 180.0 : angle_deg;
-  return positive_deg < 180.0 ? positive_deg : 0.0;  // a tiny negative angle is rounded to 180
+  return positive_deg == 180.0 ? 0.0 : positive_deg;  // a tiny negative angle is rounded to 180
 }
 
 std::vector<std::size_t> middle_samples(std::size_t samples) {
@@ -244,23 +239,29 @@ PointResult Radiometry::finished(PointResult result) const {
   return result;
 }
 
-PointResult Radiometry::point(const Direction& direction, std::span<const Moments> moments) const {
-  return point(direction, moments, optics_);
+Radiometry::View Radiometry::view(const Direction& direction, const Optics& optics, double cos_theta_i) const {
+  const bool bistatic = scene_.geometry.mode == Mode::kBistatic;
+  View view{direction, bistatic ? cos_theta_i : direction.cos_theta, mean_weights(rule_, direction.cos_theta)};
+  for (std::size_t j = 0; j < optics.facets.size(); ++j) {
+    view.diffuse.push_back({optics.diffuse[j].rho(direction.cos_theta),
+                            optics.diffuse_beyond_mean.empty() ? Estimate{} : optics.diffuse_beyond_mean[j]});
+    if (bistatic) view.diffuse_beam.push_back(optics.diffuse[j].beam(cos_theta_i, direction.cos_theta));
+    if (emission_model(scene_) == EmissionModel::kFresnel)
+      view.fresnel.push_back(fresnel_emissivity(optics.facets[j], direction.cos_theta));
+  }
+  return view;
 }
 
-PointResult Radiometry::point(const Direction& direction, std::span<const Moments> moments, const Optics& optics,
-                              double cos_theta_i, std::span<const Scattered> scattered) const {
-  const bool bistatic = scene_.geometry.mode == Mode::kBistatic;
-  assert(moments.size() == rule_.samples.size() && optics.facets.size() == moments.size());
+PointResult Radiometry::point(const View& view, std::span<const Moments> moments,
+                              std::span<const Scattered> scattered) const {
+  assert(moments.size() == rule_.samples.size() && view.diffuse.size() == moments.size());
+  const Direction& direction = view.direction;
   if (!std::ranges::all_of(moments, [&](const Moments& m) { return is_known(m, uses_direct_); }))
     return direction.treatment == Treatment::kDivergentLimit ? outside_domain() : not_computed();
-  if (!reflectance_diverges(scene_.surface, direction, moments)) {
-    const double cos_source = bistatic ? cos_theta_i : direction.cos_theta;
-    return finished(assemble(moments, direction.cos_theta, optics, cos_source, scattered));
-  }
-  const bool has_beam = bistatic && std::ranges::any_of(rule_.samples, [](const SpectralSample& sample) {
-                          return sample.irradiance != 0.0;
-                        });
+  if (!reflectance_diverges(scene_.surface, direction, moments)) return finished(assemble(view, moments, scattered));
+  const bool has_beam =
+      scene_.geometry.mode == Mode::kBistatic &&
+      std::ranges::any_of(rule_.samples, [](const SpectralSample& sample) { return sample.irradiance != 0.0; });
   if (!has_beam) return finished(grazing_limit(scene_, kept_rule_, sky_, direction, moments));
   PointResult result = outside_domain();
   result.status |= kReflectanceOutsideZeroToOne;
@@ -297,49 +298,40 @@ void Radiometry::judge_dolp(PointResult& result, double cos_theta, std::span<con
   if (result.model_change_dolp > allowed) result.status |= kModelInaccurate;
 }
 
-PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_theta, const Optics& optics,
-                                 double cos_theta_i, std::span<const Scattered> scattered) const {
+PointResult Radiometry::assemble(const View& view, std::span<const Moments> moments,
+                                 std::span<const Scattered> scattered) const {
   const bool bistatic = scene_.geometry.mode == Mode::kBistatic;
+  const double cos_theta = view.direction.cos_theta;
   PointResult result;
-  boost::container::small_vector<Reflectance, 1> reflected;  // most scenes have one spectral sample
-  boost::container::small_vector<DiffuseSample, 1> diffuse;
-  boost::container::small_vector<DiffuseLight, 1> diffuse_beam;
+  PerSample<Reflectance> reflectances;
   for (std::size_t j = 0; j < moments.size(); ++j) {
-    diffuse.push_back({optics.diffuse[j].rho(cos_theta),
-                       optics.diffuse_beyond_mean.empty() ? Estimate{} : optics.diffuse_beyond_mean[j]});
-    if (bistatic) diffuse_beam.push_back(optics.diffuse[j].beam(cos_theta_i, cos_theta));
-    reflected.push_back(reflectance(scene_.surface, moments[j], cos_theta, diffuse[j].rho));
-    if (is_unphysical(reflected.back())) result.status |= kReflectanceOutsideZeroToOne;
+    reflectances.push_back(reflectance(scene_.surface, moments[j], cos_theta, view.diffuse[j].rho));
+    if (is_unphysical(reflectances.back())) result.status |= kReflectanceOutsideZeroToOne;
   }
-  const std::span<const Reflectance> reflectances(reflected.data(), reflected.size());
   const EmissionModel model = emission_model(scene_);
-  const auto model_emissivities = [&](EmissionModel of) {
-    boost::container::small_vector<Emissivity, 1> list;
-    for (std::size_t j = 0; j < moments.size(); ++j) {
-      list.push_back(of == EmissionModel::kFresnel ? fresnel_emissivity(optics.facets[j], cos_theta)
-                     : of == EmissionModel::kDirect
-                         ? direct_emissivity(scene_.surface, moments[j], cos_theta, diffuse[j].rho)
-                         : kirchhoff_emissivity(reflected[j]));
-    }
-    return list;
-  };
-  const auto list = model_emissivities(model);
-  const std::span<const Emissivity> emissivities(list.data(), list.size());
+  const bool has_bracket = scene_.emission && scene_.emission->has_bracket;
+  PerSample<Emissivity> kirchhoff, direct;
+  for (std::size_t j = 0; model == EmissionModel::kMoments && j < moments.size(); ++j)
+    kirchhoff.push_back(kirchhoff_emissivity(reflectances[j]));
+  for (std::size_t j = 0; (model == EmissionModel::kDirect || has_bracket) && j < moments.size(); ++j)
+    direct.push_back(direct_emissivity(scene_.surface, moments[j], cos_theta, view.diffuse[j].rho));
+  const PerSample<Emissivity>& emissivities = model == EmissionModel::kMoments  ? kirchhoff
+                                              : model == EmissionModel::kDirect ? direct
+                                                                                : view.fresnel;
   Stokes sum = stokes_sum(kept_rule_, reflectances, emissivities, model, cos_theta, !bistatic);
   Stokes sky;
-  add_sky(sky, scene_.surface, kept_rule_, sky_, {diffuse.data(), diffuse.size()}, moments, cos_theta);
-  if (kept_rule_.diffuse) sky.i += kept_rule_.diffuse->surroundings + cos_theta_i * kept_rule_.diffuse->irradiance;
+  add_sky(sky, scene_.surface, kept_rule_, sky_, view.diffuse, moments, cos_theta);
+  if (kept_rule_.diffuse) sky.i += kept_rule_.diffuse->surroundings + view.cos_source * kept_rule_.diffuse->irradiance;
   sum.i += sky.i;
   sum.q += sky.q;
   sum.i_error += sky.i_error;
   sum.q_error += sky.q_error;
   sum.u += sky.u;
   sum.u_error += sky.u_error;
-  if (bistatic)
-    add_beam(sum, beam_specular_, kept_rule_, scattered, {diffuse_beam.data(), diffuse_beam.size()}, cos_theta);
+  if (bistatic) add_beam(sum, beam_specular_, kept_rule_, scattered, view.diffuse_beam, cos_theta);
   add_path(sum, scene_.path, kept_rule_.path_exitance);
   const double unit = bistatic ? 1.0 / pi : 1.0;  // `sum` is an exitance, and bistatic results are radiances
-  const MeanReflectance mean = mean_reflectance(rule_, reflectances, cos_theta);
+  const MeanReflectance mean = mean_reflectance(rule_, reflectances, view.mean_weights);
   result[kStokesI] = unit * sum.i;
   result[kStokesQ] = unit * sum.q + 0.0;  // adding 0 turns -0 into 0
   result[kStokesU] = unit * sum.u + 0.0;
@@ -350,10 +342,9 @@ PointResult Radiometry::assemble(std::span<const Moments> moments, double cos_th
   result[kAlbedo] = moments.front().albedo / cos_theta;
   result[kRhoErrorEstimate] = relative_bound(mean.error, mean.rho_i);
   set_dolp(result, sum);
-  if (scene_.emission) add_emissivity(result, rule_, emissivities, cos_theta);
-  if (scene_.emission && scene_.emission->has_bracket) {
-    const auto direct = model_emissivities(EmissionModel::kDirect);
-    const Bracket between = bracket(scene_, kept_rule_, reflectances, {direct.data(), direct.size()}, sky, cos_theta);
+  if (scene_.emission) add_emissivity(result, emissivities, view.mean_weights);
+  if (has_bracket) {
+    const Bracket between = bracket(scene_, kept_rule_, reflectances, direct, sky, cos_theta);
     result[kDolpLow] = between.low;
     result[kDolpHigh] = between.high;
     result[kErrorEstimate] = std::max(result[kErrorEstimate], between.error);

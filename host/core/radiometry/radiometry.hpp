@@ -8,6 +8,8 @@
 #include "model/moments.hpp"
 #include "model/scattering.hpp"
 #include "radiometry/diffuse.hpp"
+#include "radiometry/reflectance.hpp"
+#include "radiometry/stokes.hpp"
 #include "scene/scene.hpp"
 #include "spectrum/sky_factors.hpp"
 #include "spectrum/spectral_rule.hpp"
@@ -51,7 +53,9 @@ class Radiometry {
   /// because moments are NaN, the status is 4, and every quantity is NaN. If moments are NaN elsewhere, the evaluator
   /// failed: the status is 2 | 16 (a tolerance is not met), both error estimates are infinite, and the other quantities
   /// are NaN.
-  PointResult point(const Direction& direction, std::span<const Moments> moments) const;
+  PointResult point(const Direction& direction, std::span<const Moments> moments) const {
+    return point(view(direction, optics_), moments);
+  }
 
   /// For each spectral sample: the optics of the facets, and the diffuse reflection of a surface with these optics.
   struct Optics {
@@ -61,12 +65,24 @@ class Radiometry {
   };
   Optics optics_with(std::vector<FacetOptics> facets) const;
 
-  /// Result for an entry with its own n or k. `optics` affects only fresnel emission and a polarised diffuse part.
-  /// In bistatic mode `direction`, `moments` and rho belong to the view, and the source is at theta_i. `scattered` has
-  /// one element per sample of rule(). If rho diverges, dolp is NaN, too. The other mode needs neither.
-  PointResult point(const Direction& direction, std::span<const Moments> moments, const Optics& optics,
-                    double cos_theta_i = 0.0, std::span<const Scattered> scattered = {}) const;
   const Optics& optics() const { return optics_; }
+
+  /// What the results of one direction share.
+  struct View {
+    Direction direction;
+    double cos_source = 0.0;  ///< cosine of the zenith of the source; in hemispherical mode, of the direction
+    MeanWeights mean_weights;
+    PerSample<DiffuseSample> diffuse;
+    PerSample<DiffuseLight> diffuse_beam;  ///< empty in hemispherical mode
+    PerSample<Emissivity> fresnel;         ///< empty without fresnel emission
+  };
+  /// `optics` affects fresnel emission and a polarised diffuse part. In bistatic mode the source is at theta_i.
+  View view(const Direction& direction, const Optics& optics, double cos_theta_i = 0.0) const;
+
+  /// Like the other point(), also for entries with their own n or k. In bistatic mode `moments` and rho belong to the
+  /// view, and `scattered` has one element per sample of rule(). If rho diverges, dolp is NaN, too.
+  PointResult point(const View& view, std::span<const Moments> moments,
+                    std::span<const Scattered> scattered = {}) const;
 
   /// True if light that single scattering loses, or that the masking creates, may change DOLP by more than 1e-4.
   bool may_change_dolp(const PointResult& result, double cos_theta) const;
@@ -83,8 +99,7 @@ class Radiometry {
     double source = 0.0;  ///< irradiance of the source, in hemispherical mode
   };
 
-  PointResult assemble(std::span<const Moments> moments, double cos_theta, const Optics& optics, double cos_theta_i,
-                       std::span<const Scattered> scattered) const;
+  PointResult assemble(const View& view, std::span<const Moments> moments, std::span<const Scattered> scattered) const;
 
   PointResult finished(PointResult result) const;
 

@@ -31,48 +31,41 @@ Reflectance reflectance(const Surface& surface, const Moments& moments, double c
 }
 
 bool is_unphysical(const Reflectance& r) {
-  const double q = std::hypot(r.rho_q, r.rho_u);
+  const double q = polarised_part(r.rho_q, r.rho_u);
   const double above = std::max(q - r.absorbed - r.absorbed_error, r.rho_i + q - 1.0 - r.rho_i_error);
   const double below = q - r.rho_i - r.rho_i_error;
   return std::max(above, below) > r.rho_q_error + kReflectanceRounding;
 }
 
-MeanLight mean_light(const SpectralRule& rule, double cos_theta) {
+MeanWeights mean_weights(const SpectralRule& rule, double cos_theta) {
+  const auto incident_light = [&](const SpectralSample& sample) {
+    return sample.irradiance * cos_theta + sample.surroundings;
+  };
   double emitted = 0.0;
   double incident = 0.0;
   for (const SpectralSample& sample : rule.samples) {
     emitted += sample.emitted;
-    incident += sample.irradiance * cos_theta + sample.surroundings;
+    incident += incident_light(sample);
   }
-  if (emitted != 0.0) return MeanLight::kEmitted;
-  return incident != 0.0 ? MeanLight::kIncident : MeanLight::kWidth;
+  MeanWeights weights;
+  for (const SpectralSample& sample : rule.samples) {
+    weights.list.push_back(emitted != 0.0 ? sample.emitted : incident != 0.0 ? incident_light(sample) : sample.width);
+    weights.total += weights.list.back();
+  }
+  if (rule.diffuse && emitted == 0.0 && incident != 0.0)
+    weights.diffuse = rule.diffuse->surroundings + cos_theta * rule.diffuse->irradiance;
+  return weights;
 }
 
-double mean_weight(const SpectralSample& sample, MeanLight light, double cos_theta) {
-  switch (light) {
-    case MeanLight::kEmitted:
-      return sample.emitted;
-    case MeanLight::kIncident:
-      return sample.irradiance * cos_theta + sample.surroundings;
-    case MeanLight::kWidth:
-      return sample.width;
-  }
-  return 0.0;
-}
-
-MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Reflectance> reflectances,
-                                 double cos_theta) {
-  const MeanLight light = mean_light(rule, cos_theta);
-  const auto sample_weight = [&](const SpectralSample& sample) { return mean_weight(sample, light, cos_theta); };
+MeanReflectance mean_reflectance(const SpectralRule& rule, const PerSample<Reflectance>& reflectances,
+                                 const MeanWeights& weights) {
   MeanReflectance mean;
-  double total = 0.0;
   double rho_i_error = 0.0;
   double rho_q_error = 0.0;
   double rho_u_error = 0.0;
   for (std::size_t j = 0; j < reflectances.size(); ++j) {
     const Reflectance& r = reflectances[j];
-    const double weight = sample_weight(rule.samples[j]);
-    total += weight;
+    const double weight = weights.list[j];
     mean.rho_i += weight * r.rho_i;
     mean.rho_q += weight * r.rho_q;
     mean.rho_u += weight * r.rho_u;
@@ -81,18 +74,15 @@ MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Refle
     rho_u_error += std::abs(weight) * (r.rho_u_error + rule.relative_error * std::abs(r.rho_u));
   }
   const auto spectral_error = [&](double Reflectance::*rho) {
-    return panel_error(
-        rule, [&](std::size_t j, std::size_t m) { return sample_weight(rule.samples[j]) * (reflectances[m].*rho); });
+    return panel_error(rule, [&](std::size_t j, std::size_t m) { return weights.list[j] * (reflectances[m].*rho); });
   };
   rho_i_error += spectral_error(&Reflectance::rho_i);
   rho_q_error += spectral_error(&Reflectance::rho_q);
   rho_u_error += spectral_error(&Reflectance::rho_u);
-  if (rule.diffuse && light == MeanLight::kIncident)
-    mean.rho_i += rule.diffuse->surroundings + cos_theta * rule.diffuse->irradiance;
-  mean.rho_i /= total;
-  mean.rho_q /= total;
-  mean.rho_u /= total;
-  mean.error = std::max({rho_i_error, rho_q_error, rho_u_error}) / total;
+  mean.rho_i = (mean.rho_i + weights.diffuse) / weights.total;
+  mean.rho_q /= weights.total;
+  mean.rho_u /= weights.total;
+  mean.error = std::max({rho_i_error, rho_q_error, rho_u_error}) / weights.total;
   return mean;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <span>
+#include <boost/container/small_vector.hpp>
+#include <cmath>
 
 #include "model/moments.hpp"
 #include "radiometry/diffuse.hpp"
@@ -8,6 +9,10 @@
 #include "spectrum/spectral_rule.hpp"
 
 namespace dolp {
+
+/// One element per spectral sample. Most scenes have one sample, whose element needs no allocation.
+template <class Element>
+using PerSample = boost::container::small_vector<Element, 1>;
 
 struct Reflectance {
   double rho_i = 0.0;
@@ -39,20 +44,25 @@ struct MeanReflectance {
   double error = 0.0;  ///< error of rho_i, rho_q or rho_u, whichever is largest
 };
 
+/// sqrt(Q^2 + U^2). U is 0 in most scenes, by symmetry.
+inline double polarised_part(double q, double u) { return u == 0.0 ? std::abs(q) : std::hypot(q, u); }
+
 Reflectance reflectance(const Surface& surface, const Moments& moments, double cos_theta, const DiffuseLight& diffuse);
 
 /// True if rho_s or rho_p is outside [0, 1] by more than its error.
 bool is_unphysical(const Reflectance& r);
 
-/// The light with which a sample counts in the mean of a reflectance or an emissivity.
-enum class MeanLight { kEmitted, kIncident, kWidth };
+/// Weights of the spectral samples in the mean of a reflectance or an emissivity: the emitted light; if there is none,
+/// the incident light; if there is neither, the width of the sample.
+struct MeanWeights {
+  PerSample<double> list;
+  double total = 0.0;
+  double diffuse = 0.0;  ///< what DiffuseSpectrum adds to the sum of the weights times rho_i
+};
+MeanWeights mean_weights(const SpectralRule& rule, double cos_theta);
 
-/// The emitted light; if there is none, the incident light; if there is neither, the sample width.
-MeanLight mean_light(const SpectralRule& rule, double cos_theta);
-double mean_weight(const SpectralSample& sample, MeanLight light, double cos_theta);
-
-/// Mean of rho over the samples, with mean_light().
-MeanReflectance mean_reflectance(const SpectralRule& rule, std::span<const Reflectance> reflectances, double cos_theta);
+MeanReflectance mean_reflectance(const SpectralRule& rule, const PerSample<Reflectance>& reflectances,
+                                 const MeanWeights& weights);
 
 Emissivity fresnel_emissivity(const FacetOptics& index, double cos_theta);
 

@@ -76,8 +76,8 @@ void add_emitting_sample(Stokes& sum, const SpectralSample& sample, const Reflec
 
 }  // namespace
 
-Stokes stokes_sum(const SpectralRule& rule, std::span<const Reflectance> reflectances,
-                  std::span<const Emissivity> emissivities, EmissionModel model, double cos_theta, bool with_source) {
+Stokes stokes_sum(const SpectralRule& rule, const PerSample<Reflectance>& reflectances,
+                  const PerSample<Emissivity>& emissivities, EmissionModel model, double cos_theta, bool with_source) {
   const double rounding = kRadianceRounding + rule.relative_error;
   Stokes sum;
   for (std::size_t j = 0; j < reflectances.size(); ++j) {
@@ -134,7 +134,7 @@ void add_specular_sky(Stokes& sum, double specular, double rounding, const SkyWe
 }
 
 void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std::span<const SkyWeights> weights,
-             std::span<const DiffuseSample> diffuse, std::span<const Moments> moments, double cos_theta) {
+             const PerSample<DiffuseSample>& diffuse, std::span<const Moments> moments, double cos_theta) {
   const double rounding = kRadianceRounding + rule.relative_error;
   for (std::size_t j = 0; j < weights.size(); ++j) {
     add_specular_sky(sum, surface.specular / cos_theta, rounding, weights[j], moments[j]);
@@ -161,7 +161,7 @@ void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std:
 }
 
 void add_beam(Stokes& sum, double k_s, const SpectralRule& rule, std::span<const Scattered> scattered,
-              std::span<const DiffuseLight> diffuse, double cos_theta_r) {
+              const PerSample<DiffuseLight>& diffuse, double cos_theta_r) {
   const double rounding = kRadianceRounding + rule.relative_error;
   for (std::size_t j = 0; j < scattered.size(); ++j) {
     if (rule.samples[j].irradiance == 0.0) continue;
@@ -196,8 +196,8 @@ void add_path(Stokes& sum, const std::optional<Path>& path, double path_exitance
   sum.i_error += kRadianceRounding * path_exitance;
 }
 
-Bracket bracket(const SceneModel& scene, const SpectralRule& rule, std::span<const Reflectance> reflectances,
-                std::span<const Emissivity> direct, const Stokes& sky, double cos_theta) {
+Bracket bracket(const SceneModel& scene, const SpectralRule& rule, const PerSample<Reflectance>& reflectances,
+                const PerSample<Emissivity>& direct, const Stokes& sky, double cos_theta) {
   Stokes single = stokes_sum(rule, reflectances, {}, EmissionModel::kMoments, cos_theta, true);
   single.i += sky.i;
   single.i_error += sky.i_error;

@@ -38,8 +38,8 @@ struct Bracket {
 };
 
 /// Sums emission, reflected surroundings and, if `with_source`, reflected light of the source.
-Stokes stokes_sum(const SpectralRule& rule, std::span<const Reflectance> reflectances,
-                  std::span<const Emissivity> emissivities, EmissionModel model, double cos_theta, bool with_source);
+Stokes stokes_sum(const SpectralRule& rule, const PerSample<Reflectance>& reflectances,
+                  const PerSample<Emissivity>& emissivities, EmissionModel model, double cos_theta, bool with_source);
 
 /// Adds net * r_i to I and net * r_q to Q. The moments r_i and r_q are rho_I cos(theta) and rho_Q cos(theta).
 void add_specular(Stokes& sum, double net, const Moments& moments);
@@ -55,18 +55,18 @@ struct DiffuseSample {
 /// specular part of this difference is Surface::specular / cos(theta) times the sum of Moments::columns with `weights`.
 /// The diffuse part is DiffuseSample::rho times beyond_mean. `weights` is the result of sky_weights().
 void add_sky(Stokes& sum, const Surface& surface, const SpectralRule& rule, std::span<const SkyWeights> weights,
-             std::span<const DiffuseSample> diffuse, std::span<const Moments> moments, double cos_theta);
+             const PerSample<DiffuseSample>& diffuse, std::span<const Moments> moments, double cos_theta);
 
 void add_specular_sky(Stokes& sum, double specular, double rounding, const SkyWeights& weights, const Moments& moments);
 
 /// Adds pi E0 cos(theta_i) f: the source's reflected light, with the pBRDF f. `diffuse`: pi cos(theta_i) f_diffuse.
 void add_beam(Stokes& sum, double k_s, const SpectralRule& rule, std::span<const Scattered> scattered,
-              std::span<const DiffuseLight> diffuse, double cos_theta_r);
+              const PerSample<DiffuseLight>& diffuse, double cos_theta_r);
 
 void add_path(Stokes& sum, const std::optional<Path>& path, double path_exitance);
 
-Bracket bracket(const SceneModel& scene, const SpectralRule& rule, std::span<const Reflectance> reflectances,
-                std::span<const Emissivity> direct, const Stokes& sky, double cos_theta);
+Bracket bracket(const SceneModel& scene, const SpectralRule& rule, const PerSample<Reflectance>& reflectances,
+                const PerSample<Emissivity>& direct, const Stokes& sky, double cos_theta);
 
 double relative_bound(double error, double value);
 

@@ -286,8 +286,10 @@ void CsvColumns::check_row(const CsvReader& row) const {
   const std::size_t width = row.cells().size();
   if (width > header_.cells.size()) {
     check_separators(row);
-    row.fail(fmt::format("{}: one value too many after column {}; there are {} columns{}",
-                         one_line(row.cells()[header_.cells.size()]), header_.names.back(), header_.cells.size(),
+    const std::string_view extra = row.cells()[header_.cells.size()];
+    if (extra.empty())
+      row.fail(fmt::format("the row goes on after column {}, the last; no separator may follow", header_.names.back()));
+    row.fail(fmt::format("{}: one value too many after column {}, the last{}", one_line(extra), header_.names.back(),
                          width == 2 * header_.cells.size() ? "; numbers must have a decimal point" : ""));
   }
   if (width < header_.cells.size()) return check_separators(row);  // number() reports the first column without a value

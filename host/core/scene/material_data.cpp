@@ -167,8 +167,9 @@ FacetOptics Surface::optics_at(double wavelength_um) const {
 std::vector<double> Surface::optics_rows_um() const {
   if (reflectance) return reflectance->wavelength_um;
   std::vector<double> rows;
-  const auto add = [&](const Material& of) {
-    for (const SpectralTable* table : {&of.n, &of.k})
+  const auto add = [&](const Material& used) {
+    const Material& all = used.tabulated ? *used.tabulated : used;
+    for (const SpectralTable* table : {&all.n, &all.k})
       rows.insert(rows.end(), table->wavelength_um.begin(), table->wavelength_um.end());
   };
   add(material);

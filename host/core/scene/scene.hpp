@@ -220,4 +220,8 @@ void set_films(Surface& surface, const std::vector<FilmValue>& films);
 /// The scene with the values of `variant`. Domain: `scene` has the films of `variant`. Errors: errors of at_wavelength.
 SceneModel with_variant(const SceneModel& scene, const SceneVariant& variant);
 
+/// Wavelengths in um at which a scene of one wavelength may have kinks, ascending: the rows of the tables of optics,
+/// source, diffuse part and sky.
+std::vector<double> kinks_um(const SceneModel& scene);
+
 }  // namespace dolp

@@ -274,6 +274,18 @@ double moment_zenith_deg(const SceneModel& scene, const SceneEntry& entry) {
   return scene.geometry.mode == Mode::kBistatic ? beam_angles(scene, entry).theta_r_deg : entry.theta_deg;
 }
 
+std::vector<double> kinks_um(const SceneModel& scene) {
+  std::vector<double> kinks = scene.surface.optics_rows_um();
+  const auto add = [&](const std::vector<double>& rows_um) {
+    kinks.insert(kinks.end(), rows_um.begin(), rows_um.end());
+  };
+  if (scene.source && scene.source->table) add(scene.source->table->wavelength_um);
+  if (scene.surface.diffuse_table) add(scene.surface.diffuse_table->wavelength_um);
+  if (scene.surroundings && scene.surroundings->profile) add(scene.surroundings->profile->breaks_um());
+  std::ranges::sort(kinks);
+  return kinks;
+}
+
 SceneModel with_variant(const SceneModel& scene, const SceneVariant& variant) {
   SceneModel changed = scene;
   if (variant.material) changed.surface.material = scene.materials->at(*variant.material);

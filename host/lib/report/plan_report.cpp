@@ -128,9 +128,11 @@ ReportBuilder effect_report(const Effect& row) {
   return report;
 }
 
-void add_model_change(ReportBuilder& report, const SceneValues& scene, const ModelChange& change) {
+void add_model_change(ReportBuilder& report, const SceneValues& scene, const Influences& influences) {
+  const ModelChange& change = influences.model_change;
   if (!scene.surface.has_only_direct())
-    report.line("  model: {}{}", model_change_text(change), change.status != 0 ? ": status 32" : "");
+    report.line("  model: {}, at {}{}", model_change_text(change), influences.looked.text(),
+                change.status != 0 ? ": status 32" : "");
   if (change.status != 0) report.line("    {}", model_advice(scene));
   add_direct_emission(report, scene, change);
   report.values({{"model_change", change.i}, {"model_change_dolp", change.dolp_points}});
@@ -283,7 +285,7 @@ ReportBuilder plan_report(const SceneValues& scene, const std::string& device, E
              key("entries", plan.run.entries), key("spectral_samples", plan.run.spectral_samples));
   report.line("");
   add_effects(report, plan);
-  add_model_change(report, scene, plan.influences.model_change);
+  add_model_change(report, scene, plan.influences);
   report.line("");
   report.row("dropped", "{}", dropped_text(plan.plan, scene.accuracy.tolerance));
   report.row("output", "{}", output_text(scene, plan.plan));

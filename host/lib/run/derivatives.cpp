@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <set>
 
 #include "base/text.hpp"
 #include "model/slopes.hpp"
@@ -21,8 +22,10 @@ namespace dolp {
 namespace {
 
 constexpr double kStepTolerance = 1e-8;
-constexpr double kStep = 0.01;  // the error of order h^4 and the bounds of the results over h are then similar
+constexpr double kStep = 0.01;      // the error of order h^4 and the bounds of the results over h are then similar
+constexpr double kLeastStep = 0.1;  // of the usual step
 constexpr const char* kThetaKey = "grid.theta_deg";
+constexpr const char* kWavelengthKey = "spectrum.wavelength_um";
 
 /// The axis on which the entries have the values of the key; nullopt if the scene has the value.
 std::optional<Axis> key_axis(const SceneEntries& entries, const std::string& key) {
@@ -67,17 +70,23 @@ NumberRange key_range(const SceneValues& scene, const std::string& key) {
   return find_scene_key(key)->description.range;
 }
 
-/// The results at x - h, x + h, x - h / 2 and x + h / 2, for a number x of the scene or of each entry.
-using StepResults = std::array<std::vector<PointResult>, 4>;
-constexpr std::array<double, 4> kFactors = {-1.0, 1.0, -0.5, 0.5};
+/// The results at x - h, x - h / 2, x, x + h / 2 and x + h, for a number x of the scene or of each entry.
+constexpr std::array kFactors = {-1.0, -0.5, 0.0, 0.5, 1.0};
+using StepResults = std::array<std::vector<PointResult>, kFactors.size()>;
 
 class Steps {
  public:
   Steps(const SceneValues& scene, const SceneEntries& entries, const std::string& key)
-      : scene_(scene), entries_(entries), key_(key), axis_(key_axis(entries, key)), range_(key_range(scene, key)) {}
+      : scene_(scene), entries_(entries), key_(key), axis_(key_axis(entries, key)), range_(key_range(scene, key)) {
+    if (key != kWavelengthKey) return;
+    for (const SceneVariant& variant : entries.variants()) {
+      const std::vector<double> kinks = kinks_um(with_variant(scene, variant));
+      kinks_.insert(kinks.begin(), kinks.end());
+    }
+  }
 
   /// The step h of an entry.
-  double step(const SceneEntry& entry) const { return step_at(value(entry), range_); }
+  double step(const SceneEntry& entry) const { return step_from(value(entry)); }
 
   /// Keeps the values of an axis between the least and the largest value of the entries.
   void stay_on_axis() {
@@ -107,8 +116,19 @@ class Steps {
     return axis_ ? to_key(entries_.value(entry, *axis_)) : std::get<double>(*find_scene_key(key_)->value(scene_));
   }
 
+  /// The step from x. It ends at the nearest kink, but not at one that is much nearer than the usual step.
+  double step_from(double x) const {
+    const double usual = step_at(x, range_);
+    double step = usual;
+    for (auto kink = kinks_.lower_bound(x - usual); kink != kinks_.end() && *kink < x + usual; ++kink) {
+      const double distance = std::abs(*kink - x);
+      if (distance >= kLeastStep * usual) step = std::min(step, distance);
+    }
+    return step;
+  }
+
   std::vector<PointResult> results_at(double factor, ModelEvaluator& evaluator, const Progress& progress) const {
-    const auto moved = [&](double x) { return x + factor * step_at(x, range_); };
+    const auto moved = [&](double x) { return x + factor * step_from(x); };
     SceneValues changed = axis_ ? scene_ : with_settings(scene_, {{key_, moved(value({}))}});
     changed.accuracy.tolerance = std::min(scene_.accuracy.tolerance, kStepTolerance);
     if (evaluator.has_double()) changed.accuracy.precision = Precision::kDouble;
@@ -131,6 +151,7 @@ class Steps {
   std::string key_;
   std::optional<Axis> axis_;
   NumberRange range_;
+  std::set<double> kinks_;  ///< values of the key at which results may have kinks, as far as they are known
 };
 
 double u_over_i(const PointResult& result) {
@@ -138,16 +159,24 @@ double u_over_i(const PointResult& result) {
   return result[Quantity::kDolp] * std::sin(2.0 * result[Quantity::kAolp] * std::numbers::pi / 180.0);
 }
 
-/// The derivative of a function at x and its value there, from values at the steps of StepResults, with the change by
-/// the extrapolation to step 0.
-struct Differences {
-  double derivative, change, middle, middle_change;
+/// The derivative of a function at x, from its values at the steps of StepResults, with a bound of its error. A kink at
+/// x + a h changes the slope by D. From one of the four intervals to the next, the slopes then change by 0, (1 - 2a) D
+/// and 2a D. For any a, kBent times the largest difference of these changes plus kUneven times their second difference
+/// is at least the error of the derivative, (1/2 - 7a/6) D or D (1 - a)/6. Where the function is smooth, the bound is
+/// 0.11 h^2 times the third derivative.
+struct Derivative {
+  double value = 0.0;
+  double bound = 0.0;
 };
-Differences differences(const std::array<double, 4>& values, double step) {
-  const double wide = (values[1] - values[0]) / (2.0 * step), narrow = (values[3] - values[2]) / step;
-  const double wide_mean = (values[0] + values[1]) / 2.0, narrow_mean = (values[2] + values[3]) / 2.0;
-  return {(4.0 * narrow - wide) / 3.0, std::abs(narrow - wide) / 3.0, (4.0 * narrow_mean - wide_mean) / 3.0,
-          std::abs(narrow_mean - wide_mean) / 3.0};
+Derivative derivative_at(const std::array<double, kFactors.size()>& values, double step) {
+  constexpr double kBent = 0.22, kUneven = 0.2;
+  std::array<double, kFactors.size() - 1> slopes{};
+  for (std::size_t i = 0; i < slopes.size(); ++i) slopes[i] = (values[i + 1] - values[i]) / (0.5 * step);
+  const std::array<double, 3> changes = {slopes[1] - slopes[0], slopes[2] - slopes[1], slopes[3] - slopes[2]};
+  const double narrow = (values[3] - values[1]) / step, wide = (values[4] - values[0]) / (2.0 * step);
+  const auto [least, most] = std::ranges::minmax(changes);
+  return {(4.0 * narrow - wide) / 3.0,
+          kBent * (most - least) + kUneven * std::abs(changes[0] - 2.0 * changes[1] + changes[2])};
 }
 
 std::string per_unit(const std::string& unit) {
@@ -190,24 +219,25 @@ void compute_derivatives(const SceneValues& scene, const SceneEntries& entries, 
     const double step = at ? steps.step(entries[i]) : 0.0;
     if (!(step > 0.0)) continue;
     const auto component = [&](double (*read)(const PointResult&)) {
-      return differences({read((*at)[0][i]), read((*at)[1][i]), read((*at)[2][i]), read((*at)[3][i])}, step);
+      std::array<double, kFactors.size()> values{};
+      for (std::size_t k = 0; k < values.size(); ++k) values[k] = read((*at)[k][i]);
+      return derivative_at(values, step);
     };
-    const Differences q = component([](const PointResult& r) { return r[Quantity::kQOverI]; });
-    const Differences u = component(u_over_i);
+    const auto read_q = [](const PointResult& r) { return r[Quantity::kQOverI]; };
+    const Derivative q = component(read_q), u = component(u_over_i);
     const auto bound = [&](std::size_t k) { return (*at)[k][i][Quantity::kErrorEstimate]; };
-    const double noise = ((bound(0) + bound(1)) / 6.0 + (bound(2) + bound(3)) * (4.0 / 3.0)) / step;
-    const double middle_noise = (bound(0) + bound(1)) / 6.0 + (bound(2) + bound(3)) * (2.0 / 3.0);
-    const double dolp = std::hypot(q.middle, u.middle);
-    const double sign = std::signbit((*at)[2][i][Quantity::kDolp]) ? -1.0 : 1.0;  // I may be negative
-    const double change = std::hypot(q.change, u.change);
-    // DOLP is the length of (Q/I, U/I). Its derivative needs their direction, which errors of the middle may turn.
-    const double off = std::hypot(q.middle_change, u.middle_change) + middle_noise;
-    const double turned = off < dolp ? off / dolp : 2.0;
-    const double rate = std::hypot(q.derivative, u.derivative);
+    const double noise = ((bound(0) + bound(4)) / 6.0 + (bound(1) + bound(3)) * (4.0 / 3.0)) / step;
+    const PointResult& middle = (*at)[2][i];
+    const double q_there = read_q(middle), u_there = u_over_i(middle);
+    const double dolp = std::hypot(q_there, u_there);
+    const double sign = std::signbit(middle[Quantity::kDolp]) ? -1.0 : 1.0;  // I may be negative
+    // DOLP is the length of (Q/I, U/I). Its derivative needs their direction, which errors may turn.
+    const double turned = bound(2) < dolp ? bound(2) / dolp : 2.0;
+    const double rate = std::hypot(q.value, u.value);
     static_assert(kDerivativesPerKey == 3);
-    columns[0].values[i] = dolp == 0.0 ? 0.0 : sign * (q.middle * q.derivative + u.middle * u.derivative) / dolp + 0.0;
-    columns[1].values[i] = q.derivative + 0.0;  // adding 0 turns -0 into 0
-    columns[2].values[i] = change + noise + turned * rate;
+    columns[0].values[i] = dolp == 0.0 ? 0.0 : sign * (q_there * q.value + u_there * u.value) / dolp + 0.0;
+    columns[1].values[i] = q.value + 0.0;  // adding 0 turns -0 into 0
+    columns[2].values[i] = std::hypot(q.bound, u.bound) + noise + turned * rate;
   }
 }
 

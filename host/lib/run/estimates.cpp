@@ -49,6 +49,9 @@ SceneEntries spread_entries(const SceneEntries& entries) {
   PerAxis value_counts{};
   for (const Axis axis : kAllAxes) {
     values[axis] = spread_positions(counts[axis], most_values(axis));
+    // Most light is lost near 90 degrees, and the last zenith may be 90 degrees, where DOLP is a limit or unknown.
+    const bool is_zenith = axis == Axis::kTheta || axis == Axis::kViewZenith;
+    if (is_zenith && counts[axis] > most_values(axis)) values[axis].insert(values[axis].end() - 1, counts[axis] - 2);
     value_counts[axis] = values[axis].size();
   }
   for (std::size_t i = 0; i < grid_size(value_counts); ++i) {

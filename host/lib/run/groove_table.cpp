@@ -1,6 +1,7 @@
 #include "run/groove_table.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -19,11 +20,11 @@ namespace {
 constexpr double kLeastSigma = 0.01;
 constexpr double kLeastK = 0.01;           // differences of k far below this number do not change the reflection
 constexpr double kLeastReflected = 1e-12;  // replaces i = 0 and 1 - i = 0, whose logits do not exist
-constexpr std::size_t kWavelengthNodes = 8;
-constexpr std::size_t kNodesAtOnce = 8;
+constexpr std::size_t kOpticsAtOnce = 2;
+constexpr std::array kShapeAxes = {Axis::kSigma, Axis::kQ};
 
-/// The nodes of an axis are Chebyshev-Lobatto points of `to(value)`; `from` is the inverse of `to`. An axis with at
-/// most `most` values has its values as nodes.
+/// The nodes of an axis are `most` Chebyshev-Lobatto points of `to(value)`; `from` is the inverse of `to`. An axis with
+/// at most twice as many values has its values as nodes.
 struct Scale {
   std::size_t most = 1;
   std::function<double(double)> to, from;
@@ -31,7 +32,7 @@ struct Scale {
 
 Scale axis_scale(Axis axis) {
   const auto same = [](double x) { return x; };
-  if (axis == Axis::kTheta) return {6, same, same};
+  if (axis == Axis::kTheta) return {8, same, same};
   if (axis == Axis::kN) return {4, [](double n) { return std::log(n); }, [](double x) { return std::exp(x); }};
   if (axis == Axis::kQ)
     return {3, [](double q) { return std::log(q - 1.0); }, [](double x) { return 1.0 + std::exp(x); }};
@@ -47,7 +48,7 @@ GrooveTable::AxisNodes polynomial_nodes(const std::vector<double>& values, const
   const auto [low, high] = std::ranges::minmax(places);
   const auto count = static_cast<Eigen::Index>(scale.most);
   const auto size = static_cast<Eigen::Index>(values.size());
-  if (size <= count) {
+  if (size <= 2 * count) {
     std::ranges::transform(places, places.begin(), scale.from);
     return {places, Eigen::MatrixXd::Identity(size, size)};
   }
@@ -58,28 +59,6 @@ GrooveTable::AxisNodes polynomial_nodes(const std::vector<double>& values, const
   for (Eigen::Index i = 0; i < size; ++i) {
     const double place = places[static_cast<std::size_t>(i)];
     axis.weights.row(i) = cardinal_values(points, 2.0 * (place - low) / (high - low) - 1.0);
-  }
-  return axis;
-}
-
-/// Nodes at some of the values, with linear interpolation between them.
-GrooveTable::AxisNodes linear_nodes(const std::vector<double>& values, std::size_t most) {
-  std::vector<double> sorted = values;
-  std::ranges::sort(sorted);
-  GrooveTable::AxisNodes axis;
-  const std::size_t count = std::min(most, sorted.size());
-  for (std::size_t i = 0; i < count; ++i)
-    axis.nodes.push_back(sorted[count == 1 ? 0 : i * (sorted.size() - 1) / (count - 1)]);
-  axis.weights.setZero(static_cast<Eigen::Index>(values.size()), static_cast<Eigen::Index>(count));
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto above = std::ranges::lower_bound(axis.nodes, values[i]) - axis.nodes.begin();
-    const auto row = static_cast<Eigen::Index>(i);
-    axis.weights(row, above) = 1.0;
-    if (above == 0 || axis.nodes[static_cast<std::size_t>(above)] == values[i]) continue;
-    const double low = axis.nodes[static_cast<std::size_t>(above) - 1];
-    const double share = (values[i] - low) / (axis.nodes[static_cast<std::size_t>(above)] - low);
-    axis.weights(row, above) = share;
-    axis.weights(row, above - 1) = 1.0 - share;
   }
   return axis;
 }
@@ -95,74 +74,73 @@ GrooveTable::GrooveTable(const SceneValues& scene, const SceneEntries& grid, con
     if (values.empty()) values = {axis == Axis::kN ? grid.index().n : grid.index().k};
     axes_[axis] = polynomial_nodes(values, axis_scale(axis));
   }
-  const std::vector<double>& wavelengths = axes[Axis::kWavelength];
-  axes_[Axis::kWavelength] = linear_nodes(wavelengths.empty() ? std::vector{0.0} : wavelengths, kWavelengthNodes);
-  bands_ = std::max<std::size_t>(axes[Axis::kBand].size(), 1);
-  const std::size_t materials = std::max<std::size_t>(axes[Axis::kMaterial].size(), 1);
-  for (std::size_t i = 0; i < materials * bands_; ++i) {
+  const PerAxis counts = axis_counts(axes);
+  bands_ = counts[Axis::kBand];
+  wavelengths_ = counts[Axis::kWavelength];
+  std::vector<GroupOptics> all;
+  for (std::size_t i = 0; i < counts[Axis::kMaterial] * bands_ * wavelengths_; ++i) {
     SceneVariant variant;
-    if (!axes[Axis::kMaterial].empty()) variant.material = static_cast<std::uint32_t>(i / bands_);
-    if (!axes[Axis::kBand].empty()) variant.band = static_cast<std::uint32_t>(i % bands_);
-    const std::vector<FacetOptics> optics = optics_at_nodes(blocks_.emplace_back(), variant, grid, rules);
-    fill(blocks_.back(), scene, optics);
+    if (!axes[Axis::kMaterial].empty()) variant.material = static_cast<std::uint32_t>(i / (bands_ * wavelengths_));
+    if (!axes[Axis::kBand].empty()) variant.band = static_cast<std::uint32_t>(i / wavelengths_ % bands_);
+    if (!axes[Axis::kWavelength].empty()) variant.wavelength_um = axes[Axis::kWavelength][i % wavelengths_];
+    add_block(variant, grid, rules, all);
   }
+  parallel_for(all.size(), kOpticsAtOnce, [&](std::size_t i) { fill(scene, all[i]); });
 }
 
-std::size_t GrooveTable::outer_nodes() const {
+std::size_t GrooveTable::node_count(std::span<const Axis> axes) const {
   std::size_t count = 1;
-  for (const Axis axis : kOuterAxes) count *= axes_[axis].nodes.size();
+  for (const Axis axis : axes) count *= axes_[axis].nodes.size();
   return count;
 }
 
-std::vector<FacetOptics> GrooveTable::optics_at_nodes(Block& block, SceneVariant variant, const SceneEntries& grid,
-                                                      const SpectralRules& rules) const {
-  std::vector<FacetOptics> optics;
-  for (const double wavelength_um : axes_[Axis::kWavelength].nodes) {
-    if (wavelength_um > 0.0) variant.wavelength_um = wavelength_um;
-    const std::vector<FacetOptics> samples = rules.at(variant)->indices();
-    for (const double n : axes_[Axis::kN].nodes) {
-      for (const double k : axes_[Axis::kK].nodes) {
-        const std::optional<OpticalConstants> index =
-            grid.has_own_index() ? std::optional(OpticalConstants{n, k}) : std::nullopt;
-        const std::vector<FacetOptics> own = with_index(samples, index);
-        const std::vector<std::size_t> middles = middle_samples(own.size());
-        block.groups = middles.size();
-        for (const std::size_t j : middles) optics.push_back(own[j]);
+void GrooveTable::add_block(const SceneVariant& variant, const SceneEntries& grid, const SpectralRules& rules,
+                            std::vector<GroupOptics>& all) {
+  Block& block = blocks_.emplace_back();
+  const std::vector<FacetOptics> samples = rules.at(variant)->indices();
+  std::size_t index_node = 0;
+  for (const double n : axes_[Axis::kN].nodes) {
+    for (const double k : axes_[Axis::kK].nodes) {
+      const std::optional<OpticalConstants> index =
+          grid.has_own_index() ? std::optional(OpticalConstants{n, k}) : std::nullopt;
+      const std::vector<FacetOptics> own = with_index(samples, index);
+      const std::vector<std::size_t> middles = middle_samples(own.size());
+      block.groups = middles.size();
+      for (std::size_t group = 0; group < middles.size(); ++group)
+        all.push_back({blocks_.size() - 1, index_node, group, own[middles[group]]});
+      ++index_node;
+    }
+  }
+  block.logits.resize(node_count(kOuterAxes) * block.groups * node_count(kShapeAxes));
+  block.quotients.resize(block.logits.size());
+}
+
+void GrooveTable::fill(const SceneValues& scene, const GroupOptics& own) {
+  const GrooveFacet facet(own.optics);
+  Block& block = blocks_[own.block];
+  const std::vector<double>& thetas = axes_[Axis::kTheta].nodes;
+  for (std::size_t i = 0; i < thetas.size(); ++i) {
+    std::size_t at = ((own.index_node * thetas.size() + i) * block.groups + own.group) * node_count(kShapeAxes);
+    for (const double sigma : axes_[Axis::kSigma].nodes) {
+      for (const double q : axes_[Axis::kQ].nodes) {
+        const FurtherLight light = further_light(scene.surface.distribution, thetas[i], {sigma, q}, facet);
+        const double reflected = std::clamp(light.i, kLeastReflected, 1.0 - kLeastReflected);
+        block.logits[at] = std::log(reflected / (1.0 - reflected));
+        block.quotients[at++] = light.q / (reflected * (1.0 - reflected));
       }
     }
   }
-  return optics;
-}
-
-void GrooveTable::fill(Block& block, const SceneValues& scene, const std::vector<FacetOptics>& optics) const {
-  const std::vector<double>& thetas = axes_[Axis::kTheta].nodes;
-  const std::vector<double>& sigmas = axes_[Axis::kSigma].nodes;
-  const std::vector<double>& qs = axes_[Axis::kQ].nodes;
-  const std::size_t shape_nodes = sigmas.size() * qs.size();
-  block.logits.resize(optics.size() * thetas.size() * shape_nodes);
-  block.quotients.resize(block.logits.size());
-  parallel_for(block.logits.size(), kNodesAtOnce, [&](std::size_t i) {
-    const std::size_t group = i / shape_nodes % block.groups;
-    const std::size_t shape = i % shape_nodes;
-    const std::size_t outer = i / (block.groups * shape_nodes);
-    const FurtherLight light = further_light(scene.surface.distribution, thetas[outer % thetas.size()],
-                                             {sigmas[shape / qs.size()], qs[shape % qs.size()]},
-                                             optics[outer / thetas.size() * block.groups + group]);
-    const double reflected = std::clamp(light.i, kLeastReflected, 1.0 - kLeastReflected);
-    block.logits[i] = std::log(reflected / (1.0 - reflected));
-    block.quotients[i] = light.q / (reflected * (1.0 - reflected));
-  });
 }
 
 void GrooveTable::Reader::begin_direction(const PerAxis& on) {
-  const Block& block = table_.blocks_[on[Axis::kMaterial] * table_.bands_ + on[Axis::kBand]];
+  const Block& block = table_.blocks_[table_.block_at(on)];
   const auto rows = static_cast<Eigen::Index>(block.groups * table_.axes_[Axis::kSigma].nodes.size());
   const auto columns = static_cast<Eigen::Index>(table_.axes_[Axis::kQ].nodes.size());
   groups_ = block.groups;
   logits_.setZero(rows, columns);
   quotients_.setZero(rows, columns);
   const auto size = static_cast<std::size_t>(rows * columns);
-  for (std::size_t node = 0; node < table_.outer_nodes(); ++node) {
+  for (std::size_t node = 0; node < table_.node_count(kOuterAxes); ++node) {
     double weight = 1.0;
     std::size_t rest = node;
     for (const Axis axis : std::views::reverse(kOuterAxes)) {
@@ -184,7 +162,7 @@ void GrooveTable::Reader::begin_row(std::size_t position) {
   for (const Axis axis : kAllAxes) on[axis] += part_first[axis];
   PerAxis direction{};
   on[Axis::kTheta] = on[table_.zenith_axis_];
-  for (const Axis axis : {Axis::kMaterial, Axis::kBand}) direction[axis] = on[axis];
+  for (const Axis axis : {Axis::kMaterial, Axis::kBand, Axis::kWavelength}) direction[axis] = on[axis];
   for (const Axis axis : kOuterAxes) direction[axis] = on[axis];
   if (direction_ != direction) begin_direction(*(direction_ = direction));
   const auto sigma = table_.axes_[Axis::kSigma].weights.row(static_cast<Eigen::Index>(on[Axis::kSigma]));

@@ -47,24 +47,35 @@ class GrooveTable {
   };
 
  private:
-  static constexpr std::array kOuterAxes = {Axis::kWavelength, Axis::kN, Axis::kK, Axis::kTheta};
+  static constexpr std::array kOuterAxes = {Axis::kN, Axis::kK, Axis::kTheta};
 
-  /// ln(i / (1 - i)) and q / (i (1 - i)) for one material and band. Shape: nodes of kOuterAxes x groups x sigma x q.
+  /// ln(i / (1 - i)) and q / (i (1 - i)) for one material, band and wavelength.
+  /// Shape: nodes of kOuterAxes x groups x sigma x q.
   struct Block {
     std::size_t groups = 0;
     std::vector<double> logits, quotients;
   };
+  /// The optics of one group at one node of n and k.
+  struct GroupOptics {
+    std::size_t block = 0;
+    std::size_t index_node = 0;  ///< position among the nodes of n and k
+    std::size_t group = 0;
+    FacetOptics optics;
+  };
 
-  std::size_t outer_nodes() const;
-  /// The optics of each group at each node of wavelength, n and k. Sets block.groups.
-  std::vector<FacetOptics> optics_at_nodes(Block& block, SceneVariant variant, const SceneEntries& grid,
-                                           const SpectralRules& rules) const;
-  void fill(Block& block, const SceneValues& scene, const std::vector<FacetOptics>& optics) const;
+  std::size_t node_count(std::span<const Axis> axes) const;
+  std::size_t block_at(const PerAxis& on_axes) const {
+    return (on_axes[Axis::kMaterial] * bands_ + on_axes[Axis::kBand]) * wavelengths_ + on_axes[Axis::kWavelength];
+  }
+  /// Begins a block. Appends its optics to `all`.
+  void add_block(const SceneVariant& variant, const SceneEntries& grid, const SpectralRules& rules,
+                 std::vector<GroupOptics>& all);
+  void fill(const SceneValues& scene, const GroupOptics& own);
 
   Axis zenith_axis_;  ///< moment_axis() of the scene; its nodes are in axes_[kTheta]
   AxisArray<AxisNodes> axes_;
-  std::vector<Block> blocks_;  ///< for each material, for each band
-  std::size_t bands_ = 1;
+  std::vector<Block> blocks_;  ///< for each material, for each band, for each wavelength
+  std::size_t bands_ = 1, wavelengths_ = 1;
 };
 
 }  // namespace dolp

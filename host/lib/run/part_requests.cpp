@@ -177,30 +177,12 @@ PartRequests::PartRequests(const SceneValues& scene, const SpectralIndices& samp
   moments_.sky = plan.sky;
   moments_.may_interpolate = level.may_interpolate;
   if (plan.kept.moments && selection.part.is_grid()) request_shapes(selection.part);
-  if (plan.kept.moments && selection.is_whole_grid()) request_grid(selection.part);
-  if (plan.kept.moments && !selection.is_whole_grid()) request_entries(selection);
+  if (plan.kept.moments) request_moments();
   if (moments_.has_elliptic_shapes()) moments_.basis = nullptr;  // responses are for isotropic slopes
   // The parts of a grid and later requests for some of its entries must do as the whole grid does.
   moments_.has_lone_entries = selection.part.is_grid() ? selection.part.entries_per_direction() == 1
                                                        : moments_.size() < 2 * moments_.bundles.size();
-  if (plan.needs_beams) request_beams(selection);
-}
-
-std::size_t PartRequests::index_set(const SceneEntries& grid, const PerAxis& on_axes) const {
-  if (!grid.has_own_index()) return grid.variant_at(on_axes);
-  const PerAxis& counts = grid.counts();
-  const std::size_t variant = has_films() ? grid.variant_at(on_axes) : 0;
-  return (variant * counts[Axis::kN] + on_axes[Axis::kN]) * counts[Axis::kK] + on_axes[Axis::kK];
-}
-
-std::vector<FacetOptics> PartRequests::index_set_samples(const SceneEntries& grid, std::size_t set) const {
-  if (!grid.has_own_index()) return samples_[set];
-  const std::size_t n_values = grid.counts()[Axis::kN];
-  const std::size_t k_values = grid.counts()[Axis::kK];
-  PerAxis on_axes = {};
-  on_axes[Axis::kN] = set / k_values % n_values;
-  on_axes[Axis::kK] = set % k_values;
-  return with_index(samples_[set / (n_values * k_values)], grid.index_at(on_axes));
+  if (plan.needs_beams) request_beams();
 }
 
 void PartRequests::request_shapes(const SceneEntries& grid) {
@@ -247,54 +229,13 @@ std::uint32_t PartRequests::shape_position(const PerAxis& on_axes) const {
   return static_cast<std::uint32_t>(shape);
 }
 
-void PartRequests::request_grid(const SceneEntries& grid) {
-  std::vector<double> zeniths = grid.axes()[moment_axis(scene_)];
-  if (zeniths.empty()) zeniths = {scene_.geometry.view_zenith_deg};
-  std::vector<char> theta;
-  for (const double zenith_deg : zeniths) {
-    theta.push_back(std::ranges::any_of(moments_.shapes, [&](const SlopeShape& shape) {
-      return wants_moments(scene_, {.theta_deg = zenith_deg, .shape = shape, .view_zenith_deg = zenith_deg}, plan_);
-    }));
-  }
-  if (std::ranges::find(theta, 1) == theta.end()) return;
-  request_indices(grid);
-  theta_at_ = compact_used_values(zeniths, theta, moments_.theta_deg);
-  for (double& theta_deg : moments_.theta_deg) {
-    theta_deg = zenith_before_limit_deg(scene_.surface.masking, theta_deg);
-  }
-  moments_.set_grid();
-}
-
-/// Adds the n and k of the index sets to the request for moments. A set that equals the one before adds nothing.
-void PartRequests::request_indices(const SceneEntries& grid) {
-  const std::size_t variants = !grid.has_own_index() || has_films() ? grid.variants().size() : 1;
-  const std::size_t sets =
-      grid.has_own_index() ? variants * grid.counts()[Axis::kN] * grid.counts()[Axis::kK] : variants;
-  std::vector<FacetOptics> last;
-  std::uint32_t first = 0;
-  for (std::size_t set = 0; set < sets; ++set) {
-    std::vector<FacetOptics> next_samples = index_set_samples(grid, set);
-    if (next_samples != last) {
-      first = static_cast<std::uint32_t>(moments_.optics.size());
-      moments_.optics.insert(moments_.optics.end(), next_samples.begin(), next_samples.end());
-      last = std::move(next_samples);
-    }
-    index_set_offset_.push_back(first);
-  }
-}
-
 PartRequests::MomentsSpan PartRequests::member_moments(std::size_t member, const PerAxis& on_axes) const {
-  if (!spans_.empty()) return spans_[member];
-  const SceneEntries& grid = selection_.part;
-  const std::size_t shapes = moments_.shapes.size();
-  const std::size_t entries_per_index = moments_.theta_deg.size() * shapes;
-  const std::size_t theta_offset = theta_at_[on_axes[moment_axis(scene_)]] * shapes;
-  const bool has_one_index = grid.has_own_index() && !has_films();
-  return {index_set_offset_[index_set(grid, on_axes)] * entries_per_index + theta_offset + shape_position(on_axes),
-          has_one_index ? std::size_t{0} : entries_per_index};
+  MomentsSpan span = spans_[member / members_per_span_];
+  if (selection_.is_whole_grid()) span.first += shape_position(on_axes);
+  return span;
 }
 
-void PartRequests::request_entries(const Selection& selection) {
+void PartRequests::request_moments() {
   struct IndexSet {
     std::uint32_t first = 0;  // position in moments_.optics
     std::uint32_t count = 0;
@@ -302,28 +243,35 @@ void PartRequests::request_entries(const Selection& selection) {
   };
   struct Place {
     std::uint32_t direction = 0, set = 0, shape = 0;
-    std::size_t member = 0;
+    std::size_t span = 0;
   };
-  const bool is_grid = selection.part.is_grid();
+  const bool is_grid = selection_.part.is_grid();
+  const bool has_all_shapes = selection_.is_whole_grid();  // in each direction
   moments_.is_scattered = !is_grid;
-  Numbering<double> directions(selection.size());
-  Numbering<std::array<double, 4>> shapes(selection.size());
-  Numbering<std::array<double, 3>> index_sets(selection.size());
+  members_per_span_ = has_all_shapes ? selection_.part.entries_per_direction() : 1;
+  spans_.resize(selection_.size() / members_per_span_);
+  Numbering<double> directions(spans_.size());
+  Numbering<std::array<double, 4>> shapes(spans_.size());
+  Numbering<std::array<double, 3>> index_sets(spans_.size());
   std::vector<IndexSet> sets;
   std::vector<Place> places;
-  places.reserve(selection.size());
+  places.reserve(spans_.size());
   const std::vector<std::uint32_t> equal_variants = first_equal_variants(samples_);
-  EntryReader reader(selection.part);
-  for (std::size_t i = 0; i < selection.size(); ++i) {
-    const SceneEntry& entry = reader[selection.position(i)];
-    if (!wants_moments(scene_, entry, plan_)) continue;
+  EntryReader reader(selection_.part);
+  for (std::size_t i = 0; i < spans_.size(); ++i) {
+    const SceneEntry& entry = reader[selection_.position(i * members_per_span_)];
+    const auto wants_shape = [&](const SlopeShape& own) {
+      SceneEntry with_shape = entry;
+      with_shape.shape = own;
+      return wants_moments(scene_, with_shape, plan_);
+    };
+    if (has_all_shapes ? std::ranges::none_of(moments_.shapes, wants_shape) : !wants_shape(entry.shape)) continue;
     const double zenith_deg = zenith_before_limit_deg(scene_.surface.masking, moment_zenith_deg(scene_, entry));
-    const SlopeShape shape = normalised(scene_, entry.shape);
     const bool has_own_index = entry.index && !has_films();
     const double variant = has_own_index ? -1.0 : equal_variants[entry.variant];
     const OpticalConstants key = entry.index.value_or(OpticalConstants{0.0, -1.0});  // no real index has k = -1
     Place& place = places.emplace_back();
-    place.member = i;
+    place.span = i;
     place.direction = directions.number(zenith_deg, [&] { moments_.theta_deg.push_back(zenith_deg); });
     place.set = index_sets.number({key.n, key.k, variant}, [&] {
       const std::vector<FacetOptics> own = with_index(samples_[entry.variant], entry.index);
@@ -331,26 +279,27 @@ void PartRequests::request_entries(const Selection& selection) {
           {static_cast<std::uint32_t>(moments_.optics.size()), static_cast<std::uint32_t>(own.size()), has_own_index});
       moments_.optics.insert(moments_.optics.end(), own.begin(), own.end());
     });
-    place.shape = is_grid ? shape_position(reader.on_axes())
-                          : shapes.number(numbers_in(shape), [&] { moments_.shapes.push_back(shape); });
+    if (is_grid && !has_all_shapes) place.shape = shape_position(reader.on_axes());
+    if (is_grid) continue;
+    const SlopeShape shape = normalised(scene_, entry.shape);
+    place.shape = shapes.number(numbers_in(shape), [&] { moments_.shapes.push_back(shape); });
   }
   const auto position = [](const Place& place) { return std::tuple(place.direction, place.set, place.shape); };
   std::ranges::sort(places, {}, position);
   moments_.set_shapes(std::move(moments_.shapes));
-  spans_.resize(selection.size());
   std::map<std::vector<std::uint32_t>, std::uint32_t> known;  // positions of lists of shapes in moments_.members
   for (std::size_t i = 0, end = 0; i < places.size(); i = end) {
-    const auto& [direction, set, first_shape, member] = places[i];
+    const auto& [direction, set, first_shape, span] = places[i];
     const std::size_t first_entry = moments_.size();
     std::vector<std::uint32_t> own;
     for (; end < places.size() && places[end].direction == direction && places[end].set == set; ++end) {
       if (own.empty() || own.back() != places[end].shape) own.push_back(places[end].shape);
-      spans_[places[end].member].first = first_entry + own.size() - 1;
+      spans_[places[end].span].first = first_entry + own.size() - 1;
     }
-    const auto count = static_cast<std::uint32_t>(own.size());
-    for (std::size_t j = i; j < end; ++j) spans_[places[j].member].stride = sets[set].has_own_index ? 0 : count;
+    const auto count = static_cast<std::uint32_t>(has_all_shapes ? moments_.shapes.size() : own.size());
+    for (std::size_t j = i; j < end; ++j) spans_[places[j].span].stride = sets[set].has_own_index ? 0 : count;
     std::uint32_t first = own.front();  // neighbouring shapes are in moments_.members already
-    if (own.back() - first + 1 != count) {
+    if (!has_all_shapes && own.back() - first + 1 != count) {
       const auto [list, is_new] = known.try_emplace(own, static_cast<std::uint32_t>(moments_.members.size()));
       if (is_new) moments_.members.insert(moments_.members.end(), own.begin(), own.end());
       first = list->second;
@@ -360,17 +309,17 @@ void PartRequests::request_entries(const Selection& selection) {
   }
 }
 
-void PartRequests::request_beams(const Selection& selection) {
-  Numbering<std::array<double, 3>> directions(selection.size());
-  Numbering<std::array<double, 4>> shapes(selection.size());
+void PartRequests::request_beams() {
+  Numbering<std::array<double, 3>> directions(selection_.size());
+  Numbering<std::array<double, 4>> shapes(selection_.size());
   std::vector<std::uint32_t> first_index;
   for (const std::vector<FacetOptics>& wavelength_optics : samples_) {
     first_index.push_back(static_cast<std::uint32_t>(beams_.optics.size()));
     beams_.optics.insert(beams_.optics.end(), wavelength_optics.begin(), wavelength_optics.end());
   }
-  first_beam_.reserve(selection.size());
-  for (std::size_t i = 0; i < selection.size(); ++i) {
-    const SceneEntry entry = selection[i];
+  first_beam_.reserve(selection_.size());
+  for (std::size_t i = 0; i < selection_.size(); ++i) {
+    const SceneEntry entry = selection_[i];
     first_beam_.push_back(beams_.entries.size());
     if (!wants_beam(scene_, entry, plan_)) continue;
     const BeamAngles angles = requested_angles(scene_, entry);

@@ -79,13 +79,9 @@ class PartRequests {
   /// nodes for slopes that differ along and across depend on them.
   void request_shapes(const SceneEntries& grid);
   std::uint32_t shape_position(const PerAxis& on_axes) const;
-  void request_grid(const SceneEntries& grid);
-  void request_indices(const SceneEntries& grid);
-  std::size_t index_set(const SceneEntries& grid, const PerAxis& on_axes) const;
-  std::vector<FacetOptics> index_set_samples(const SceneEntries& grid, std::size_t set) const;
   bool has_films() const { return !samples_.front().front().is_bare(); }
-  void request_entries(const Selection& selection);
-  void request_beams(const Selection& selection);
+  void request_moments();
+  void request_beams();
 
   const SceneValues& scene_;
   const SpectralIndices& samples_;
@@ -94,14 +90,13 @@ class PartRequests {
   MomentsRequest moments_;
   ScatteringRequest beams_;
   // For a grid: value i of sigma has the number sigma_at_[i] among the values that moments_.shapes have, and so on for
-  // q. shape_counts_ has the numbers of values of q, sigma_cross and azimuth. For a whole grid: value i of the part's
-  // moment_axis() is value theta_at_[i] in moments_.theta_deg, unless nothing is requested there. index_set_offset_[i]
-  // is the position in moments_.optics of the first index (n, k) of the index set i. An index set has the indices of
-  // one variant (such as a band). If the grid has axes n and k, an index set has one value of each, with the films of
-  // one variant.
-  std::vector<std::uint32_t> theta_at_, sigma_at_, q_at_, index_set_offset_;
+  // q. shape_counts_ has the numbers of values of q, sigma_cross and azimuth.
+  std::vector<std::uint32_t> sigma_at_, q_at_;
   PerAxis shape_counts_ = {};
-  std::vector<MomentsSpan> spans_;  ///< otherwise: where the evaluator returns the moments of each member
+  /// Where the evaluator returns the moments of each member. In a whole grid all members of a direction have one span:
+  /// it begins with the first of moments_.shapes.
+  std::vector<MomentsSpan> spans_;
+  std::size_t members_per_span_ = 1;
   std::vector<std::size_t> first_beam_;
 };
 

@@ -121,11 +121,12 @@ class Remarks {
 
   void add(const std::string& key, const std::string& what) { lines_.push_back(scene_.document->prefix(key) + what); }
 
-  /// A remark on the values of an axis. The scene has them in [grid] or, where it has no such axis, in `key`.
-  void add(Axis axis, const std::string& key, const std::string& what) {
+  /// A remark on the values of an axis, or on one of them. The scene has them in [grid] or, where it has no such axis,
+  /// in `key`.
+  void add(Axis axis, const std::string& key, const std::string& what, std::optional<double> value = {}) {
     const std::string column = describe(axis).column;
     if (points_ && (*points_)[axis]) {
-      lines_.push_back(fmt::format("{}: {}: {}", points_->where(),
+      lines_.push_back(fmt::format("{}: {}: {}", value ? place(*(*points_)[axis], *value) : points_->where(),
                                    points_->has_winds && axis == Axis::kSigma ? kWind.column : column, what));
     } else {
       add(scene_.document->find("grid." + column) ? "grid." + column : key, what);
@@ -156,7 +157,7 @@ class Remarks {
           !scene_.bands.empty()       ? "grid.band_um"
           : scene_.spectrum.is_band() ? scene_.spectrum.key()
                                       : "spectrum.wavelength_um",
-          "is in micrometres; were nanometres or wavenumbers meant?");
+          "is in micrometres; were nanometres or wavenumbers meant?", high);
       return;
     }
   }
@@ -167,7 +168,7 @@ class Remarks {
     };
     if (const std::optional<double> surface_K = coldest_K(); surface_K && *surface_K < kLikelyCelsius_K)
       add(Axis::kTemperature, "emission.temperature_K",
-          fmt::format("{} K is cold; were degrees Celsius meant?", *surface_K));
+          fmt::format("{} K is cold; were degrees Celsius meant?", *surface_K), surface_K);
     if (scene_.path && scene_.path->temperature_K) check("path.temperature_K", *scene_.path->temperature_K);
     if (!scene_.surroundings) return;
     const SkyProfile* profile = scene_.surroundings->profile.get();
@@ -226,7 +227,8 @@ class Remarks {
     if (roughest > kSteepSigma)
       add(Axis::kSigma, "surface.sigma",
           fmt::format("{} is a slope of {:.0f} degrees, not a height; real surfaces have less than {:g}", roughest,
-                      std::atan(roughest) * 180.0 / std::numbers::pi, kSteepSigma));
+                      std::atan(roughest) * 180.0 / std::numbers::pi, kSteepSigma),
+          roughest);
   }
 
   void add_diffuse() {
@@ -239,11 +241,11 @@ class Remarks {
 
   void add_films_of_points() {
     for (const auto& [film, column] : points_->films) {
-      const bool is_thick = film.second == FilmValue::Part::kThickness && !column->empty() &&
-                            std::ranges::max(*column) >= kLikelyNanometresOfFilm;
-      if (is_thick)
-        lines_.push_back(
-            fmt::format("{}: surface.coating.{}.thickness_um: {}", points_->where(), film.first + 1, kThickFilm));
+      if (film.second != FilmValue::Part::kThickness || column->empty()) continue;
+      const double thickest = std::ranges::max(*column);
+      if (thickest >= kLikelyNanometresOfFilm)
+        lines_.push_back(fmt::format("{}: surface.coating.{}.thickness_um: {}", place(*column, thickest),
+                                     film.first + 1, kThickFilm));
     }
   }
 
@@ -253,6 +255,11 @@ class Remarks {
   static constexpr const char* kUnusedAzimuth =
       "has no effect where slopes are equal along and across; give surface.sigma_cross or surface.wind_model";
   static constexpr const char* kThickFilm = "is in micrometres; were nanometres meant?";
+
+  /// The first point with a value in a column.
+  std::string place(const std::vector<double>& column, double value) const {
+    return points_->where(static_cast<std::size_t>(std::ranges::find(column, value) - column.begin()));
+  }
 
   bool has_cross_slopes() const {
     return scene_.surface.has_cross_slopes() || (points_ && (*points_)[Axis::kSigmaCross]);

@@ -77,63 +77,71 @@ class MemberResults {
 
   PointResult operator()(std::size_t member) {
     const SceneEntry& entry = entries_[selection_.position(member)];
-    const Direction direction = view_direction(entry);
-    const std::vector<FacetOptics>& samples = context_.spectra.indices[entry.variant];
-    if (moments_.size() != samples.size()) {
-      moments_.assign(samples.size(), {});
-      beams_.resize(samples.size());
-      readers_.resize(samples.size(), MomentsReader(evaluated_.moments));
-    }
     const Radiometry& radiometry = context_.spectra.radiometries[entry.variant];
-    if (entry.index && (entry.index != index_ || entry.variant != variant_)) {
-      std::vector<FacetOptics> facets = samples;
-      for (FacetOptics& facet : facets) facet.index = *entry.index;
-      own_optics_ = radiometry.optics_with(std::move(facets));
-      index_ = entry.index;
-      variant_ = entry.variant;
-    }
-    const Radiometry::Optics& optics = entry.index ? own_optics_ : radiometry.optics();
-    const std::span<const Moments> moments = member_moments(member, entry, direction, optics.facets);
-    const bool is_bistatic = context_.scene.geometry.mode == Mode::kBistatic;
-    if (is_bistatic) fill_beams(member, entry);
-    const double cos_theta_i = is_bistatic ? cos_sin_deg(entry.theta_deg).cos : 0.0;
-    PointResult result = radiometry.point(direction, moments, optics, cos_theta_i, beams_);
-    if (radiometry.may_change_dolp(result, direction.cos_theta))
-      radiometry.judge_dolp(result, direction.cos_theta, further(member, direction, entry, optics.facets));
+    set_view(entry, radiometry);
+    const std::span<const Moments> moments = member_moments(member, entry);
+    if (context_.scene.geometry.mode == Mode::kBistatic) fill_beams(member, entry);
+    PointResult result = radiometry.point(view_, moments, beams_);
+    const double cos_theta = view_.direction.cos_theta;
+    if (radiometry.may_change_dolp(result, cos_theta)) radiometry.judge_dolp(result, cos_theta, further(member, entry));
     return result;
   }
 
  private:
-  std::span<const FurtherLight> further(std::size_t member, const Direction& direction, const SceneEntry& entry,
-                                        std::span<const FacetOptics> facets) {
+  std::span<const FurtherLight> further(std::size_t member, const SceneEntry& entry) {
     if (grooves_) return grooves_->at(selection_.position(member));
     further_.clear();
-    const SlopeShape isotropic = mean_isotropic(entry.shape);       // enough for an estimate
-    const bool is_equal = entry.index && facets.front().is_bare();  // at all wavelengths
-    for (const std::size_t j : middle_samples(is_equal ? 1 : facets.size()))
-      further_.push_back(further_light(context_.scene.surface.distribution, direction.theta_deg, isotropic, facets[j]));
+    const SlopeShape isotropic = mean_isotropic(entry.shape);  // enough for an estimate
+    if (facets_.empty()) {
+      const std::vector<FacetOptics>& optics = optics_->facets;
+      const bool is_equal = entry.index && optics.front().is_bare();  // at all wavelengths
+      for (const std::size_t j : middle_samples(is_equal ? 1 : optics.size())) facets_.emplace_back(optics[j]);
+    }
+    for (const GrooveFacet& facet : facets_)
+      further_.push_back(
+          further_light(context_.scene.surface.distribution, view_.direction.theta_deg, isotropic, facet));
     return further_;
   }
 
-  /// The direction for which an entry needs moments. It is cached, because neighbouring entries mostly share it.
-  const Direction& view_direction(const SceneEntry& entry) {
+  /// Sets view_ and optics_, which neighbouring entries mostly share.
+  void set_view(const SceneEntry& entry, const Radiometry& radiometry) {
     const Surface& surface = context_.scene.surface;
     const double theta_deg = moment_zenith_deg(context_.scene, entry);
     const Treatment treatment = choose_treatment(surface.distribution, surface.masking, theta_deg, entry.shape);
-    if (!has_direction_ || theta_deg != direction_.theta_deg || treatment != direction_.treatment) {
-      direction_ = make_direction(surface.distribution, surface.masking, theta_deg, entry.shape);
-      has_direction_ = true;
+    const bool has_optics = optics_ && entry.variant == variant_ && entry.index == index_;
+    if (has_optics && entry.theta_deg == theta_deg_ && theta_deg == view_.direction.theta_deg &&
+        treatment == view_.direction.treatment)
+      return;
+    if (!has_optics) set_optics(entry, radiometry);
+    theta_deg_ = entry.theta_deg;
+    const Direction direction = make_direction(surface.distribution, surface.masking, theta_deg, entry.shape);
+    view_ = radiometry.view(direction, *optics_, cos_sin_deg(entry.theta_deg).cos);
+  }
+
+  void set_optics(const SceneEntry& entry, const Radiometry& radiometry) {
+    variant_ = entry.variant;
+    index_ = entry.index;
+    std::vector<FacetOptics> facets = context_.spectra.indices[entry.variant];
+    if (moments_.size() != facets.size()) {
+      moments_.assign(facets.size(), {});
+      beams_.resize(facets.size());
+      readers_.resize(facets.size(), MomentsReader(evaluated_.moments));
     }
-    return direction_;
+    facets_.clear();
+    optics_ = &radiometry.optics();
+    if (!index_) return;
+    for (FacetOptics& facet : facets) facet.index = *index_;
+    own_optics_ = radiometry.optics_with(std::move(facets));
+    optics_ = &own_optics_;
   }
 
   /// The moments of an entry: from the evaluator, from closed forms, or zeros if the plan needs no moments.
-  std::span<const Moments> member_moments(std::size_t member, const SceneEntry& entry, const Direction& direction,
-                                          std::span<const FacetOptics> indices) {
+  std::span<const Moments> member_moments(std::size_t member, const SceneEntry& entry) {
     if (!context_.plan.kept.moments) return moments_;  // all zero, because nothing writes to moments_ in this case
-    if (direction.treatment != Treatment::kIntegrated) {
+    if (view_.direction.treatment != Treatment::kIntegrated) {
       for (std::size_t j = 0; j < moments_.size(); ++j) {
-        moments_[j] = closed_form(context_.scene.surface, direction, entry.shape, indices[j], context_.plan.sky.get());
+        moments_[j] = closed_form(context_.scene.surface, view_.direction, entry.shape, optics_->facets[j],
+                                  context_.plan.sky.get());
       }
       return moments_;
     }
@@ -166,11 +174,14 @@ class MemberResults {
   std::vector<Scattered> beams_;
   std::optional<GrooveTable::Reader> grooves_;
   std::vector<FurtherLight> further_;
-  std::optional<OpticalConstants> index_;  ///< own_optics_ was computed for index_ and variant_
+  // Of the last entry:
   std::uint32_t variant_ = 0;
-  Radiometry::Optics own_optics_;
-  Direction direction_;
-  bool has_direction_ = false;
+  std::optional<OpticalConstants> index_;
+  Radiometry::Optics own_optics_;  ///< with index_
+  const Radiometry::Optics* optics_ = nullptr;
+  std::vector<GrooveFacet> facets_;  ///< of the middle samples of optics_; empty until they are needed
+  double theta_deg_ = 0.0;
+  Radiometry::View view_;
 };
 
 /// Progress of a step within a larger task of `total` items. `before` items are done when the step starts.

@@ -40,6 +40,22 @@ bool find_cuts(const PerAxis& counts, std::size_t count, std::size_t number, Cut
   return false;
 }
 
+/// The numbers of shards next to `count`, below and above, into which the values can be cut.
+std::vector<std::size_t> possible_counts(const PerAxis& counts, std::size_t count) {
+  std::size_t most = 1;
+  for (const Axis axis : kCutAxes) most *= counts[axis];
+  Cuts cuts{};
+  std::vector<std::size_t> possible;
+  std::size_t below = std::min(count - 1, most);
+  while (!find_cuts(counts, below, 0, cuts)) --below;
+  possible.push_back(below);
+  if (count > most) return possible;
+  std::size_t above = count + 1;
+  while (!find_cuts(counts, above, 0, cuts)) ++above;
+  possible.push_back(above);
+  return possible;
+}
+
 /// The axes of `table`. On the axes of materials and bands, the values become positions in the lists of the scene.
 Axes scene_axes(TableHead table, const SceneValues& scene, const std::string& name) {
   use_scene_labels(table, scene, name);
@@ -149,6 +165,7 @@ void add_run(RunRecord& whole, const TableHead& shard) {
   whole.check.worst_ratio = std::max(whole.check.worst_ratio, head_number(shard, "self_check_worst_ratio"));
   whole.model_change.add(ModelChange{head_number(shard, kModelChange), head_number(shard, kModelChangeDolp)});
   whole.wall_s += head_number(shard, "wall_time_s");
+  note_precision(whole.evaluation.precision, head_text(shard, "precision"));
   const std::string device = head_text(shard, "device");
   std::string& devices = whole.evaluation.device;
   if (devices.find(device) == std::string::npos) devices += (devices.empty() ? "" : "; ") + device;
@@ -196,9 +213,10 @@ SceneEntries shard_entries(const SceneValues& scene, const Shard& shard) {
     std::vector<std::string> values;
     for (const Axis axis : kCutAxes)
       if (count[axis] > 1) values.push_back(fmt::format("{} of {}", count[axis], describe(axis).name));
-    throw InputError(fmt::format("shard {}: the values of the axes, {}, cannot be cut into {} parts", shard_text(shard),
+    throw InputError(fmt::format("shard {}: the values of the axes, {}, cannot be cut into {} parts, but into {}",
+                                 shard_text(shard),
                                  values.empty() ? "1 of theta" : fmt::format("{}", fmt::join(values, ", ")),
-                                 shard.count));
+                                 shard.count, fmt::join(possible_counts(count, shard.count), " or ")));
   }
   PerAxis first{};
   std::size_t rest = shard.number - 1;
@@ -321,7 +339,6 @@ std::size_t ShardSet::merge(const fs::path& path, const std::string& command_lin
   RunRecord run{{}, head_text(first, "effects"), head_text(first, "rule")};
   run.evaluation.driver = head_text(first, "driver");
   run.evaluation.evaluator = head_text(first, "evaluator");
-  run.evaluation.precision = head_text(first, "precision");
   for (const auto& [number, own_path] : paths_) {
     const TableReader reader(own_path);
     const std::size_t is_now = checked_number(reader, own_path);

@@ -49,16 +49,12 @@ struct PointIntegral {
 };
 
 std::vector<double> band_breaks_um(const SceneModel& scene) {
-  std::vector<double> breaks = {scene.spectrum.min_um, scene.spectrum.max_um};
-  const auto add = [&](const std::vector<double>& rows_um) {
-    for (const double at_um : rows_um)
-      if (at_um > scene.spectrum.min_um && at_um < scene.spectrum.max_um) breaks.push_back(at_um);
-  };
-  add(scene.surface.optics_rows_um());
-  if (scene.source && scene.source->table) add(scene.source->table->wavelength_um);
-  if (scene.spectrum.response) add(scene.spectrum.response->wavelength_um);
-  if (scene.surface.diffuse_table) add(scene.surface.diffuse_table->wavelength_um);
-  if (scene.surroundings && scene.surroundings->profile) add(scene.surroundings->profile->breaks_um());
+  std::vector<double> breaks = kinks_um(scene);
+  if (const SpectralTable* response = scene.spectrum.response.get())
+    breaks.insert(breaks.end(), response->wavelength_um.begin(), response->wavelength_um.end());
+  const double from = scene.spectrum.min_um, to = scene.spectrum.max_um;
+  std::erase_if(breaks, [&](double at_um) { return at_um <= from || at_um >= to; });
+  breaks.insert(breaks.end(), {from, to});
   std::ranges::sort(breaks);
   return breaks;
 }

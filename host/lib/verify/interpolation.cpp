@@ -49,6 +49,15 @@ struct SortedAxis {
     return std::clamp(is_logarithmic ? std::exp(x) : x, values[cell], values[cell + 1]);
   }
 
+  /// The cells that overlap the interval from `low` to `high`.
+  std::vector<std::size_t> cells_between(double low, double high) const {
+    std::vector<std::size_t> cells;
+    for (std::size_t i = 0; i + 1 < values.size(); ++i) {
+      if (values[i] < high && values[i + 1] > low) cells.push_back(i);
+    }
+    return cells;
+  }
+
   using Weights = std::vector<std::pair<std::size_t, double>>;  // position on the table's axis, weight
   /// Weights of the polynomial through the `most` values around a value in a cell, or through all values.
   Weights weights(double value, std::size_t cell, std::size_t most) const {
@@ -90,45 +99,70 @@ class Forecast {
  public:
   Forecast(const SceneValues& scene, const EffectPlan& plan) : scene_(scene), plan_(plan) {}
 
+  /// Measures the error between the values of an axis, then between a number of values that may suffice.
   AxisForecast along(Axis axis, std::size_t cells) {
     const SortedAxis sorted(scene_.grid[axis]);
     const std::size_t values = sorted.values.size();
     AxisForecast forecast{axis, values, {}, 0};
     if (cells < kLeastCells) return forecast;
-    forecast.error = error(axis, sorted, cells);
-    forecast.needed_values = needed(values, forecast.error.largest);
-    if (forecast.needed_values == 0 || forecast.needed_values == values) return forecast;
-    const SortedAxis finer(respaced(sorted, forecast.needed_values));
-    forecast.needed_values = needed(forecast.needed_values, error(axis, finer, cells).largest);
+    const std::vector<Place> places = spread_places(sorted, cells);
+    forecast.error = error(axis, sorted, places);
+    const double first = forecast.error.largest;
+    const std::size_t guess = needed(values, first, 2.0);
+    if (guess == 0 || guess == values) return forecast;
+    const SortedAxis other(respaced(sorted, guess));
+    std::vector<Place> again = spread_places(other, cells);
+    const Place& worst = places[forecast.error.where];
+    for (const std::size_t cell : other.cells_between(sorted.values[worst.cell], sorted.values[worst.cell + 1]))
+      if (again.size() < 2 * kMostCells) again.push_back({cell, worst.draw});
+    const double second = error(axis, other, again).largest;
+    // The error is proportional to a power of the spacing: to its square, or at a kink to the spacing itself.
+    const double finer = static_cast<double>(guess - 1) / static_cast<double>(values - 1);
+    const double power = first > 0.0 && second > 0.0 ? std::log(first / second) / std::log(finer) : 2.0;
+    forecast.needed_values = needed(guess, second, std::clamp(power, 1.0, 2.0));
+    if (forecast.needed_values > 0) {
+      const bool suffices = first <= scene_.accuracy.tolerance;
+      forecast.needed_values =
+          suffices ? std::min(forecast.needed_values, values) : std::max(forecast.needed_values, values + 1);
+    }
     return forecast;
   }
   double evaluations() const { return evaluator_.report().evaluations; }
 
  private:
-  /// The error of linear interpolation is proportional to the square of the spacing.
-  std::size_t needed(std::size_t values, double error) const {
-    const double steps = static_cast<double>(values - 1) * std::sqrt(error / scene_.accuracy.tolerance);
+  struct Place {
+    std::size_t cell = 0;
+    std::size_t draw = 0;  ///< number of the random values on the other axes
+  };
+
+  /// The number of values for an error equal to the tolerance, if the error is proportional to a power of the spacing.
+  std::size_t needed(std::size_t values, double error, double power) const {
+    const double steps = static_cast<double>(values - 1) * std::pow(error / scene_.accuracy.tolerance, 1.0 / power);
     return steps < static_cast<double>(kMostNeeded) ? std::max<std::size_t>(2, 1 + std::lround(std::ceil(steps))) : 0;
   }
 
-  ErrorSummary error(Axis axis, const SortedAxis& sorted, std::size_t cells) {
-    std::mt19937_64 engine(cells);
+  /// One cell in each of `cells` equal parts of the axis, so that both ends of the axis have cells near them.
+  static std::vector<Place> spread_places(const SortedAxis& sorted, std::size_t cells) {
+    std::vector<Place> places;
+    for (std::size_t i = 0; i < cells; ++i)
+      places.push_back({cells > 1 ? i * (sorted.values.size() - 2) / (cells - 1) : 0, i});
+    return places;
+  }
+
+  ErrorSummary error(Axis axis, const SortedAxis& sorted, const std::vector<Place>& places) {
+    std::mt19937_64 engine(kMostCells);
     Points points;
-    points.count = 3 * cells;
+    points.count = 3 * places.size();
     for (const Axis each : kAllAxes) {
       const std::vector<double>& values = scene_.grid[each];
       if (values.empty()) continue;
       std::vector<double>& column = points[each].emplace();
       points.labels[each] = scene_.labels[each];
-      for (std::size_t i = 0; i < cells; ++i) {
-        if (each != axis) {
-          column.insert(column.end(), 3, values[random_below(values.size(), engine)]);
-          continue;
-        }
-        // One cell in each of `cells` equal parts of the axis, so that both ends of the axis have cells near them.
-        const std::size_t last = sorted.values.size() - 2;
-        const std::size_t cell = cells > 1 ? i * last / (cells - 1) : 0;
-        for (const double fraction : {0.0, 0.5, 1.0}) column.push_back(sorted.between(cell, fraction));
+      std::vector<double> drawn;
+      for (std::size_t i = 0; i < kMostCells; ++i) drawn.push_back(values[random_below(values.size(), engine)]);
+      for (const Place& place : places) {
+        for (const double fraction : {0.0, 0.5, 1.0})
+          column.push_back(each == axis ? sorted.between(place.cell, fraction) : drawn[place.draw]);
       }
     }
     const std::vector<PointResult> results =
@@ -244,8 +278,8 @@ InterpolationForecast forecast_interpolation(const SceneValues& scene, const Eff
   Forecast forecast(scene, plan);
   InterpolationForecast result;
   for (const Axis axis : axes) {
-    // Each cell takes three entries, once with the grid's values and once with the needed number.
-    const double affordable = evaluations / std::max(1.0, per_entry) / (6.0 * static_cast<double>(axes.size()));
+    // Each cell takes three entries, once with the grid's values and up to twice with another number of values.
+    const double affordable = evaluations / std::max(1.0, per_entry) / (9.0 * static_cast<double>(axes.size()));
     const auto cells = static_cast<std::size_t>(std::min(affordable, static_cast<double>(kMostCells)));
     result.axes.push_back(forecast.along(axis, cells));
   }

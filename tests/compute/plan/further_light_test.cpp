@@ -53,7 +53,8 @@ TEST(FurtherLight, AnyShapeAndMaterial_IsWhatAllBouncesAddToOne) {
       if (lost < kLeastLost) continue;
       ++compared;
       const double expected = (all[i].r_i - single[i].r_i) / lost;
-      const FurtherLight light = further_light(distribution, point.theta_deg, point.shape, point.index);
+      const FurtherLight light =
+          further_light(distribution, point.theta_deg, point.shape, GrooveFacet(point.index));
       EXPECT_NEAR(light.i, expected, kAccuracy * expected) << "entry " << i;
       const double q = (all[i].r_q - single[i].r_q) / lost;
       EXPECT_NEAR(light.q, q, kAccuracy * expected) << "entry " << i;
@@ -66,11 +67,12 @@ TEST(FurtherLight, AnyShapeAndMaterial_IsWhatAllBouncesAddToOne) {
 }
 
 TEST(FurtherLight, ShapesAtTheEndsOfTheirRanges_AreNumbersFromZeroToOne) {
+  const GrooveFacet facet({1.5, 0.1});
   for (const double theta_deg : {0.0, 1e-6, 45.0, 90.0}) {
     for (const double sigma : {1e-4, 10.0}) {
       for (const double q : {1.001, 2.0, 1e4}) {
         for (const Distribution distribution : {Distribution::kCauchy, Distribution::kGaussian}) {
-          const FurtherLight light = further_light(distribution, theta_deg, {sigma, q}, {1.5, 0.1});
+          const FurtherLight light = further_light(distribution, theta_deg, {sigma, q}, facet);
           EXPECT_GE(light.i, 0.0) << theta_deg << " " << sigma << " " << q;
           EXPECT_LE(light.i + std::abs(light.q), 1.0) << theta_deg << " " << sigma << " " << q;
         }

@@ -94,7 +94,7 @@ TEST(Radiometry, IndicesOfThePoint_ReplaceThoseOfTheRule) {
   const std::vector<FacetOptics> indices = {{3.0, 0.5}};
   const Radiometry radiometry(scene);
   const PointResult replaced =
-      radiometry.point(direction, std::vector<Moments>{moments}, radiometry.optics_with(indices));
+      radiometry.point(radiometry.view(direction, radiometry.optics_with(indices)), std::vector<Moments>{moments});
   const PointResult own = evaluate(scene, direction, moments);
   scene.surface.material.constant = indices[0].index;
   const PointResult other = evaluate(scene, direction, moments);

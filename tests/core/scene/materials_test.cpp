@@ -263,7 +263,7 @@ TEST(MaterialFile_Wrong, NamesFileAndLine) {
            {"e.yml", "a: &a [*a]\nDATA: *a\n", "a DATA item has the keys type and data"},
            {"e.yml", std::string(5U << 20U, 'x'), "e.yml: is longer than 4194304 bytes without its rows of numbers"},
            {"e.yml", "DATA:\n  - type: tabulated n\n    data: |\n        8 1 1\n",
-            "e.yml:4: 1: one value too many after column n; there are 2 columns"},
+            "e.yml:4: 1: one value too many after column n, the last"},
            {"e.yml", "DATA:\n  - type: tabulated n\n    rows: 1\n",
             "e.yml:3: rows: 1: a DATA item has the keys type and data"},
            {"e.yml", "n: 1\n", "e.yml:1: no values of n: it has no list DATA"},

@@ -1,4 +1,5 @@
 // Derivatives of results by numbers of the scene, in memory and in files.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -220,6 +221,37 @@ TEST(Derivatives, ByWavelengthsAtTheEndsOfATable_AreNanOnlyThere) {
   EXPECT_TRUE(std::isnan(found[0][0]) && std::isnan(found[2][0]));
   EXPECT_LT(found[2][1], 1e-3 * std::abs(found[0][1]));
   EXPECT_TRUE(std::isnan(found[0][2]));
+}
+
+// n and k are straight lines between rows 0.1 um apart, so the derivative jumps at each row.
+TEST(Derivatives, ByTheWavelength_AreThoseBetweenTwoRows) {
+  const std::vector<std::string> silica = {"surface.n={}", "surface.k={}", "surface.material=\"SiO2 fused silica\"",
+                                           "surroundings=none", "grid.theta_deg=[60]"};
+  const auto at_um = [&](double um) {
+    return parse(kScene, joined(silica, std::vector<std::string>{fmt::format("spectrum.wavelength_um={}", um),
+                                                                 "accuracy.tolerance=1e-9"}));
+  };
+  for (const double um : {8.53, 10.0, 10.6}) {
+    const auto q_over_i = [&](double own_um) { return results_of(at_um(own_um)).front()[Quantity::kQOverI]; };
+    const double expected = (q_over_i(um + 1e-4) - q_over_i(um - 1e-4)) / 2e-4;
+    const std::vector<std::vector<double>> found = derivatives_with(at_um(um), {"spectrum.wavelength_um"});
+    EXPECT_NEAR(found[1][0], expected, 1e-4 * std::abs(expected)) << um;
+    EXPECT_LT(found[2][0], 1e-3 * std::abs(expected)) << um;
+  }
+}
+
+// Total reflection begins at n = sin(60 degrees) = 0.866, within the step from 0.87.
+TEST(Derivatives, WithAKinkWithinTheStep_HaveItInTheirError) {
+  const std::vector<std::string> mirror = {"surface.k=0", "surface.sigma=0", "grid.sigma=[0]",
+                                           "surface.masking=v-cavity", "grid.theta_deg=[60]"};
+  const auto with_n = [&](double n) {
+    return parse(kScene, joined(mirror, std::vector{fmt::format("surface.n={}", n)}));
+  };
+  const auto q_over_i = [&](double n) { return results_of(with_n(n)).front()[Quantity::kQOverI]; };
+  const double expected = (q_over_i(0.87 + 1e-5) - q_over_i(0.87 - 1e-5)) / 2e-5;
+  const std::vector<std::vector<double>> found = derivatives_with(with_n(0.87), {"surface.n"});
+  EXPECT_GT(std::abs(found[1][0] - expected), 0.1 * std::abs(expected));
+  EXPECT_LE(std::abs(found[1][0] - expected), found[2][0]);
 }
 
 TEST(Derivatives, ByWhatIsNoNumberOfTheScene_AreRefused) {

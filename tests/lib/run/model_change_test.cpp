@@ -177,12 +177,16 @@ void expect_points_like_grid(const Overrides& settings) {
 }
 
 TEST(ModelChange, GridOfAnyAxes_IsThatOfPoints) {
-  const Overrides axes = {"surface.masking=smith", "grid.theta_deg={from=20,to=85,count=14}",
-                          "grid.sigma={from=0.05,to=0.6,count=7}", "grid.q=[1.8,2.5,3,4]"};
+  // Enough values that the grid interpolates along each axis.
+  const Overrides axes = {"surface.masking=smith", "grid.theta_deg={from=20,to=85,count=17}",
+                          "grid.sigma={from=0.05,to=0.6,count=9}", "grid.q={from=1.8,to=4,count=7}"};
   for (const Overrides& more :
-       {Overrides{"surface.material={}", "grid.n={from=1.3,to=3.4,count=6}", "grid.k=[0.01,0.1,0.3,0.6,1]"},
+       {Overrides{"surface.material={}", "grid.n={from=1.3,to=3.4,count=9}", "grid.k=[0.1]"},
+        {"surface.material={}", "grid.n=[2]", "grid.k={from=0.01,to=1,count=9}"},
         {"grid.material=[\"iron\",\"water 25C\"]", "grid.temperature_K=[300,320]"},
-        {"surface.material=\"water 25C\"", "grid.wavelength_um={from=8,to=12,count=20}"},
+        {"surface.material=\"water 25C\"", "grid.wavelength_um={from=8,to=12,count=6}"},
+        {"surface.material=iron", "surface.coating=[{n=1.4,thickness_um=10}]", "grid.sigma=[0.1,0.3]",
+         "grid.wavelength_um={from=8,to=12,count=6}"},
         {"surface.material=\"water 25C\"", "grid.band_um=[[8,9],[9,12]]", "surroundings.temperature_K=240"},
         {"surface.material=iron", "geometry.mode=bistatic", "geometry.view_zenith_deg=70", "source.irradiance=1"},
         {"emission.model=direct", "surface.material={}", "surface.n=2"}})

@@ -131,22 +131,24 @@ TEST(SceneRemarks, NameTheLineOfTheKey_AlsoAfterSettings) {
   }
 }
 
-TEST(SceneRemarks, OnPoints_NameTheirColumn) {
+TEST(SceneRemarks, OnPoints_NameTheirColumnAndTheLineOfTheValue) {
   const auto remarks_of_points = [](const std::string& text, const std::vector<std::string>& settings = {}) {
     return remarks_on(parse(kMinimal, settings), parse_points(text, "p.csv", PointsKind::kDirections));
   };
   for (const auto& [text, remark] : {
-           std::pair("theta_deg\n0\n0.5\n1\n1.2\n1.5\n", "theta_deg: is at most 1.5 degrees; is it in radians?"),
-           {"sigma\n5\n", "sigma: 5 is a slope of 79 degrees, not a height; real surfaces have less than 2"},
-           {"wavelength_um\n9\n4000\n", "wavelength_um: is in micrometres; were nanometres or wavenumbers meant?"},
-           {"temperature_K\n20\n", "temperature_K: 20 K is cold; were degrees Celsius meant?"},
-           {"surface.coating.1.thickness_um\n500\n",
-            "surface.coating.1.thickness_um: is in micrometres; were nanometres meant?"},
+           std::pair("theta_deg\n0\n0.5\n1\n1.2\n1.5\n",
+                     "p.csv:1: theta_deg: is at most 1.5 degrees; is it in radians?"),
+           {"sigma\n5\n", "p.csv:2: sigma: 5 is a slope of 79 degrees, not a height; real surfaces have less than 2"},
+           {"wavelength_um\n9\n4000\n",
+            "p.csv:3: wavelength_um: is in micrometres; were nanometres or wavenumbers meant?"},
+           {"temperature_K\n300\n20\n", "p.csv:3: temperature_K: 20 K is cold; were degrees Celsius meant?"},
+           {"surface.coating.1.thickness_um\n1\n500\n",
+            "p.csv:3: surface.coating.1.thickness_um: is in micrometres; were nanometres meant?"},
            {"surface_azimuth_deg\n30\n",
-            "surface_azimuth_deg: has no effect where slopes are equal along and across; give surface.sigma_cross or "
-            "surface.wind_model"},
+            "p.csv:1: surface_azimuth_deg: has no effect where slopes are equal along and across; give "
+            "surface.sigma_cross or surface.wind_model"},
        }) {
-    EXPECT_EQ(remarks_of_points(text), std::vector<std::string>{std::string("p.csv:1: ") + remark});
+    EXPECT_EQ(remarks_of_points(text), std::vector<std::string>{remark});
   }
   EXPECT_EQ(remarks_of_points("wavelength_um\n15\n", {"surroundings.profile=clear-sky"}).size(), 1U);
   EXPECT_TRUE(remarks_of_points("theta_deg,sigma_cross,surface_azimuth_deg\n40,0.2,30\n").empty());

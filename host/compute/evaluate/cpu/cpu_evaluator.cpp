@@ -82,7 +82,7 @@ std::vector<Moments> by_slope_samples(const MomentsRequest& request, const Kerne
 void CpuEvaluator::note(bool in_double, double seconds) {
   report_.evaluator = "cpu";
   report_.device = processor_name();
-  note_precision(report_.precision, in_double);
+  note_precision(report_.precision, in_double ? "double" : "float");
   report_.kernel_s += seconds;
 }
 

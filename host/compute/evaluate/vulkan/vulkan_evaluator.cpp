@@ -77,7 +77,7 @@ class VulkanEvaluator::Impl {
       throw;
     }
     report += run_->cost();
-    note_precision(report.precision, request.precision == Precision::kDouble);
+    note_precision(report.precision, request.precision == Precision::kDouble ? "double" : "float");
     run_.reset();
     context_.check_validation();
     return moments;
@@ -179,7 +179,7 @@ std::vector<Moments> VulkanEvaluator::evaluate(const MomentsRequest& request, co
 std::vector<ScatteringMatrix> VulkanEvaluator::scatter(const ScatteringRequest& request, const Progress& progress) {
   const Clock::time_point start = Clock::now();
   std::vector<ScatteringMatrix> matrices = scattering_matrices(request, progress);
-  note_precision(report_.precision, true);
+  note_precision(report_.precision, "double");
   report_.beams_s += seconds_since(start);
   return matrices;
 }

@@ -486,8 +486,6 @@ PYBIND11_MODULE(_native, module) {
     all.append(described(dolp::kWind));
     return all;
   });
-  module.def("table_axes",
-             [] { return to_list(dolp::kAllAxes, [](dolp::Axis axis) { return dolp::describe(axis).name; }); });
   module.def("status_bits", [] {
     return to_list(dolp::kStatusBits, [](const dolp::StatusBit& bit) { return py::make_tuple(bit.mask, bit.meaning); });
   });

@@ -100,6 +100,35 @@ class Camera(PackageCase):
         images = xr.Dataset({name: (("y", "x"), np.full((2, 2), value)) for name, value in values.items()})
         np.testing.assert_allclose(dolp.camera_stokes(images, normals, views, [0, 1, 0]).dolp, 0.5, rtol=ROUNDING)
 
+    def test_a_zenith_outside_the_result_is_nan(self):
+        normals = [[np.sin(np.radians(t)), 0, np.cos(np.radians(t))] for t in (0, 40, 60)]
+        table = dolp.table(self.emission, theta_deg=60, sigma=0.2, q=3, evaluator="cpu")
+        for result in (table, table.squeeze(), dolp.evaluate(self.emission, theta_deg=60, evaluator="cpu"),
+                       dolp.evaluate(self.emission, theta_deg=[60, 60.5], evaluator="cpu")):
+            seen = dolp.camera_stokes(result, normals, Z, [0, 1, 0])
+            np.testing.assert_array_equal(np.isnan(seen.dolp), [True, True, False])
+            self.assertAlmostEqual(float(seen.dolp[2]), float(self.curve.dolp[60]), delta=2e-4)  # twice the tolerance
+        one = dolp.camera_stokes(dolp.evaluate(self.emission, theta_deg=60, evaluator="cpu"), Z, Z, [0, 1, 0])
+        self.assertTrue(np.isnan(one.dolp))
+
+    def test_axes_of_a_table_are_no_pixels(self):
+        table = dolp.table(self.emission, theta_deg=[0, 30, 60], sigma=[0.1, 0.2, 0.3, 0.4], q=[3, 4], evaluator="cpu")
+        glint = dolp.evaluate(self.scene.with_({"geometry.mode": "bistatic", "source.irradiance": 20}), theta_deg=[0, 40], evaluator="cpu")
+        for result, shape in ((table.isel(q=0), (3, 4)), (table.isel(theta=1), (4, 2)), (table.isel(theta=1, q=0), (4,))):
+            with self.assertRaisesRegex(dolp.InputError, "select one value of each but theta"):
+                dolp.camera_stokes(result, np.ones((*shape, 3)), Z, [0, 1, 0])
+        for result in (glint, self.curve.drop_vars("theta")):
+            with self.assertRaisesRegex(dolp.InputError, "theta has no zeniths of the camera"):
+                dolp.camera_stokes(result, np.ones((5, 3)), Z, [0, 1, 0])
+
+    def test_vectors_have_any_length(self):
+        normals, view = np.array([[0, 0.3, 1], [0.5, 0.2, 1]]), np.array([0.1, 0, 1])
+        right = dolp.camera_stokes(self.curve, normals, view, [0, 1, 0])
+        for length in (1e-310, 1e-200, 1e155, 1e308):
+            seen = dolp.camera_stokes(self.curve, length * normals, length * view, [0, length, 0])
+            for name in right:
+                np.testing.assert_allclose(seen[name], right[name], rtol=1e-9)
+
     def test_mistakes_are_named(self):
         table = dolp.table(self.emission, sigma=[0.1, 0.2], q=3.0, evaluator="cpu")
         for result, normals, view, up, message in (

@@ -164,5 +164,75 @@ class Axes(PackageCase):
         np.testing.assert_array_equal(dolp.lookup(table, theta_deg=[20, 60], **{key: 207}).dolp, right.dolp)
         np.testing.assert_array_equal(dolp.lookup(table.sel({key: 240}), theta_deg=20).dolp,
                                       dolp.lookup(table, theta_deg=20, **{key: 240}).dolp)
-        with self.assertRaisesRegex(dolp.InputError, "surroundings.temperature_K is missing; the table has 3 values of it"):
-            dolp.lookup(table, theta_deg=20)
+        np.testing.assert_array_equal(dolp.lookup(table.sel({key: [240]}), theta_deg=20).dolp,
+                                      dolp.lookup(table, theta_deg=20, **{key: 240}).dolp)
+        for several, count in ((table, 3), (table.stack(point=(key, "theta")), 12), (table.isel({key: [0]}).drop_vars(key), 1)):
+            with self.assertRaisesRegex(dolp.InputError, f"surroundings.temperature_K is missing; the table has {count} values of it"):
+                dolp.lookup(several, theta_deg=20)
+
+    def test_a_part_of_a_sea_has_its_wind(self):
+        sea = self.scene.with_({"surface.distribution": "gaussian", "surface.masking": "v-cavity", "surface.wind_m_s": 5,
+                                "grid.q": None})
+        point = {"theta_deg": 75, "surface_azimuth_deg": 45, "evaluator": "cpu"}
+        for model in ("directional", "isotropic"):
+            scene = sea.with_({"surface.wind_model": model})
+            table = dolp.table(scene, wind_m_s=[5, 10], **{**point, "theta_deg": [60, 75]})
+            right = dolp.evaluate(scene, wind_m_s=10, **point)
+            self.assertEqual(bool(right.stokes_u != 0), model == "directional")
+            by_wind = table.swap_dims(sigma="wind_m_s")
+            by_wind.sel(wind_m_s=10).to_netcdf(self.folder / "part.nc")
+            joined = xr.concat([table.isel(sigma=[i]) for i in (0, 1)], "sigma")
+            for part in (by_wind.sel(wind_m_s=10), table.isel(sigma=[1]), table.isel(sigma=[1]).squeeze(), joined.isel(sigma=1),
+                         xr.load_dataset(self.folder / "part.nc"), table.isel(sigma=1).drop_vars("sigma"), right):
+                for found in (dolp.lookup(part, **point), dolp.evaluate(dolp.Scene(part), **point),
+                              dolp.lookup(table, wind_m_s=10, **point)):
+                    self.assertEqual((float(found.dolp), float(found.stokes_u)), (float(right.dolp), float(right.stokes_u)))
+                again = dolp.table(dolp.Scene(part), theta_deg=75)
+                self.assertLess(float(abs(again.stokes_u - right.stokes_u).max()), 1e-3)
+                self.assertEqual(dolp.Scene(part)["surface.wind_m_s"], 10)
+                self.assertEqual(float(dolp.lookup(part, wind_m_s=5, **point).dolp), float(dolp.evaluate(scene, wind_m_s=5, **point).dolp))
+            with self.assertRaisesRegex(dolp.InputError, "sigma = .* is not the sigma of wind_m_s = 7, as after interpolating"):
+                dolp.lookup(by_wind.interp(wind_m_s=7), **point)
+        directional = sea.with_({"surface.wind_model": "directional"})
+        for call in (lambda: dolp.Scene(dolp.table(directional, **point).drop_vars("wind_m_s")),
+                     lambda: dolp.table(directional, sigma=[0.1, 0.2], **point)):
+            with self.assertRaisesRegex(dolp.InputError, "sigma without wind_m_s: .*directional.*give wind_m_s"):
+                call()
+        for keys in ({"sigma": 0.1, "surface.wind_m_s": 5}, {"wind_m_s": 5, "surface.sigma": 0.1}):
+            with self.assertRaisesRegex(dolp.InputError, "cannot be combined"):
+                dolp.evaluate(sea, **keys, **point)
+
+    def test_a_part_has_the_values_of_all_its_axes(self):
+        brushed = self.scene.with_({"surface.masking": "v-cavity", "surface.sigma_cross": 0.3})
+        steel = dolp.table(brushed, sigma_cross=[0.05, 0.1], surface_azimuth_deg=[0, 45], **{**ZENITHS, "sigma": [0.1, 0.2]})
+        names = dolp.table(self.scene, material=MATERIALS[1:], band_um=[(8, 9), (10, 12)], temperature_K=[280, 300], **ZENITHS)
+        last = {"material": 1, "band": 1, "temperature": 0}
+        for part in (steel.isel(sigma_cross=1, sigma=0, surface_azimuth_deg=1), names.isel(last),
+                     names.isel({name: [i] for name, i in last.items()}), names.drop_vars(["material", "band"]).isel(last),
+                     names.swap_dims(band="band_low").sel(band_low=10, material="PET", temperature=280)):
+            entry = part.squeeze().sel(theta=60)
+            found = dolp.lookup(part, theta_deg=60)
+            self.assertLess(float(abs(found.dolp - entry.dolp)), 2e-4)  # twice the tolerance
+            self.assertEqual(float(found.dolp), float(dolp.lookup(part.squeeze().isel(theta=3)).dolp))
+
+    def test_a_file_has_the_values_of_its_table(self):
+        for axes in ({"sigma": 0.33, "q": 2}, {"sigma": [0.1, 0.2], "q": 2.5}):
+            dolp.write_table(self.scene, self.folder / "t.nc", evaluator="cpu", **axes)
+            scenes = [dolp.Scene(source) for source in (self.folder / "t.nc", xr.load_dataset(self.folder / "t.nc"))]
+            for key in ("surface.sigma", "surface.q"):
+                self.assertEqual(scenes[0][key], scenes[1][key])
+            self.assertEqual(scenes[0]["surface.q"], axes["q"])
+            self.assertEqual(dolp.Scene(self.folder / "t.nc", {"surface.q": 4})["surface.q"], 4)
+
+    def test_results_over_keys_have_the_scene(self):
+        scene = self.scene.with_({"surface.masking": "v-cavity"})
+        found = dolp.evaluate(scene, theta_deg=[30, 40], evaluator="cpu", **{"surroundings.temperature_K": [200, 240]})
+        self.assertEqual(dolp.Scene(found)["surface.masking"], "v-cavity")
+        one = found.isel(point=1)
+        self.assertEqual(float(dolp.lookup(one, theta_deg=40).dolp), float(one.dolp))
+
+    def test_lookup_computes_every_effect_on_demand(self):
+        table = dolp.table(self.scene.with_({"accuracy.tolerance": 1e-2, "surface.k": 1e-6}), **{**ZENITHS, "k": 1e-6})
+        kept, left = (dolp.lookup(table, theta_deg=60, keep_all=keep_all).attrs["effects"] for keep_all in (True, False))
+        self.assertIn("all are kept", kept)
+        self.assertNotIn("all are kept", left)

@@ -94,6 +94,47 @@ class Package(PackageCase):
         self.assertEqual(set(found.coords), {"ray", "pixel", "plate", "theta", "sigma"})
         self.assertEqual(found.pixel.dims + found.plate.dims, ("ray", "part"))
 
+    def test_arrays_without_dimensions_join_data_arrays_of_their_shape(self):
+        theta, sigma = xr.DataArray([30.0, 60, 85], dims="pixel"), [0.1, 0.2, 0.3]
+        right = dolp.evaluate(self.scene, theta_deg=theta.values, sigma=sigma, q=3, evaluator="cpu")
+        found = dolp.evaluate(self.scene, sigma=sigma, theta_deg=theta, q=3, evaluator="cpu")
+        self.assertEqual((found.dolp.dims, found.sigma.dims, found.q.dims), (("pixel",), ("pixel",), ()))
+        np.testing.assert_array_equal(found.dolp, right.dolp)
+        table = dolp.table(self.scene, evaluator="cpu")
+        np.testing.assert_array_equal(dolp.lookup(table.sel(q=5), theta_deg=theta, sigma=sigma).dolp,
+                                      dolp.lookup(table.sel(q=5), theta_deg=theta.values, sigma=sigma).dolp)
+        angles = {"theta_i_deg": 20, "delta_phi_deg": 180}
+        self.assertEqual(dolp.mueller(self.scene, theta_r_deg=theta, sigma=sigma, **angles).shape, (3, 4, 4))
+        response = dolp.response(self.scene, theta_deg=60, sigma=0.2, q=3, evaluator="cpu")
+        self.assertEqual(dict(dolp.moments(response, n=theta, k=[0.1, 0.2, 0.3]).rho_i.sizes)["pixel"], 3)
+        for wrong in (sigma[:2], [sigma]):
+            with self.assertRaisesRegex(dolp.InputError, r"sigma has the shape .*dimensions pixel with the shape \(3,\); give an array"):
+                dolp.evaluate(self.scene, theta_deg=theta, sigma=wrong, evaluator="cpu")
+
+    def test_coordinates_are_the_numbers_that_the_call_uses(self):
+        table = dolp.table(self.scene, evaluator="cpu")
+        part = table.sel(sigma=0.4, q=5)
+        found = dolp.evaluate(self.scene, theta_deg=part.theta.isel(theta=[0, 1]) + 5, q=3, evaluator="cpu")
+        self.assertEqual((found.theta.values.tolist(), float(found.q), set(found.coords)), ([5, 35], 3, {"theta", "q"}))
+        self.assertEqual(float(dolp.lookup(found, theta_deg=35).dolp), float(found.dolp.sel(theta=35)))
+        stacked = table.isel(q=0).stack(point=("theta", "sigma"))
+        again = dolp.evaluate(self.scene, theta_deg=stacked.theta, sigma=stacked.sigma, q=2, evaluator="cpu").unstack("point")
+        self.assertEqual(dict(again.sizes), {"theta": 4, "sigma": 2})
+        by_q = xr.DataArray([0.1, 0.2], {"q": [2, 3]}, "q")
+        for points, message in (({"theta_deg": 30, "sigma": by_q}, "a value for each q, but q is not given"),
+                                ({"theta_deg": stacked.theta}, "a value for each sigma, but sigma is not given"),
+                                ({"theta_deg": stacked.theta / 2, "sigma": stacked.sigma}, "theta_deg differs from the theta")):
+            with self.assertRaisesRegex(dolp.InputError, message):
+                dolp.evaluate(self.scene, evaluator="cpu", **points)
+
+    def test_names_may_come_from_a_generator(self):
+        key = {"surroundings.temperature_K": [200, 240]}
+        found = dolp.evaluate(self.scene, theta_deg=40, derivatives=iter(["surface.n"]), evaluator="cpu", **key)
+        right = dolp.evaluate(self.scene, theta_deg=40, derivatives=["surface.n"], evaluator="cpu", **key)
+        xr.testing.assert_equal(found, right)
+        table = dolp.table(self.scene, quantities=iter(["dolp"]), evaluator="cpu", **key)
+        self.assertEqual(set(table.data_vars), {"dolp"})
+
     def test_a_complex_n_gives_n_and_k(self):
         apart = dolp.evaluate(self.scene, theta_deg=60, n=[1.5, 2], k=[0.1, 3], evaluator="cpu")
         self.assertEqual(dolp.Scene(self.scene, {"surface.n": 2 + 3j})["surface.k"], 3.0)
@@ -101,6 +142,7 @@ class Package(PackageCase):
             together = dolp.evaluate(self.scene, theta_deg=60, n=index, evaluator="cpu")
             np.testing.assert_array_equal(together.dolp, apart.dolp)
         for call in (lambda: dolp.evaluate(self.scene, theta_deg=60, n=2j, k=1),
+                     lambda: self.scene.with_({"surface": {"n": 2j, "k": 1}}),
                      lambda: dolp.table(self.scene, theta_deg=60, n=[1.5 + 1j, 2])):
             with self.assertRaisesRegex(dolp.InputError, "n: "):
                 call()
@@ -157,8 +199,8 @@ class Package(PackageCase):
         self.assertEqual(dolp.material("germanium").name, "Ge germanium")
         axes = iron.plot()
         self.assertEqual(([line.get_label() for line in axes.lines], axes.get_title()), (["n", "k"], "iron"))
-        for call in (lambda: dolp.material("irn"), lambda: iron.n(1000)):
-            with self.assertRaisesRegex(dolp.InputError, "iron"):
+        for call, message in ((lambda: dolp.material("irn"), "iron"), (lambda: iron.n(1000), "iron"), (lambda: iron.n([8, np.nan]), "NaN")):
+            with self.assertRaisesRegex(dolp.InputError, message):
                 call()
 
     def test_none_removes_a_table(self):

@@ -69,7 +69,11 @@ class Response(PackageCase):
         elsewhere = mean.assign_coords(beta=mean.beta + 1)
         for arguments, message in (({}, "needs either n"), ({"n": 1.5, "r_s": mean, "r_p": mean}, "needs either n"),
                                    ({"r_s": mean}, "needs either n"), ({"n": 0}, "n must be above 0"),
-                                   ({"n": 1.5, "k": -1}, "k from 0 on"), ({"r_s": elsewhere, "r_p": mean}, "r_s: must be a DataArray"),
+                                   ({"n": 1.5, "k": -1}, "k from 0 on"), ({"n": 1.3 + 0.1j, "k": 0.2}, "n: is complex, so that k cannot"),
+                                   ({"r_s": mean, "r_p": mean, "k": 0.2}, "needs either n"),
+                                   ({"n": xr.DataArray([1.3, 1.5], {"theta": [0, 50]}, "theta")}, "of the response differ"),
+                                   ({"r_s": layers * mean, "r_p": layers[:1] * mean}, "of the response differ"),
+                                   ({"r_s": elsewhere, "r_p": mean}, "r_s: must be a DataArray"),
                                    ({"r_s": mean, "r_p": mean.values}, "r_p: must be a DataArray"),
                                    ({"r_s": 2 + mean, "r_p": mean}, "r_s: must be numbers in")):
             with self.assertRaisesRegex(dolp.InputError, message):

@@ -127,6 +127,8 @@ def check_names(what: str, given: Iterable[str], known: list[str]) -> None:
         near = ([axis for axis in known if axis.startswith(f"{name}_")] or [axis for axis in known if axis == meant]
                 or difflib.get_close_matches(name, known, 1))
         keys = [key for key, *_ in _native.keys() if key.split(".")[-1] == name]
+        if "." in name:
+            near, keys = [], [name]
         hint = f"; did you mean {near[0]}?" if near else f'; it is a key of the scene: scene.with_({{"{keys[0]}": ...}})' if keys else ""
         raise InputError(f"{what}: {name} is none of {', '.join(known)}{hint}")
 
@@ -163,7 +165,9 @@ def native_values(overrides: Mapping[str, Any] | None) -> list[tuple[str, Any]]:
         elif key == "surface.coating" and value is not None:
             values += [(key, None), *native_values(_film_keys(key, value))]
         elif key.endswith(".n") and np.ndim(value) == 0 and np.iscomplexobj(value):
-            values += [(key, float(np.real(value))), (f"{key[:-1]}k", float(np.imag(value)))]
+            if (k := f"{key[:-1]}k") in overrides:
+                raise InputError(f"{key}: is complex, so that {k} cannot be given too")
+            values += [(key, float(np.real(value))), (k, float(np.imag(value)))]
         else:
             values.append((key, _value(key, value)))
     return values

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import functools
 import os
-from collections.abc import Hashable
+from collections.abc import Hashable, Iterable
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,8 @@ from . import _native
 from ._arguments import floats
 from ._native import InputError
 from ._points import COORDINATES, KEY_ATTRIBUTES, Frame
+
+_SIGMA_ROUNDING = 1e-6  # relative; a coordinate may have become single precision
 
 
 def dataset_at(parts: _native.Parts, frame: Frame) -> xr.Dataset:
@@ -79,29 +81,56 @@ def concatenated(tables: list[xr.Dataset], key: str, values: np.ndarray) -> xr.D
                  if not all(coordinate.variable.equals(table.coords[name].variable) for table in tables)]
     joined = xr.concat(tables, xr.Variable(key, values, KEY_ATTRIBUTES.get(key)), data_vars=along, coords=differing,
                        compat="override", combine_attrs="drop_conflicts")
-    joined.attrs.pop("scene_hash", None)
-    if "scene_overrides" in first.attrs:  # removes the line with `key`, which has only the first table's value
-        before, _, after = f"\n{first.attrs['scene_overrides']}\n".rpartition(f"\n{key}=")
-        rest = after.partition("\n")[2]
-        joined.attrs["scene_overrides"] = f"{before}\n{rest}".strip("\n")
+    joined.attrs = common_attributes([table.attrs for table in tables], [key])
     return joined
+
+
+def common_attributes(results: list[dict[Any, Any]], keys: Iterable[str]) -> dict[Any, Any]:
+    """The attributes that are equal in all results of scenes that differ only in `keys`, and the overrides of the scene
+    but `keys`."""
+    first = results[0]
+    common = {name: value for name, value in first.items() if name != "scene_hash" and all(other.get(name) == value for other in results)}
+    if "scene_overrides" in first:
+        starts = tuple(f"{key}=" for key in keys)
+        common["scene_overrides"] = "\n".join(line for line in first["scene_overrides"].split("\n") if not line.startswith(starts))
+    return common
 
 
 def scene_of_dataset(table: xr.Dataset) -> _native.Scene:
     """The scene of a table, with the one value of each axis and scene key that has only one value in the table."""
     table = with_names(table)
+    scene = read_scene(table)
+    columns = {name: column for column, name, *_ in _native.axes()}
+    single = {str(name): values.item() for name, values in table.coords.items() if values.size == 1}
+    sigma = single.pop("sigma", None) if "wind_m_s" in single else None
+    if "sigma" in single:
+        check_slopes("Dataset", scene, ["sigma"])
+    values = [(name, value) for name, value in single.items() if name in KEY_ATTRIBUTES]
+    values += [(f"grid.{columns[name]}", [[float(end) for end in value.split("-")]] if name == "band" else [value])
+               for name, value in single.items() if name in columns]
+    chosen = scene.with_(values).for_points()
+    if sigma is not None and not np.isclose(chosen.value("surface.sigma"), sigma, rtol=_SIGMA_ROUNDING, atol=0):
+        raise InputError(f"Dataset: sigma = {sigma:g} is not the sigma of wind_m_s = {single['wind_m_s']:g}, as after interpolating; "
+                         "remove one of them by drop_vars")
+    return chosen
+
+
+def check_slopes(what: str, scene: _native.Scene, names: Iterable[str]) -> None:
+    """Errors: InputError if `names` contain slopes, and the scene has a directional wind, which they would replace."""
+    for name in names:
+        if name in ("sigma", "sigma_cross") and scene.value("surface.wind_model") == "directional":
+            raise InputError(f"{what}: {name} without wind_m_s: in the scene slopes along and across follow from the wind "
+                             f'(surface.wind_model = "directional"); give wind_m_s, or take scene.with_({{"surface.{name}": ...}})')
+
+
+def read_scene(table: xr.Dataset) -> _native.Scene:
+    """The scene that the attributes of a result contain."""
     attributes = _attributes_of(table)
     if "spectral_data" not in attributes:  # tables of dolp 0.2 have n, k and the irradiance of the scene as variables
         rows = [f"{name},{um!r},{value!r}\n" for name in ("index_n", "index_k", "irradiance") if f"{name}_wavelength" in table
                 for um, value in zip(table[f"{name}_wavelength"].values.tolist(), table[name].values.tolist())]
         attributes["spectral_data"] = "".join(rows)
-    scene = _native.Scene.from_attributes(attributes, "Dataset")
-    columns = {name: column for column, name, *_ in _native.axes()}
-    single = {str(name): values.item() for name, values in table.coords.items() if values.size == 1}
-    values = [(name, value) for name, value in single.items() if name in KEY_ATTRIBUTES]
-    values += [(f"grid.{columns[name]}", [[float(end) for end in value.split("-")]] if name == "band" else [value])
-               for name, value in single.items() if name in _native.table_axes()]
-    return scene.with_(values).for_points() if values else scene
+    return _native.Scene.from_attributes(attributes, "Dataset")
 
 
 def _attributes_of(table: xr.Dataset) -> dict[str, str | float]:

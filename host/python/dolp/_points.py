@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from . import _native
-from ._arguments import Array, check_names, encodable, floats, input_path, short
+from ._arguments import Array, encodable, floats, input_path, short
 from ._native import InputError
 
 # Name and attributes of the coordinate that belongs to each column of points. Table files have the same names.
@@ -20,6 +20,10 @@ COORDINATES |= {name: (name, {"long_name": long_name, "units": "degree"}) for na
     ("theta_i_deg", "zenith angle of incidence"), ("theta_r_deg", "zenith angle of the view"),
     ("delta_phi_deg", "azimuth between the directions, 180 on the specular side"))}
 KEY_ATTRIBUTES = {key: {"long_name": meaning, "units": unit} for key, unit, _, _, meaning in _native.keys()}
+# The argument of a call that gives each coordinate of tables; some coordinates follow from other numbers.
+NUMBERS = {name: column for column, (name, _) in COORDINATES.items()} | {key: key for key in KEY_ATTRIBUTES} | {
+    "material_name": "material", "band_low": "band_um", "band_high": "band_um", "index_n": "n", "index_k": "k",
+    "irradiance": "source.irradiance"}
 
 
 class Frame(NamedTuple):
@@ -28,58 +32,55 @@ class Frame(NamedTuple):
     coordinates: dict[Hashable, xr.Variable]
 
 
-def columns_of(points: Mapping[str, Array], labels: Mapping[str, list[str]] = {},
-               has_keys: bool = False) -> tuple[Frame, dict[str, np.ndarray]]:
+def without_unused(points: Mapping[str, Array]) -> dict[str, Array]:
+    """Drops coordinates of DataArrays that name numbers of a scene, such as the sigma of `t.sel(sigma=0.4).theta`, because
+    the call does not use them. Errors: InputError if an index of a DataArray has values of a number that is not given."""
+    used = dict(points)
+    for column, values in points.items():
+        for name in values.coords if isinstance(values, xr.DataArray) else ():
+            if name not in values.indexes:
+                used[column] = used[column].drop_vars(name) if name in NUMBERS else used[column]
+            elif NUMBERS.get(name, column) not in points and values[name].dtype.kind in "iuf":
+                raise InputError(f"points: {column} has a value for each {name}, but {NUMBERS[name]} is not given; give it too, or "
+                                 f"rename the coordinate {name}")
+    return used
+
+
+def columns_of(points: Mapping[str, Array], labels: Mapping[str, list[str]] = {}) -> tuple[Frame, dict[str, np.ndarray]]:
     """Broadcasts the arrays of `points`. Returns the shape, dimensions and coordinates of the result, and the points as
     columns for the library. A column has one value for all points, or one value per point.
 
     `labels`: the known names of materials and bands. Columns have positions in these lists instead of names.
     """
-    check_names("points", [name for name in points if not (has_keys and "." in name)], list(COORDINATES))
     points = {name: _positions(name, values, labels[name]) if name in labels else values
               for name, values in with_real_index(points).items()}
-    if any(isinstance(values, xr.DataArray) for values in points.values()):
-        arrays = {name: values.copy(data=floats(name, values)) if isinstance(values, xr.DataArray)
-                  else xr.DataArray(floats(name, values)) for name, values in points.items()}
-        try:
-            xr.align(*arrays.values(), join="exact")
-        except ValueError as error:
-            raise InputError(f"points: the coordinates or sizes of DataArrays differ: {error}") from None
-        coordinates = {name: coordinate.variable.copy(deep=False)
-                       for array in arrays.values() for name, coordinate in array.coords.items()}
-        own = {column: array.variable for column, array in arrays.items()}
-        arrays = dict(zip(arrays, xr.broadcast(*arrays.values())))
-        template = next(iter(arrays.values()))
-        points = {name: array.values for name, array in arrays.items()}
-        shape, dims = template.shape, template.dims
+    arrays = {name: floats(name, values) for name, values in points.items()}
+    named = [values for values in points.values() if isinstance(values, xr.DataArray)]
+    if any(values.ndim for values in named):
+        shape, dims, variables = _along_named(points, arrays)
     else:
-        points = {name: floats(name, values) for name, values in points.items()}
         try:
-            shape = np.broadcast_shapes(*(values.shape for values in points.values()))
+            shape = np.broadcast_shapes(*(values.shape for values in arrays.values()))
         except ValueError:
-            shapes = ", ".join(f"{name} {values.shape}" for name, values in points.items())
+            shapes = ", ".join(f"{name} {values.shape}" for name, values in arrays.items())
             raise InputError(f"points: shapes do not broadcast: {shapes}") from None
-        dims, coordinates = _dimensions(points, shape)
-        own = {}
-    for column, values in points.items():
+        dims, variables = _along_axes(arrays, shape)
+    coordinates = {name: coordinate.variable.copy(deep=False) for values in named for name, coordinate in values.coords.items()}
+    levels = {name for values in named for name in values.indexes if name not in values.dims}  # of stacked dimensions
+    for column, variable in variables.items():
         name, known = COORDINATES.get(column) or (column, KEY_ATTRIBUTES.get(column, {}))
-        if name in coordinates:
-            coordinates[name].attrs.update(known)
-        elif name in dims and column in own and own[column].dims in ((), (name,)):
-            coordinates[name] = own[column].set_dims({name: shape[dims.index(name)]}).copy()
-            coordinates[name].attrs.update(known)
-        elif name in dims and own:
-            raise InputError(f"points: {column} varies along more dimensions than {name}, which are {', '.join(map(str, dims))}; "
-                             f"rename the dimension {name}")
-        else:
-            along = dims if values.ndim > 0 else ()
-            coordinates[name] = xr.Variable(along, np.broadcast_to(values, shape) if along else values, known)
-    for column in labels.keys() & points.keys():
-        at = coordinates[COORDINATES[column][0]]
-        if at.dtype.kind == "f":  # positions; a DataArray with a coordinate of names keeps it
-            at.data = np.array(labels[column], object)[at.values.astype(int)]
-    columns = {name: np.broadcast_to(values, shape if values.ndim > 0 else ()).ravel()
-               for name, values in points.items()}
+        if name in dims:
+            if not set(variable.dims) <= {name}:
+                raise InputError(f"points: {column} varies along more dimensions than {name}, which are {', '.join(map(str, dims))}; "
+                                 f"rename the dimension {name}")
+            variable = variable.set_dims({name: shape[dims.index(name)]})
+        values = np.array(labels[column], object)[variable.values.astype(int)] if column in labels else variable.values
+        if name not in levels:
+            coordinates[name] = xr.Variable(variable.dims, values, known)
+        elif not np.array_equal(coordinates[name].values, values):
+            raise InputError(f"points: {column} differs from the {name} that a stacked dimension has; remove it by reset_index")
+    columns = {column: (variable.set_dims(dict(zip(dims, shape))) if variable.ndim else variable).values.ravel()
+               for column, variable in variables.items()}
     return Frame(shape, dims, coordinates), columns
 
 
@@ -100,20 +101,40 @@ def _positions(name: str, values: Any, labels: list[str]) -> Any:
     return values.copy(data=positions) if isinstance(values, xr.DataArray) else positions
 
 
-def _dimensions(points: Mapping[str, np.ndarray],
-                shape: tuple[int, ...]) -> tuple[tuple[str, ...], dict[str, xr.Variable]]:
-    """Names and coordinates of the dimensions. Only dimensions along which a single column varies have coordinates."""
-    dims, coordinates = [], {}
+def _along_named(points: Mapping[str, Array], arrays: Mapping[str, np.ndarray]
+                 ) -> tuple[tuple[int, ...], tuple[Hashable, ...], dict[str, xr.Variable]]:
+    """The shape and dimensions to which the DataArrays in `points` broadcast, and each column along its dimensions.
+    Other arrays have this shape, or are numbers."""
+    named = [values for values in points.values() if isinstance(values, xr.DataArray)]
+    try:
+        xr.align(*named, join="exact")
+    except ValueError as error:
+        raise InputError(f"points: the coordinates or sizes of DataArrays differ: {error}") from None
+    whole = xr.broadcast(*named)[0]
+    for name, array in arrays.items():
+        if not isinstance(points[name], xr.DataArray) and array.shape not in ((), whole.shape):
+            raise InputError(f"points: {name} has the shape {array.shape}, and the DataArrays have the dimensions "
+                             f"{', '.join(map(str, whole.dims))} with the shape {whole.shape}; give an array of this shape, or a DataArray")
+    dims = {name: getattr(points[name], "dims", whole.dims if array.ndim else ()) for name, array in arrays.items()}
+    return whole.shape, whole.dims, {name: xr.Variable(dims[name], array) for name, array in arrays.items()}
+
+
+def _along_axes(arrays: Mapping[str, np.ndarray], shape: tuple[int, ...]) -> tuple[tuple[str, ...], dict[str, xr.Variable]]:
+    """Names of the dimensions of `shape`, and each column along its dimensions. A dimension has the name of a column only
+    if no other column varies along it."""
+    dims: list[str] = []
+    alone = {}
     for axis, size in enumerate(shape):
-        along = [column for column, values in points.items()
+        along = [column for column, values in arrays.items()
                  if values.ndim >= len(shape) - axis and values.shape[axis - len(shape)] == size]
         name = COORDINATES.get(along[0], along)[0] if len(along) == 1 else None
-        if name and points[along[0]].size == size and name not in coordinates:
+        if name and arrays[along[0]].size == size and name not in dims:
             dims.append(name)
-            coordinates[name] = xr.Variable(name, points[along[0]].ravel())
+            alone[along[0]] = xr.Variable(name, arrays[along[0]].ravel())
         else:
             dims.append("point" if len(shape) == 1 else f"point_{axis}")
-    return tuple(dims), coordinates
+    return tuple(dims), {column: alone[column] if column in alone else xr.Variable(dims, np.broadcast_to(values, shape)) if values.ndim
+                         else xr.Variable((), values) for column, values in arrays.items()}
 
 
 def with_real_index(points: Mapping[str, Array]) -> Mapping[str, Array]:

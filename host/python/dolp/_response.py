@@ -46,7 +46,7 @@ def response(scene: Scene, *, evaluator: str | None = None, device: str = "", **
     return table
 
 
-def moments(response: xr.Dataset, *, n: Array | None = None, k: Array = 0.0, r_s: xr.DataArray | None = None,
+def moments(response: xr.Dataset, *, n: Array | None = None, k: Array | None = None, r_s: xr.DataArray | None = None,
             r_p: xr.DataArray | None = None) -> xr.Dataset:
     """Computes the reflectances rho_i and rho_q of rough materials, their error bound rho_error, and the albedo. The
     specular weight k_s is 1, and there is no diffuse part. `response` is a response table or a part of a table, such as
@@ -63,7 +63,8 @@ def moments(response: xr.Dataset, *, n: Array | None = None, k: Array = 0.0, r_s
     >>> m.rho_i.dims, bool(abs(m.rho_i[..., 1] - dolp.table(scene, theta_deg=60).rho_i).max() < 1e-4)
     (('theta', 'sigma', 'q', 'n'), True)
     """
-    if (n is None) == (r_s is None and r_p is None) or (r_s is None) != (r_p is None):
+    has_both = r_s is not None and r_p is not None
+    if has_both == (n is not None) or (r_s is None) != (r_p is None) or (n is None and k is not None):
         raise InputError("moments: needs either n, and k where it is not 0, or both r_s and r_p")
     _check_entries(response)
     beta = response.beta
@@ -75,6 +76,10 @@ def moments(response: xr.Dataset, *, n: Array | None = None, k: Array = 0.0, r_s
         index, beyond = _index(n, k), ""
         r_s, r_p = _fresnel(index, np.cos(np.deg2rad(beta)))
         distance = _distance(response, index, r_s, r_p)
+    try:
+        xr.align(response, r_s, r_p, join="exact")
+    except ValueError as error:
+        raise InputError(f"moments: the coordinates or sizes of the materials and of the response differ: {error}") from None
     mean, half = (r_s + r_p) / 2, (r_s - r_p) / 2
     known = {"rho_i": (response.response_i.dot(mean, "beta"), "hemispherical-directional reflectance, mean of s and p"),
              "rho_q": (response.response_q.dot(half, "beta"),
@@ -112,8 +117,9 @@ def _check_entries(response: xr.Dataset) -> None:
                          f"them; {_HINT}")
 
 
-def _index(n: Array, k: Array) -> xr.DataArray:
-    frame, columns = columns_of({"n": n} if np.iscomplexobj(n) else {"n": n, "k": k})
+def _index(n: Array, k: Array | None) -> xr.DataArray:
+    given = {"n": n} if k is None else {"n": n, "k": k}
+    frame, columns = columns_of(given if np.iscomplexobj(n) else {"k": 0.0, **given})
     if not (np.all(columns["n"] > 0) and np.all(columns["k"] >= 0)):
         raise InputError("moments: n must be above 0, and k from 0 on")
     index = np.broadcast_to(columns["n"] + 1j * columns["k"], int(np.prod(frame.shape))).reshape(frame.shape)

@@ -12,10 +12,13 @@ import xarray as xr
 
 from . import _native
 from ._arguments import Array, Path, axis_values, check_names, label_values, device_name, flag, native_path, short, word, word_list
-from ._datasets import concatenated, dataset_at, table_dataset
+from ._datasets import check_slopes, common_attributes, concatenated, dataset_at, table_dataset
 from ._native import InputError
-from ._points import KEY_ATTRIBUTES, columns_of, with_real_index
+from ._points import KEY_ATTRIBUTES, columns_of, with_real_index, without_unused
 from ._scene import Scene
+
+_COLUMNS = [column for column, *_ in _native.axes()]
+_PAIRS = ["theta_i_deg", "theta_r_deg", "delta_phi_deg", "sigma", "wind_m_s", "q", "n", "k", "sigma_cross", "surface_azimuth_deg"]
 
 
 def table(scene: Scene, *, evaluator: str | None = None, device: str = "", keep_all: bool = False,
@@ -27,7 +30,8 @@ def table(scene: Scene, *, evaluator: str | None = None, device: str = "", keep_
     and n, k or material; in bistatic mode view_zenith_deg and relative_azimuth_deg) replace axes of the scene. Each axis
     is a number or a list, and the table has all combinations of their values. Materials are names, as in `dolp.table(scene, material=["gold (Ordal)",
     "iron"])`, or "all". A complex n gives n and k. Winds become a second coordinate along sigma;
-    `t.swap_dims(sigma="wind_m_s").sel(wind_m_s=5)` selects a wind.
+    `t.swap_dims(sigma="wind_m_s").sel(wind_m_s=5)` selects a wind. A scene with surface.wind_model = "directional" takes
+    winds, not sigma.
 
     `quantities`: the variables of the table, such as `["dolp", "status"]`; all if there are none.
 
@@ -46,15 +50,15 @@ def table(scene: Scene, *, evaluator: str | None = None, device: str = "", keep_
     ('emission.temperature_K', 'theta', 'sigma', 'q')
     """
     key = next((name for name in axes if "." in name), None)
+    quantities, derivatives = word_list("quantities", quantities), word_list("derivatives", derivatives)
     if key is None:
         on_axes = with_axes(native_scene(scene), axes)
         whole = table_dataset(*native_evaluator(scene, evaluator, device).table(
-            on_axes, flag("keep_all", keep_all), word_list("quantities", quantities), word_list("derivatives", derivatives)))
+            on_axes, flag("keep_all", keep_all), quantities, derivatives))
         scene._warn_of_model(whole.get("status", 0), whole.attrs)
         return whole
     optional = ("temperature_K", "view_zenith_deg", "relative_azimuth_deg", "sigma_cross", "surface_azimuth_deg")
-    columns = [column for column, *_ in _native.axes()
-               if column not in optional or column in axes or scene[f"grid.{column}"] is not None]
+    columns = [column for column in _COLUMNS if column not in optional or column in axes or scene[f"grid.{column}"] is not None]
     _check_varied("axes", [key], columns)
     others = {name: values for name, values in axes.items() if name != key}
     values = np.array(axis_values(key, axes[key]))
@@ -92,8 +96,10 @@ def evaluate(scene: Scene, *, evaluator: str | None = None, device: str = "", ke
     relative_azimuth_deg): arrays of the same shape are combined value by value, unlike the axes of `table`. Numbers that
     you do not give come from the scene. A complex n gives n and k. Any other number of the scene can be given too, with
     its key as the name; each of its values is a separate run.
-    DataArrays keep their dimensions and coordinates. Without DataArrays, a dimension along which only one array varies
-    gets the name (theta, sigma, q, n, k or wavelength, as in tables) and the values of this array.
+    DataArrays keep their dimensions, and coordinates that are no numbers of a scene. Beside them, an array without names
+    of dimensions must be a number or have the shape to which the DataArrays broadcast; its values join theirs one by one.
+    Without DataArrays, a dimension along which only one array varies gets the name (theta, sigma, q, n, k or wavelength,
+    as in tables) and the values of this array.
 
     >>> float(dolp.evaluate(scene, theta_deg=40).dolp.round(4))
     0.0295
@@ -116,13 +122,18 @@ def _evaluated(scene: Scene, evaluator: str | None, device: str, keep_all: bool,
                derivatives: Iterable[str] = ()) -> xr.Dataset:
     """Computes points for `evaluate` and `lookup`."""
     native, engine = native_scene(scene), native_evaluator(scene, evaluator, device)
-    frame, columns = columns_of(points, native.labels(), has_keys=True)
-    _check_labels(native, columns)
+    check_names("points", [name for name in points if "." not in name], _COLUMNS)
+    frame, columns = columns_of(without_unused(points), native.labels())
+    for name, labels in native.labels().items():
+        if len(labels) > 1 and name not in columns:
+            raise InputError(f"points: {name} is missing, one of {', '.join(labels)}")
     varied = {key: columns.pop(key) for key in [*columns] if "." in key}
     _check_varied("points", varied, columns)
 
-    def run(own: _native.Scene, of_scene: dict[str, np.ndarray]) -> _native.Parts:
-        return engine.evaluate(own, of_scene, flag("keep_all", keep_all), word_list("derivatives", derivatives))
+    effects, keys = flag("keep_all", keep_all), word_list("derivatives", derivatives)
+
+    def run(own: _native.Scene, values: dict[str, np.ndarray]) -> _native.Parts:
+        return engine.evaluate(own, values, effects, keys)
 
     results = dataset_at(
         _over_keys(run, native, columns, varied) if varied and 0 not in frame.shape else run(native, columns), frame)
@@ -130,14 +141,16 @@ def _evaluated(scene: Scene, evaluator: str | None, device: str, keep_all: bool,
     return results
 
 
-def lookup(table: Path | xr.Dataset, *, evaluator: str | None = None, device: str = "",
+def lookup(table: Path | xr.Dataset, *, evaluator: str | None = None, device: str = "", keep_all: bool = False,
            derivatives: Iterable[str] = (), **points: Array) -> xr.Dataset:
     """Values between the entries of a table: computed from the table's scene, with error bounds as from `evaluate`.
 
     `table`: the file of a table (.nc), or a Dataset with a table or a part of one. Only its attributes and the values of
     its axes count, so it may be a slice, or may be interpolated, averaged or edited.
-    `points` and `derivatives`: as for `evaluate`. An axis with one value in the table, such as q in `t.sel(q=8)`, gives
-    the value of points that do not name it.
+    A file of a part of a table, which xarray wrote, counts as the whole table: read it by xarray.open_dataset.
+    `points` and the other arguments: as for `evaluate`. An axis with one value in the table, such as q in `t.sel(q=8)`,
+    gives the value of points that do not name it. For another tolerance or precision, change the table's scene, as in
+    `dolp.evaluate(dolp.Scene(t, {"accuracy.tolerance": 1e-6}).for_points(), theta_deg=33)`.
 
     >>> t = dolp.table(scene, theta_deg=[0, 40, 80], sigma=[0.1, 0.2])
     >>> bool(dolp.lookup(t.sel(sigma=0.2), theta_deg=33).dolp == dolp.evaluate(scene, theta_deg=33, sigma=0.2).dolp)
@@ -148,25 +161,31 @@ def lookup(table: Path | xr.Dataset, *, evaluator: str | None = None, device: st
     scene = Scene(table)
     if not scene.is_of_table:
         raise InputError(f"table: {short(table)} is a scene and no table; use dolp.evaluate")
-    for key in KEY_ATTRIBUTES.keys() & table.dims if isinstance(table, xr.Dataset) else ():
-        if key not in points:
-            raise InputError(f"points: {key} is missing; the table has {table.sizes[key]} values of it")
-    return _evaluated(scene.for_points(), evaluator, device, False, points, derivatives)
+    for key in (*table.dims, *table.coords) if isinstance(table, xr.Dataset) else ():
+        if key in KEY_ATTRIBUTES and key not in points and (table[key].size != 1 or key not in table.coords):
+            raise InputError(f"points: {key} is missing; the table has {table[key].size} values of it")
+    return _evaluated(scene.for_points(), evaluator, device, keep_all, points, derivatives)
 
 
 def mueller(scene: Scene, *, evaluator: str | None = None, device: str = "", **points: Array) -> np.ndarray:
     """Mueller matrices of the pBRDF in 1/sr, with shape (..., 4, 4).
 
-    `points`: theta_i_deg, theta_r_deg, delta_phi_deg (180 on the specular side), and optionally sigma, q, n, k. A
-    matrix is NaN if the model has no finite value.
+    `points`: theta_i_deg, theta_r_deg, delta_phi_deg (180 on the specular side), and optionally sigma or wind_m_s, q, n,
+    k, sigma_cross, surface_azimuth_deg. Arrays are combined as by `evaluate`. Other numbers come from the scene:
+    `scene.with_({"surface.specular": 0.1})`. A matrix is NaN if the model has no finite value.
 
     >>> m = dolp.mueller(scene, theta_i_deg=[10, 20, 30], theta_r_deg=30, delta_phi_deg=180)
     >>> m.shape, bool(m[2, 0, 0] > m[0, 0, 0])
     ((3, 4, 4), True)
     """
+    native = native_scene(scene)
+    check_names("points", points, _PAIRS)
+    for name, key in ("material", "surface.material"), ("band_um", "spectrum.wavelength_um"):
+        if len(labels := native.labels()[name]) > 1:
+            raise InputError(f"scene: has {', '.join(labels)} on the axis {name}, of which a Mueller matrix needs one: "
+                             f'scene.with_({{"{key}": ...}})')
     frame, columns = columns_of(points)
-    _check_labels(native_scene(scene), columns)
-    matrices = native_evaluator(scene, evaluator, device).mueller(native_scene(scene), columns)
+    matrices = native_evaluator(scene, evaluator, device).mueller(native, columns)
     return matrices.reshape(frame.shape + (4, 4))
 
 
@@ -227,7 +246,8 @@ def native_surface(scene: Scene) -> _native.Scene:
 
 def with_axes(native: _native.Scene, axes: Mapping[str, Array]) -> _native.Scene:
     """Replaces axes of the scene's grid by `axes`. The names in `axes` are column names, such as theta_deg."""
-    check_names("axes", axes, [column for column, *_ in _native.axes()])
+    check_names("axes", axes, _COLUMNS)
+    check_slopes("axes", native, axes)
     if np.iscomplexobj(axes.get("n")):
         if np.size(axes["n"]) > 1:
             raise InputError("n: several complex values form no grid of n and k; give the lists n and k, or use dolp.evaluate")
@@ -236,21 +256,17 @@ def with_axes(native: _native.Scene, axes: Mapping[str, Array]) -> _native.Scene
                          for axis, values in axes.items()])
 
 
-def _check_labels(scene: _native.Scene, columns: Iterable[str]) -> None:
-    """Errors: InputError if the scene has several materials or bands and the points have no column for them."""
-    for name, labels in scene.labels().items():
-        if len(labels) > 1 and name not in columns:
-            raise InputError(f"points: {name} is missing, one of {', '.join(labels)}")
-
-
 def _check_varied(what: str, keys: Iterable[str], columns: Iterable[str]) -> None:
-    """Errors: InputError if one of `keys` and one of `columns` name the same number, such as surface.n and n."""
+    """Errors: InputError if one of `keys` and one of `columns` name the same number, such as surface.n and n, or give the
+    slopes in two ways."""
     for key in keys:
         table, _, column = key.partition(".")
         if table == "grid":
             raise InputError(f"{what}: {key} is a list of the grid; the name of this argument is {column}")
         if column in columns and table in ("surface", "spectrum", "emission", "geometry"):
             raise InputError(f"{what}: {key} and {column} are the same")
+        if (other := {"surface.sigma": "wind_m_s", "surface.wind_m_s": "sigma"}.get(key)) in columns:
+            raise InputError(f"{what}: {key} and {other} cannot be combined")
 
 
 def _over_keys(run: Callable[..., _native.Parts], scene: _native.Scene, columns: dict[str, np.ndarray],
@@ -260,14 +276,15 @@ def _over_keys(run: Callable[..., _native.Parts], scene: _native.Scene, columns:
     different, which = np.unique(np.stack(np.broadcast_arrays(*varied.values()), axis=-1), axis=0, return_inverse=True)
     size = max(values.size for values in (*columns.values(), *varied.values()))
     which = np.broadcast_to(which.ravel(), size)
-    found: _native.Parts | None = None
+    found: tuple[list[Any], np.ndarray] | None = None
+    attributes = []
     for i, values in enumerate(different.tolist()):
         at = np.flatnonzero(which == i)
         own = {name: column if column.size == 1 else column[at] for name, column in columns.items()}
         part = run(scene.with_([*zip(varied, values)]), own)
         if found is None:
-            found = ([(*facts, np.empty(size)) for *facts, _ in part[0]], np.empty(size, np.uint32), part[2])
+            found = ([(*facts, np.empty(size)) for *facts, _ in part[0]], np.empty(size, np.uint32))
         for (*_, whole), (*_, results) in zip((*found[0], (found[1],)), (*part[0], (part[1],))):
             whole[at] = results
-        found = (*found[:2], {name: value for name, value in found[2].items() if part[2].get(name) == value})
-    return found
+        attributes.append(part[2])
+    return (*found, common_attributes(attributes, varied))

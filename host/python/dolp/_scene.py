@@ -1,7 +1,6 @@
 """Scenes and built-in materials."""
 from __future__ import annotations
 
-import os
 from collections.abc import Hashable, Mapping
 from typing import Any
 
@@ -58,6 +57,8 @@ class Scene:
             if isinstance(path, str) and "\n" in path:
                 raise InputError(f"path: {short(path)} is the text of a scene; write Scene(text=...)")
             self._native = _native.Scene.from_file(input_path("path", path), values)
+            if self._native.is_of_table:
+                self._native = self._native.for_points().with_(values)
         elif isinstance(text, str):
             self._native = _native.Scene.from_text(text, values, "text")
         else:
@@ -122,7 +123,7 @@ class Scene:
             return
         self._has_model_warning = True
         much = "I or DOLP by an estimated more than 5 %"
-        if attributes and "model_change_dolp" in attributes:
+        if attributes and {"model_change", "model_change_dolp"} <= attributes.keys():
             much = (f"I by up to {100 * float(attributes['model_change']):.2g} % and DOLP by up to "
                     f"{float(attributes['model_change_dolp']):.2g} points")
         warn(f"{self!r}: light that single scattering loses, or that the masking creates, changes {much} "
@@ -184,6 +185,8 @@ class Material:
 
     def _at(self, wavelength_um: Array) -> np.ndarray:
         wavelengths = floats("wavelength_um", wavelength_um)
+        if np.isnan(wavelengths).any():
+            raise InputError("wavelength_um: holds NaN")
         values = [self._native.refractive_index(value) for value in wavelengths.ravel().tolist()]
         return np.array(values).reshape(wavelengths.shape + (2,))
 

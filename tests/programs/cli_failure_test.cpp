@@ -140,7 +140,7 @@ TEST_F(CommandLine, InputThatWasProbablyMeantOtherwise_IsOneWarningAndGoesOn) {
          "=unit.dat: the file gives no unit of the wavelength; it is taken in um"},
         {"plan scene.toml --set geometry.mode=bistatic", "=bistatic: without [source] nothing depends on theta"},
         {"eval scene.toml --points nm.csv -o o.csv --evaluator cpu --quiet",
-         "nm.csv:1: wavelength_um: is in micrometres"},
+         "nm.csv:2: wavelength_um: is in micrometres"},
         {"fit scene.toml --data radians.csv --vary surface.n=1.4:1.6 --starts 1 --evaluator cpu",
          "radians.csv: theta_deg is at most 1.2 degrees"}}) {
     const Outcome outcome = succeeded(dolp(line));

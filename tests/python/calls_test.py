@@ -41,7 +41,7 @@ class Calls(PackageCase):
         with self.assertWarnsRegex(dolp.InputWarning, "points: theta_deg: is at most 1.5 degrees; is it in radians?") as caught:
             dolp.evaluate(self.scene, theta_deg=[0, 0.5, 1, 1.5], evaluator="cpu")
         self.assertEqual(caught.filename, __file__)
-        with self.assertWarnsRegex(dolp.InputWarning, "points: temperature_K: 10 K is cold"):
+        with self.assertWarnsRegex(dolp.InputWarning, r"points\[0\]: temperature_K: 10 K is cold"):
             dolp.evaluate(self.scene, theta_deg=30, temperature_K=[10, 300], evaluator="cpu")
         with self.assertWarnsRegex(dolp.InputWarning, "data: theta_deg is at most 1.2 degrees"):
             dolp.fit(self.scene, {"theta_deg": [0.5, 1.2], "dolp": [0.01, 0.1]}, {"surface.n": (1.4, 1.6)}, starts=1, evaluator="cpu")

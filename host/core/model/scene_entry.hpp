@@ -125,6 +125,9 @@ class SceneEntries {
   /// The n and k that entries have: the combinations of both axes of a grid, or n and k of each point that has them.
   std::vector<OpticalConstants> own_indices() const;
 
+  /// A copy for a scene with other slopes. The points of a list have their own.
+  SceneEntries with_slopes(const CrossSlopes& slopes) const { return is_grid_ ? grid(axes_, index_, slopes) : *this; }
+
   // The functions from here to index_at() need a grid.
   SceneEntry grid_entry(const PerAxis& on_axes) const;
   const Axes& axes() const { return axes_; }

@@ -113,10 +113,14 @@ std::vector<double> read_numbers(const Reader& reader, const std::string& name, 
   return values;
 }
 
-std::vector<double> read_axis(const Reader& reader, const std::string& name, std::size_t most) {
+/// True for a variable without a dimension, as the axes have in a part of a table that xarray saved.
+bool is_lone(const Reader& reader, const std::string& name) {
   const std::optional<int> variable = reader.find(name);
-  if (variable && reader.variable_shape(*variable, name).empty())
-    reader.fail(name + ": has one value and no dimension, as in a part of a table");
+  return variable && reader.variable_shape(*variable, name).empty();
+}
+
+std::vector<double> read_axis(const Reader& reader, const std::string& name, std::size_t most) {
+  if (is_lone(reader, name)) reader.fail(name + ": has one value and no dimension, as in a part of a table");
   return read_numbers(reader, name, most);
 }
 
@@ -387,6 +391,21 @@ std::vector<Attribute> read_attributes(const fs::path& path) {
   if (std::string data = spectral_data_text(head); !data.empty())
     head.attributes.push_back({kSpectralData, std::move(data)});
   return head.attributes;
+}
+
+std::vector<std::pair<std::string, double>> read_lone_values(const fs::path& path) {
+  const Reader reader(path);
+  const bool has_wind = is_lone(reader, kWind.name);
+  std::vector<std::pair<std::string, double>> values;
+  const auto add = [&](const char* column, const char* name) {
+    if (is_lone(reader, name)) values.emplace_back(column, read_numbers(reader, name, 1).front());
+  };
+  if (has_wind) add(kWind.column, kWind.name);
+  for (const Axis axis : kAllAxes) {
+    const bool follows_wind = has_wind && axis == Axis::kSigma;
+    if (!describe(axis).has_labels && !follows_wind) add(describe(axis).column, describe(axis).name);
+  }
+  return values;
 }
 
 TableValues read_table(const fs::path& path) {

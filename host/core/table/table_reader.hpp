@@ -4,6 +4,9 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "table/table.hpp"
 
@@ -37,5 +40,9 @@ class TableReader {
 /// The attributes of a table, from which table_scene() restores the scene. Does not look at axes and values, so the
 /// file may hold a part of a table. Errors: InputError.
 std::vector<Attribute> read_attributes(const std::filesystem::path& path);
+
+/// In a part of a table that xarray saved, axes may have one value and no dimension. Returns the columns of these axes,
+/// such as "sigma", with their values; wind_m_s instead of sigma if the part has both.
+std::vector<std::pair<std::string, double>> read_lone_values(const std::filesystem::path& path);
 
 }  // namespace dolp

@@ -49,7 +49,10 @@ Scene Scene::from_file(const std::filesystem::path& path, const std::vector<Sett
   if (path.extension() == ".nc" || is_table_file(path.string())) {
     const Scene scene = from_attributes(read_attributes(path), path.string());
     check_has_material(scene, path.string(), settings);
-    return settings.empty() ? scene : scene.with(settings);
+    std::vector<Setting> all;
+    for (const auto& [column, value] : read_lone_values(path)) all.push_back({"grid." + column, std::vector{value}});
+    all.insert(all.end(), settings.begin(), settings.end());
+    return all.empty() ? scene : scene.with(all);
   }
   if (path.extension() == ".csv" || path.extension() == ".npy") check_may_hold_scene(path.string());
   return Scene(std::make_shared<const Impl>(Impl{read_scene(path.string(), settings)}));

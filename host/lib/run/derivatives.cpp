@@ -79,8 +79,10 @@ class Steps {
   Steps(const SceneValues& scene, const SceneEntries& entries, const std::string& key)
       : scene_(scene), entries_(entries), key_(key), axis_(key_axis(entries, key)), range_(key_range(scene, key)) {
     if (key != kWavelengthKey) return;
-    for (const SceneVariant& variant : entries.variants()) {
-      const std::vector<double> kinks = kinks_um(with_variant(scene, variant));
+    std::set<std::optional<std::uint32_t>> materials;
+    for (const SceneVariant& variant : entries.variants()) materials.insert(variant.material);
+    for (const std::optional<std::uint32_t>& material : materials) {
+      const std::vector<double> kinks = kinks_um(with_variant(scene, {.material = material}));
       kinks_.insert(kinks.begin(), kinks.end());
     }
   }
@@ -132,11 +134,7 @@ class Steps {
     SceneValues changed = axis_ ? scene_ : with_settings(scene_, {{key_, moved(value({}))}});
     changed.accuracy.tolerance = std::min(scene_.accuracy.tolerance, kStepTolerance);
     if (evaluator.has_double()) changed.accuracy.precision = Precision::kDouble;
-    if (!axis_ && entries_.is_grid()) {  // a grid has its own copy of the scene's slopes along and across
-      const SceneEntries grid = SceneEntries::grid(entries_.axes(), entries_.index(), changed.cross_slopes());
-      return evaluate_scene(changed, grid, evaluator, progress);
-    }
-    if (!axis_) return evaluate_scene(changed, entries_, evaluator, progress);
+    if (!axis_) return evaluate_scene(changed, entries_.with_slopes(changed.cross_slopes()), evaluator, progress);
     const auto change = [&](double own) { return from_key(moved(to_key(own))); };
     return evaluate_scene(changed, entries_.changed(*axis_, change), evaluator, progress);
   }

@@ -176,12 +176,8 @@ PartRequests::PartRequests(const SceneValues& scene, const SpectralIndices& samp
   moments_.basis = level.basis;
   moments_.sky = plan.sky;
   moments_.may_interpolate = level.may_interpolate;
-  if (plan.kept.moments && selection.part.is_grid()) request_shapes(selection.part);
   if (plan.kept.moments) request_moments();
   if (moments_.has_elliptic_shapes()) moments_.basis = nullptr;  // responses are for isotropic slopes
-  // The parts of a grid and later requests for some of its entries must do as the whole grid does.
-  moments_.has_lone_entries = selection.part.is_grid() ? selection.part.entries_per_direction() == 1
-                                                       : moments_.size() < 2 * moments_.bundles.size();
   if (plan.needs_beams) request_beams();
 }
 
@@ -231,7 +227,7 @@ std::uint32_t PartRequests::shape_position(const PerAxis& on_axes) const {
 
 PartRequests::MomentsSpan PartRequests::member_moments(std::size_t member, const PerAxis& on_axes) const {
   MomentsSpan span = spans_[member / members_per_span_];
-  if (selection_.is_whole_grid()) span.first += shape_position(on_axes);
+  if (members_have_all_shapes_) span.first += shape_position(on_axes);
   return span;
 }
 
@@ -246,8 +242,9 @@ void PartRequests::request_moments() {
     std::size_t span = 0;
   };
   const bool is_grid = selection_.part.is_grid();
-  const bool has_all_shapes = selection_.is_whole_grid();  // in each direction
+  const bool has_all_shapes = members_have_all_shapes_ = selection_.is_whole_grid();
   moments_.is_scattered = !is_grid;
+  if (is_grid) request_shapes(selection_.part);
   members_per_span_ = has_all_shapes ? selection_.part.entries_per_direction() : 1;
   spans_.resize(selection_.size() / members_per_span_);
   Numbering<double> directions(spans_.size());
@@ -307,6 +304,9 @@ void PartRequests::request_moments() {
     for (std::uint32_t j = 0; j < sets[set].count; ++j)
       moments_.add_bundle(direction, sets[set].first + j, first, count);
   }
+  // The parts of a grid and later requests for some of its entries must do as the whole grid does.
+  moments_.has_lone_entries =
+      is_grid ? selection_.part.entries_per_direction() == 1 : moments_.size() < 2 * moments_.bundles.size();
 }
 
 void PartRequests::request_beams() {

@@ -97,6 +97,7 @@ class PartRequests {
   /// it begins with the first of moments_.shapes.
   std::vector<MomentsSpan> spans_;
   std::size_t members_per_span_ = 1;
+  bool members_have_all_shapes_ = false;
   std::vector<std::size_t> first_beam_;
 };
 

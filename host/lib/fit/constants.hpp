@@ -47,8 +47,10 @@ inline constexpr double kBent = 0.05;  // 1458, 1421, 1381
 
 /// Number of points of the Sobol sequence for each start of a descent.
 inline constexpr std::size_t kPointsOfAStart = 8;  // 1324, 1421, 1593
-inline constexpr int kStepsOfARound = 3;           // 1334, 1421, 1573
-inline constexpr int kMostRounds = 15;             // 1417, 1421, 1421
+/// Number of steps of the first curve of a fit with one parameter, for each start.
+inline constexpr std::size_t kStepsOfAStart = 4;
+inline constexpr int kStepsOfARound = 3;  // 1334, 1421, 1573
+inline constexpr int kMostRounds = 15;    // 1417, 1421, 1421
 /// The search ends a descent if derivatives predict that a step lowers the objective by less than kCoarseGain * scale.
 inline constexpr double kCoarseGain = 0.1;  // 1358, 1421, 1416
 /// The search does not refine minima that are higher than the lowest one by more than this times the scale.
@@ -76,6 +78,9 @@ inline constexpr double kBeyond = 0.02;  // 1425, 1421, 1410
 /// A point beyond an end of an interval lies on another branch if its growth is below this share of the growth limit.
 /// Proved: the growth at the end itself is not below. By kRootTolerance it is at least 0.99 of the limit.
 inline constexpr double kClearlyLower = 0.97;  // 1421, 1421, 1793
+
+/// A point of a profile is a lower minimum if it is below the best objective by more than this times the scale.
+inline constexpr double kLowerMinimum = 0.01;
 
 /// For contours, descents end if derivatives predict that a step lowers the objective by less than kNodeGain * scale.
 inline constexpr double kNodeGain = 1e-2;

@@ -14,6 +14,7 @@
 #include "base/numbers.hpp"
 #include "base/text.hpp"
 #include "fit/constants.hpp"
+#include "fit/curve.hpp"
 #include "fit/search.hpp"
 
 namespace dolp::fit {
@@ -105,15 +106,18 @@ Eigen::MatrixXd correlation_matrix(const Eigen::MatrixXd& covariance) {
   return correlation;
 }
 
-std::string direction_text(const Direction& direction, const std::vector<FitRange>& parameters) {
+std::string direction_text(const Direction& direction, const std::vector<FitParameter>& parameters) {
   std::vector<std::string> rising, falling;
+  std::string extent = direction.is_null ? "at all" : "within its range";
   const Eigen::VectorXd& along = direction.along;
   for (Eigen::Index j = 0; j < along.size(); ++j) {
     if (std::abs(along[j]) < kInDirection) continue;
-    (along[j] > 0.0 ? rising : falling).push_back(parameters[static_cast<std::size_t>(j)].key);
+    const FitParameter& parameter = parameters[static_cast<std::size_t>(j)];
+    (along[j] > 0.0 ? rising : falling).push_back(parameter.key);
+    // The derivatives are local, but the interval covers the whole range.
+    if (direction.is_null && (parameter.interval_95.low || parameter.interval_95.high)) extent = "near its best value";
   }
   if (rising.empty()) std::swap(rising, falling);
-  const std::string extent = direction.is_null ? "at all" : "within its range";
   if (rising.size() + falling.size() == 1)
     return fmt::format("the data do not determine {} {}", rising.front(), extent);
   const std::string up = fmt::format("{}", fmt::join(rising, " and "));
@@ -130,7 +134,7 @@ void set_error(FitParameter& fitted, const FitRange& range, double deviation, bo
   } else if (!has_scale) {
     fitted.why_no_error = "there are as many parameters as points";
   } else if (!std::isfinite(error)) {
-    fitted.why_no_error = "the data do not determine it";
+    fitted.why_no_error = "the data do not determine it near this value";
   } else if (fitted.value - error < range.low || fitted.value + error > range.high) {
     fitted.why_no_error = fmt::format("{:.2g} would reach beyond its range {:g}:{:g}", error, range.low, range.high);
   } else {
@@ -165,7 +169,9 @@ class Fit {
   std::optional<FitResult> run(double most_aic) {
     constexpr int kMostRestarts = 4;  // a restart begins at a lower minimum that a profile has found
     if (options_.phase) options_.phase("descents of the search");
-    minima_ = find_minima(coarse_, fine_, options_, guess_scale(), count_);
+    if (model_.parameters().size() == 1) curve_.emplace(coarse_, fine_, options_);
+    minima_ = curve_ ? descend_to_minima(fine_, curve_->low_points(), guess_scale())
+                     : find_minima(coarse_, fine_, options_, guess_scale(), count_);
     if (minima_.empty()) return std::nullopt;
     for (int i = 0;; ++i) {
       const bool may_restart = i < kMostRestarts;
@@ -205,13 +211,6 @@ class Fit {
     return std::pow(std::max(0.01 * largest, fine_.tolerance()), 2);
   }
 
-  /// The scale at a minimum: 1 with uncertainties, otherwise the mean squared residual, but at least tolerance^2.
-  double find_scale(const Minimum& minimum) const {
-    if (model_.has_uncertainties()) return 1.0;
-    const double mean = freedom() > 0 ? minimum.objective() / static_cast<double>(freedom()) : 0.0;
-    return std::max(mean, fine_.tolerance() * fine_.tolerance());
-  }
-
   /// The growth, (objective - minimum) / scale, at the ends of an interval that has the probability `level`.
   double rise_at(double level) const {
     if (model_.has_uncertainties()) {
@@ -225,7 +224,7 @@ class Fit {
   void find_values() {
     const Minimum& best = minima_.front();
     result_ = {};
-    result_.scale = find_scale(best);
+    result_.scale = noise_scale(fine_, best.objective());
     const Eigen::Index count = best.where.at.size();
     // With a model error the covariance matrix is NaN, because residuals are 0 everywhere in a bracket.
     covariance_ = model_.has_model_error()
@@ -253,7 +252,8 @@ class Fit {
     std::erase_if(near, [&](const Minimum& candidate) {
       return !(candidate.objective() < options.from + options.rises[1] * scale);
     });
-    const Profiles profiles = compute_profiles(profile_, near, options, count_);
+    const Profiles profiles =
+        curve_ ? curve_->profiles(near, options) : compute_profiles(profile_, near, options, count_);
     if (may_restart && profiles.lower && take(*profiles.lower)) return false;
     for (std::size_t j = 0; j < result_.parameters.size(); ++j) {
       FitParameter& parameter = result_.parameters[j];
@@ -334,7 +334,7 @@ class Fit {
         is_open = is_open || (std::abs(direction.along[static_cast<Eigen::Index>(j)]) >= kInDirection &&
                               !interval.low && !interval.high);
       }
-      const std::string words = direction_text(direction, model_.parameters());
+      const std::string words = direction_text(direction, result_.parameters);
       const bool is_new = std::ranges::find(result_.degeneracies, words) == result_.degeneracies.end();
       if (is_open && is_new) result_.degeneracies.push_back(words);
     }
@@ -344,6 +344,7 @@ class Fit {
   const FitOptions& options_;
   Count count_;  ///< for FitOptions::progress: descents of the search, then sides of profiles
   Residuals coarse_, fine_, profile_;
+  std::optional<Curve> curve_;  ///< if the fit has one parameter
   std::vector<Minimum> minima_;
   Covariance covariance_;
   FitResult result_;

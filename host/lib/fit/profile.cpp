@@ -45,25 +45,27 @@ class Side {
   Neighbour next() {
     ++tries_;
     distance_ = std::clamp(next_distance(), 0.0, most_);
-    const auto after = first_beyond(distance_);
-    const bool is_nearer_after =
-        after != points_.end() && after->distance - distance_ < distance_ - (after - 1)->distance;
-    const Minimum& near = is_nearer_after ? after->found : (after - 1)->found;
+    // Begins on the side of the start: a point beyond may lie on a higher branch.
+    const Minimum& near = (first_from(distance_) - 1)->found;
     Eigen::VectorXd to = near.where.at;
     to[parameter_] = std::clamp(coordinate(distance_), 0.0, 1.0);
     return {&near, {parameter_}, to};
   }
 
   void add(Minimum found) {
-    // A point is a lower minimum if it is below the best objective by more than this times ProfileOptions::scale.
-    constexpr double kLowerMinimum = 0.01;
     if (found.objective() < least_ - kLowerMinimum * options_->scale) {
       lower_ = std::move(found);
       finish(distance_);
       return;
     }
     const double root = root_growth(found);
-    points_.insert(points_.begin() + (first_beyond(distance_) - points_.cbegin()), {distance_, root, std::move(found)});
+    ProfilePoint point{distance_, root, std::move(found)};
+    const PointPosition place = first_from(distance_);
+    if (place == points_.cend() || place->distance > distance_) {
+      points_.insert(place, std::move(point));
+    } else if (root < place->root) {
+      points_[static_cast<std::size_t>(place - points_.cbegin())] = std::move(point);
+    }
     settle();
   }
 
@@ -78,11 +80,17 @@ class Side {
     return std::isfinite(growth) ? std::sqrt(std::max(0.0, growth)) : 1e6;
   }
   double wanted() const { return std::sqrt(options_->rises[rise_]); }
-  PointPosition first_beyond(double distance) const {
-    return std::ranges::find_if(points_, [&](const ProfilePoint& point) { return point.distance > distance; });
+  PointPosition first_from(double distance) const {
+    return std::ranges::find_if(points_, [&](const ProfilePoint& point) { return point.distance >= distance; });
   }
   PointPosition first_above() const {
     return std::ranges::find_if(points_, [&](const ProfilePoint& point) { return point.root >= wanted(); });
+  }
+
+  /// True if the first point above the rise is so near to the point before that the profile seems to be discontinuous.
+  bool is_at_jump() const {
+    const PointPosition above = first_above();
+    return above != points_.cend() && above->distance - (above - 1)->distance < kLeastGap * above->distance;
   }
 
   /// Sets ends_ for each rise that the growth has reached or cannot reach on this side.
@@ -93,12 +101,12 @@ class Side {
       // A point is an end if its growth is close to the rise. The growth at the start may be that close already. So the
       // growth at the end must also be clearly larger than at the start, or reach the rise.
       const double least = std::min(wanted(), points_.front().root + kRootTolerance * wanted());
-      const auto met = std::find_if(points_.cbegin() + 1, points_.cend(), [&](const ProfilePoint& p) {
+      const auto last = above == points_.cend() ? above : above + 1;
+      const auto met = std::find_if(points_.cbegin() + 1, last, [&](const ProfilePoint& p) {
         return p.root >= least && std::abs(p.root - wanted()) <= kRootTolerance * wanted();
       });
-      const bool is_jump =
-          above != points_.cend() && above->distance - (above - 1)->distance < kLeastGap * above->distance;
-      if (met != points_.cend()) {
+      const bool is_jump = is_at_jump() && repeated_ == above->distance;
+      if (met != last) {
         ends_[rise_] = coordinate(met->distance);
       } else if (above == points_.cend() && points_.back().distance >= most_) {
         return finish(most_);
@@ -116,9 +124,10 @@ class Side {
 
   /// The next distance to compute: where a line through two points reaches wanted(), the square root of the rise. The
   /// two points are the last one below wanted() and the first one above. If none is above, the line uses the last two.
-  double next_distance() const {
+  double next_distance() {
     if (points_.size() == 1) return first_distance();
     const PointPosition above = first_above();
+    if (is_at_jump()) return repeated_ = above->distance;
     if (above != points_.end()) {
       const ProfilePoint& below = *(above - 1);
       const double share = (wanted() - below.root) / (above->root - below.root);
@@ -152,18 +161,10 @@ class Side {
   std::size_t rise_ = 0;
   int tries_ = 0;
   double distance_ = 0.0;
+  double repeated_ = 0.0;  ///< distance of a point above the rise that was computed again from the point before it
   std::array<std::optional<double>, 2> ends_;
   std::optional<Minimum> lower_;
 };
-
-void merge(std::vector<CoordinateInterval>& all, CoordinateInterval added) {
-  std::erase_if(all, [&](const CoordinateInterval& other) {
-    if (other.high < added.low || added.high < other.low) return false;
-    added = {std::min(added.low, other.low), std::max(added.high, other.high)};
-    return true;
-  });
-  all.insert(std::ranges::find_if(all, [&](const CoordinateInterval& other) { return other.low > added.low; }), added);
-}
 
 /// An end of an interval. A search for other branches may still move it.
 struct ProfileEnd {
@@ -240,12 +241,11 @@ class Profiler {
     std::vector<ProfileEnd> ends;
     for (std::size_t j = 0; j < result_.intervals.size(); ++j) {
       for (std::size_t rise = 0; rise < options_.rises.size(); ++rise) {
-        const std::vector<CoordinateInterval>& all = result_.intervals[j][rise];
         const auto parameter = static_cast<Eigen::Index>(j);
-        if (all.empty()) continue;  // the interval is empty: all minima lie above the rise
-        for (const ProfileEnd& end :
-             {ProfileEnd{parameter, rise, -1, all.front().low}, {parameter, rise, 1, all.back().high}}) {
-          if (end.at >= kAtBound && end.at <= 1.0 - kAtBound && searched_.insert(end).second) ends.push_back(end);
+        for (const CoordinateInterval& piece : result_.intervals[j][rise]) {
+          for (const ProfileEnd& end : {ProfileEnd{parameter, rise, -1, piece.low}, {parameter, rise, 1, piece.high}}) {
+            if (end.at >= kAtBound && end.at <= 1.0 - kAtBound && searched_.insert(end).second) ends.push_back(end);
+          }
         }
       }
     }
@@ -283,37 +283,39 @@ class Profiler {
   }
 
   /// Descents that search for other branches beyond `end`. Each side has a last point below the rise. The descents
-  /// begin beyond `end`, near these points. They leave out the point nearest to `end`, and the points to which a
-  /// straight path leads from it, see is_straight(). Such points are on the same branch. If a side has points beyond
-  /// `end`, and the growth at the lowest of them is clearly below the rise, another descent begins there.
+  /// begin shortly beyond `end`, near these points. They leave out the point nearest to `end`, and the points to which
+  /// a straight path leads from it, see is_straight(). Such points are on the same branch. Another descent begins at
+  /// the lowest point of each side that is beyond `end` and outside of the intervals, if its growth is clearly below
+  /// the rise.
   std::vector<Neighbour> ways_beyond(const ProfileEnd& end) const {
-    if (result_.intervals.size() == 1) return {};  // the profile of a single parameter has no other branch
     const std::vector<CoordinateInterval>& all = result_.intervals[static_cast<std::size_t>(end.parameter)][end.rise];
     const double width = all.back().high - all.front().low;
     const double beyond = std::clamp(end.at + end.direction * kBeyond * width, 0.0, 1.0);
-    const auto distance = [&](const Minimum& candidate) {
-      return end.direction * (candidate.where.at[end.parameter] - end.at);
+    const auto coordinate = [&](const Minimum& point) { return point.where.at[end.parameter]; };
+    const auto distance = [&](const Minimum& point) { return std::abs(coordinate(point) - end.at); };
+    const auto objective_beyond = [&](const ProfilePoint& point) {
+      const double at = coordinate(point.found);
+      const auto is_inside = [&](const CoordinateInterval& piece) {
+        return at >= piece.low - kAtBound && at <= piece.high + kAtBound;
+      };
+      const bool is_beyond = end.direction * (at - end.at) > 0.0 && std::ranges::none_of(all, is_inside);
+      return is_beyond ? point.found.objective() : kInfinity;
     };
     const Minimum* nearest = nullptr;
     std::vector<Neighbour> ways;
     for (const Side& side : sides_) {
       const Minimum* const last = side.last_below(end.rise);
       if (last == nullptr) continue;
-      if (nearest == nullptr || std::abs(distance(*last)) < std::abs(distance(*nearest))) nearest = last;
-      Neighbour& way = ways.emplace_back(Neighbour{last, {end.parameter}, last->where.at});
-      way.to[end.parameter] =
-          end.direction < 0 ? std::min(beyond, way.to[end.parameter]) : std::max(beyond, way.to[end.parameter]);
+      if (nearest == nullptr || distance(*last) < distance(*nearest)) nearest = last;
+      ways.emplace_back(Neighbour{last, {end.parameter}, last->where.at}).to[end.parameter] = beyond;
     }
     std::erase_if(ways, [&](const Neighbour& way) {
       return way.near == nearest || is_straight(nearest->where, way.near->where, options_.scale);
     });
     for (const Side& side : sides_) {
-      const auto lowest = std::ranges::min_element(side.points(), {}, [&](const ProfilePoint& point) {
-        return distance(point.found) > kAtBound ? point.found.objective() : kInfinity;
-      });
-      const bool is_lower = lowest->found.objective() < objective_at(kClearlyLower * options_.rises[end.rise]);
-      if (is_lower && distance(lowest->found) > kAtBound)
-        ways.push_back({&lowest->found, {end.parameter}, lowest->found.where.at});
+      const ProfilePoint& lowest = *std::ranges::min_element(side.points(), {}, objective_beyond);
+      if (objective_beyond(lowest) < objective_at(kClearlyLower * options_.rises[end.rise]))
+        ways.push_back({&lowest.found, {end.parameter}, lowest.found.where.at});
     }
     return ways;
   }
@@ -329,6 +331,15 @@ class Profiler {
 };
 
 }  // namespace
+
+void merge(std::vector<CoordinateInterval>& all, CoordinateInterval added) {
+  std::erase_if(all, [&](const CoordinateInterval& other) {
+    if (other.high < added.low || added.high < other.low) return false;
+    added = {std::min(added.low, other.low), std::max(added.high, other.high)};
+    return true;
+  });
+  all.insert(std::ranges::find_if(all, [&](const CoordinateInterval& other) { return other.low > added.low; }), added);
+}
 
 Profiles compute_profiles(Residuals& residuals, const std::vector<Minimum>& minima, const ProfileOptions& options,
                           Count& sides) {

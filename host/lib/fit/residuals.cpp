@@ -94,7 +94,8 @@ std::vector<Linearisation> Residuals::at(const std::vector<Eigen::VectorXd>& poi
     const Eigen::VectorXd residuals = (predictions[i].values - measured_).cwiseProduct(weights_);
     const Eigen::VectorXd weights = residuals.unaryExpr(
         [this](double residual) { return std::sqrt(loss_and_weight(residual * residual, options_.loss).second); });
-    found.push_back({points[i], residuals, weights, objective(residuals), std::move(predictions[i].components)});
+    const double error = predictions[i].error.cwiseProduct(weights_).norm();
+    found.push_back({points[i], residuals, weights, objective(residuals), error, std::move(predictions[i].components)});
   }
   return found;
 }

@@ -17,6 +17,7 @@ struct Linearisation {
   /// the full weight 1.
   Eigen::VectorXd weights;
   double objective = 0.0;         ///< Residuals::objective() of `residuals`
+  double error = 0.0;             ///< bound of the length of the numerical error of `residuals`
   Eigen::MatrixX2d components;    ///< Prediction::components at the point
   Eigen::MatrixXd jacobian = {};  ///< measurements x parameters; empty before it is computed
   Eigen::VectorXd steps = {};     ///< steps for the next finite differences; empty before the first ones

@@ -47,7 +47,7 @@ std::vector<Minimum> choose_starts(Residuals& residuals, const FitOptions& optio
   }
   std::vector<Linearisation> candidates = residuals.at(points);
   std::ranges::stable_sort(std::span(candidates).subspan(has_start ? 1 : 0), {}, &Linearisation::objective);
-  const double apart = 0.5 * std::pow(static_cast<double>(points.size()), -1.0 / static_cast<double>(dimensions));
+  const double apart = 0.5 * std::pow(static_cast<double>(options.starts), -1.0 / static_cast<double>(dimensions));
   std::vector<Minimum> starts;
   for (Linearisation& candidate : candidates) {
     const auto is_near = [&](const Minimum& start) {
@@ -58,12 +58,6 @@ std::vector<Minimum> choose_starts(Residuals& residuals, const FitOptions& optio
     if (starts.size() == options.starts) break;
   }
   return starts;
-}
-
-double noise_scale(const Residuals& residuals, const Minimum& minimum) {
-  if (residuals.model().has_uncertainties()) return 1.0;
-  const auto freedom = static_cast<double>(minimum.where.residuals.size() - minimum.where.at.size());
-  return minimum.objective() / std::max(1.0, freedom);
 }
 
 /// Moves a point perpendicular to `line` to the floor of the valley: to the least predicted sum of squared residuals.
@@ -89,7 +83,7 @@ bool falls(double from, const std::vector<Linearisation>& points, double scale) 
 
 /// True if the objective falls() on the straight line from one minimum to another, or on the valley floor beside it.
 bool leads_down(Residuals& residuals, const Minimum& from, const Minimum& to) {
-  const double scale = noise_scale(residuals, to);
+  const double scale = noise_scale(residuals, to.objective());
   const Eigen::VectorXd line = to.where.at - from.where.at;
   if (line.squaredNorm() == 0.0) return true;
   std::vector<Eigen::VectorXd> points;
@@ -112,18 +106,15 @@ std::vector<Minimum> distinct(std::vector<Minimum> all, Residuals& residuals) {
   std::ranges::stable_sort(all, {}, &Minimum::objective);
   std::vector<Minimum> kept;
   for (Minimum& candidate : all) {
-    const auto is_near = [&](const Minimum& lower) {
-      return is_straight(candidate.where, lower.where, noise_scale(residuals, lower));
-    };
     const auto is_above = [&](const Minimum& lower) { return leads_down(residuals, candidate, lower); };
-    if (std::ranges::none_of(kept, is_near) && std::ranges::none_of(kept, is_above))
-      kept.push_back(std::move(candidate));
+    if (std::ranges::none_of(kept, is_above)) kept.push_back(std::move(candidate));
   }
   return kept;
 }
 
 /// Descends from several points, a few steps per round, and returns where the descents end. Drops a descent if its
-/// derivatives predict the residuals at a lower point of another descent: both probably reach the same minimum.
+/// derivatives and those at a lower point of another descent predict each other's residuals: both probably reach the
+/// same minimum.
 std::vector<Minimum> descend_apart(Residuals& residuals, std::vector<Minimum> starts, const DescentOptions& descent,
                                    Count& descents) {
   std::vector<Minimum> arrived, passed;
@@ -134,8 +125,9 @@ std::vector<Minimum> descend_apart(Residuals& residuals, std::vector<Minimum> st
     std::ranges::stable_sort(ends, {}, &Minimum::objective);
     for (Minimum& end : ends) {
       const auto leads_to = [&](const Minimum& minimum) {
+        const double scale = noise_scale(residuals, minimum.objective());
         return minimum.objective() <= end.objective() && minimum.where.at != end.where.at &&
-               is_straight(end.where, minimum.where, noise_scale(residuals, minimum));
+               is_straight(end.where, minimum.where, scale) && is_straight(minimum.where, end.where, scale);
       };
       if (!std::isfinite(end.objective()) || std::ranges::any_of(passed, leads_to)) continue;
       passed.push_back(end);
@@ -149,23 +141,35 @@ std::vector<Minimum> descend_apart(Residuals& residuals, std::vector<Minimum> st
 
 }  // namespace
 
+double noise_scale(const Residuals& residuals, double minimum) {
+  const Model& model = residuals.model();
+  if (model.has_uncertainties()) return 1.0;
+  const auto freedom = static_cast<double>(model.observation_count() - model.parameters().size());
+  return std::max(minimum / std::max(1.0, freedom), residuals.tolerance() * residuals.tolerance());
+}
+
+std::vector<Minimum> descend_to_minima(Residuals& residuals, const std::vector<Eigen::VectorXd>& starts, double scale) {
+  std::vector<Minimum> minima;
+  for (Linearisation& start : residuals.at(starts)) minima.push_back({.where = std::move(start)});
+  descend(residuals, minima, {scale, 100});
+  std::erase_if(minima, [](const Minimum& candidate) { return !candidate.has_converged; });
+  return distinct(std::move(minima), residuals);
+}
+
 std::vector<Minimum> find_minima(Residuals& coarse, Residuals& fine, const FitOptions& options, double scale,
                                  Count& descents) {
   const DescentOptions round{scale, kStepsOfARound, kCoarseGain};
   std::vector<Minimum> far = distinct(descend_apart(coarse, choose_starts(coarse, options), round, descents), coarse);
   if (far.empty()) return far;
-  const double noise = noise_scale(coarse, far.front());
+  const double noise = noise_scale(fine, far.front().objective());
   const double most = far.front().objective() + kFarAbove * noise;
   const auto end_of_near = std::ranges::upper_bound(far, most, {}, &Minimum::objective);
   std::vector<Eigen::VectorXd> points;
   for (auto minimum = far.begin(); minimum != end_of_near; ++minimum) points.push_back(minimum->where.at);
   far.erase(far.begin(), end_of_near);
-  std::vector<Minimum> near;
-  for (Linearisation& point : fine.at(points)) near.push_back({.where = std::move(point)});
-  descend(fine, near, {std::max(noise, fine.tolerance() * fine.tolerance()), 100});
-  std::vector<Minimum> minima = distinct(std::move(near), fine);
+  std::vector<Minimum> minima = descend_to_minima(fine, points, noise);
+  std::erase_if(far, [](const Minimum& candidate) { return !candidate.has_converged; });
   std::ranges::move(far, std::back_inserter(minima));
-  std::erase_if(minima, [](const Minimum& candidate) { return !candidate.has_converged; });
   std::ranges::stable_sort(minima, {}, &Minimum::objective);
   return minima;
 }

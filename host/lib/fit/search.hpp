@@ -15,6 +15,10 @@ struct Count {
   std::size_t total = 1;
 };
 
+/// The rise of the objective at one standard deviation from a minimum: 1 with uncertainties. Otherwise it is the mean
+/// squared residual, but at least the squared tolerance.
+double noise_scale(const Residuals& residuals, double minimum);
+
 /// Finds the distinct minima of the objective, the lowest first. Descents begin at the parameters' start (if given) and
 /// at the best points of a Sobol sequence. These descents use `coarse`, which has a wider tolerance. Then descents with
 /// `fine` improve the lowest minimum, and each minimum that is higher by at most kFarAbove * scale. Two minima count as
@@ -24,11 +28,17 @@ struct Count {
 std::vector<Minimum> find_minima(Residuals& coarse, Residuals& fine, const FitOptions& options, double scale,
                                  Count& descents);
 
+/// Descends from all starts to the distinct minima, as defined at find_minima().
+std::vector<Minimum> descend_to_minima(Residuals& residuals, const std::vector<Eigen::VectorXd>& starts, double scale);
+
 /// An interval of a coordinate (0 to 1 over the parameter's range) that the data do not exclude.
 struct CoordinateInterval {
   double low = 0.0;
   double high = 1.0;
 };
+
+/// Adds an interval to disjoint ascending intervals, and joins those that overlap.
+void merge(std::vector<CoordinateInterval>& all, CoordinateInterval added);
 
 struct ProfileOptions {
   std::array<double, 2> rises{};  ///< values of the growth at the ends of the 68 % and 95 % intervals

@@ -84,6 +84,165 @@ TEST_F(FitTest, MinimumAtABound_IntervalHasTheOtherBranch) {
   EXPECT_NEAR(*result.parameters[1].interval_68.high, 0.396, 0.002);
 }
 
+// chi^2 of these data has several minima of nearly equal height. The expected ends are roots of chi^2 at the tolerance
+// 1e-7, from a dense scan over the parameter. With two parameters, chi^2 is minimised over a dense scan of n.
+using Pieces = std::vector<std::pair<std::optional<double>, std::optional<double>>>;
+
+struct SeveralMinima {
+  std::string scene;  ///< a sample scene
+  std::vector<std::string> settings;
+  std::string csv;
+  std::vector<FitRange> parameters;
+  Pieces pieces_68, pieces_95;  ///< for the last of the parameters
+};
+
+constexpr std::optional<double> kOpen = std::nullopt;
+const std::vector<std::string> kLaser = {"spectrum.wavelength_um=10.6"};
+
+class FitOfSeveralMinima : public FitTest, public testing::WithParamInterface<SeveralMinima> {};
+
+TEST_P(FitOfSeveralMinima, Pieces_AreAllValuesThatTheDataDoNotExclude) {
+  constexpr double kEnd = 0.01;  // relative. By the tolerance of the growth, 1 %, these ends move by up to 0.6 %.
+  const SeveralMinima& given = GetParam();
+  const SceneValues scene =
+      read_scene(DOLP_HOST_DIR "/scenes/" + given.scene + ".toml", settings_from_text(given.settings));
+  const Model model(scene, {MeasuredData::from_csv(given.csv)}, given.parameters);
+  const FitParameter found = fit::fit(model, evaluator_, {}).value().parameters.back();
+  for (const auto& [pieces, expected] :
+       {std::pair(found.interval_68.pieces, given.pieces_68), {found.interval_95.pieces, given.pieces_95}}) {
+    ASSERT_EQ(pieces.size(), expected.size());
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      ASSERT_EQ(pieces[i].first.has_value(), expected[i].first.has_value());
+      ASSERT_EQ(pieces[i].second.has_value(), expected[i].second.has_value());
+      EXPECT_NEAR(pieces[i].first.value_or(0.0), expected[i].first.value_or(0.0),
+                  kEnd * expected[i].first.value_or(1.0));
+      EXPECT_NEAR(pieces[i].second.value_or(0.0), expected[i].second.value_or(0.0),
+                  kEnd * expected[i].second.value_or(1.0));
+    }
+  }
+}
+
+const std::string kPaint3 = R"(theta_deg,q_over_i,uncertainty
+20,-0.001949,0.003
+30,-0.012044,0.003
+40,-0.017838,0.003
+)";
+
+INSTANTIATE_TEST_SUITE_P(
+    , FitOfSeveralMinima,
+    testing::Values(
+        // At small k, chi^2 is flat. The other minimum fits equally well.
+        SeveralMinima{"night_paint",
+                      kLaser,
+                      kPaint3,
+                      {number("surface.k", 0.001, 100.0)},
+                      {{kOpen, 0.1922}, {9.876, 11.66}},
+                      {{kOpen, 0.2880}, {9.222, 12.84}}},
+        // The range ends before the other minimum.
+        SeveralMinima{
+            "night_paint", kLaser, kPaint3, {number("surface.k", 0.001, 1.0)}, {{kOpen, 0.1958}}, {{kOpen, 0.2894}}},
+        SeveralMinima{"rough_metal",
+                      kLaser,
+                      R"(theta_deg,q_over_i
+2.77,0.016954515
+4.83,0.059852866
+5.75,-0.006420428
+26.54,-0.026266683
+26.67,-0.049755235
+38.68,-0.016436190
+40.24,0.026240254
+61.18,-0.020239966
+65.37,-0.087221106
+)",
+                      {number("surface.n", 1.0, 30.0)},
+                      {{1.4957, 2.784}, {11.92, kOpen}},
+                      {{kOpen, kOpen}}},
+        // The end of the range is a minimum. On the way to the best one chi^2 rises by less than 1.
+        SeveralMinima{"bare_aluminium",
+                      {},
+                      R"(theta_deg,dolp,uncertainty
+10.66,0.003428,0.0112
+16.84,0.0023377,0.0112
+40.86,0.0115897,0.0112
+42.09,0.0062476,0.0112
+45.58,0.0046638,0.0112
+)",
+                      {number("surroundings.temperature_K", 0.0, 400.0)},
+                      {{222.26, 287.15}, {317.6, kOpen}},
+                      {{210.67, kOpen}}},
+        SeveralMinima{"stainless_steel",
+                      kLaser,
+                      R"(theta_deg,dolp,uncertainty
+5.64,0.0148394642,0.01124
+20.11,0.0013145279,0.01124
+39.53,0.0244393367,0.01124
+51.0,0.0234405906,0.01124
+60.16,0.0224949413,0.01124
+64.68,0.0218818485,0.01124
+64.69,0.0090896702,0.01124
+70.46,0.0016121967,0.01124
+74.87,0.0225853276,0.01124
+)",
+                      {number("source.relative_irradiance", 0.0, 10.0)},
+                      {{2.8936, 3.7400}, {3.9794, 4.5856}},
+                      {{2.5395, 5.3638}}},
+        SeveralMinima{"rough_metal",
+                      kLaser,
+                      R"(theta_deg,dolp,uncertainty
+15.32,0.0073471,0.00986
+16.71,0.010034,0.00986
+33.97,0.0088976,0.00986
+52.1,0.019762,0.00986
+)",
+                      {number("surface.n", 0.1, 100.0)},
+                      {{0.647, 0.7857}, {1.359, 1.839}, {27.26, 83.54}},
+                      {{0.2615, 0.9056}, {1.146, 2.156}, {18.57, kOpen}}},
+        // The profile of k has two branches, and a descent that begins far from the best minimum finds the higher one.
+        SeveralMinima{"night_paint",
+                      kLaser,
+                      R"(theta_deg,q_over_i,uncertainty
+30,-0.002453,0.01
+35,-0.013103,0.01
+40,-0.016948,0.01
+45,-0.033612,0.01
+50,-0.02649,0.01
+55,-0.023944,0.01
+60,-0.05465,0.01
+65,-0.068019,0.01
+70,-0.074193,0.01
+75,-0.086747,0.01
+80,-0.096204,0.01
+)",
+                      {number("surface.n", 0.5, 50.0), number("surface.k", 0.001, 100.0)},
+                      {{kOpen, 0.2865}, {8.1405, 39.88}},
+                      {{kOpen, 0.4386}, {5.866, 42.96}}},
+        SeveralMinima{"night_paint",
+                      kLaser,
+                      "theta_deg,dolp,uncertainty\n30,0.008143,0.003\n50,0.034867,0.003\n70,0.078491,0.003\n",
+                      {number("surface.n", 0.5, 50.0), number("surface.k", 0.001, 100.0)},
+                      {{kOpen, 0.350}, {10.08, 34.55}},
+                      {{kOpen, 0.4535}, {6.10, 36.13}}},
+        // The gap of the 95 % interval of sigma has a branch that no descent from the ends of the interval finds.
+        SeveralMinima{"night_paint",
+                      kLaser,
+                      R"(theta_deg,q_over_i,uncertainty
+30,-0.00901,0.003
+50,-0.036334,0.003
+70,-0.076431,0.003
+)",
+                      {number("surface.n", 1.1, 10.0), number("surface.sigma", 0.01, 1.0)},
+                      {{0.1063, 0.2048}, {0.527, 0.5636}},
+                      {{0.0430, 0.2980}, {0.4350, 0.5807}}}));
+
+// chi^2 is an even function of k, so its derivative vanishes at small k although the data limit k.
+TEST_F(FitTest, ParameterWithoutInfluenceNearItsBestValue_IsNotCalledUndeterminedAtAll) {
+  const MeasuredData data = measured(0.0, {"surface.k=1e-5"});
+  const FitResult result = fitted(data, {number("surface.k", 1e-7, 1.0)}, kFewStarts);
+  EXPECT_TRUE(result.parameters.front().interval_95.high.has_value());
+  ASSERT_EQ(result.degeneracies.size(), 1U);
+  EXPECT_EQ(result.degeneracies.front(), "the data do not determine surface.k near its best value");
+}
+
 TEST_F(FitTest, StandardErrors_ThatReachBeyondTheRange_AreNone) {
   const auto error_in = [&](double high) {
     return fitted(measured(10.0 * kNoise), {number("surface.k", 0.0, high)}).parameters.front();

@@ -178,6 +178,13 @@ TEST_F(TableAsScene, PlansNumbersOfValues_AreAboutEnough_AndHalfOfThemAreTooFew)
   EXPECT_GT(typical_error(thetas / 3, sigmas / 3), 1e-4);
 }
 
+TEST_F(TableAsScene, PlansNumberOfValues_WhereTheGridHasIt_IsThatOfTheGrid) {
+  const json advice =
+      report("plan scene.toml --tolerance 0.01 --set grid.theta_deg=[10,20] --set grid.sigma=[0.2] --set grid.q=[3]")
+          ["between"];
+  EXPECT_EQ(advice[0]["needed_values"], 2);
+}
+
 // At a temperature between the values, the polarisation of the emission and of the reflected sky cancel, and DOLP is 0.
 // There linear interpolation errs in proportion to the spacing, not to its square.
 TEST_F(TableAsScene, PlansNumberOfValues_AtAKinkOfDolp_IsAboveOneThatDoesNotSuffice) {

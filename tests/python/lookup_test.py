@@ -191,12 +191,15 @@ class Axes(PackageCase):
                 self.assertLess(float(abs(again.stokes_u - right.stokes_u).max()), 1e-3)
                 self.assertEqual(dolp.Scene(part)["surface.wind_m_s"], 10)
                 self.assertEqual(float(dolp.lookup(part, wind_m_s=5, **point).dolp), float(dolp.evaluate(scene, wind_m_s=5, **point).dolp))
-            with self.assertRaisesRegex(dolp.InputError, "sigma = .* is not the sigma of wind_m_s = 7, as after interpolating"):
-                dolp.lookup(by_wind.interp(wind_m_s=7), **point)
+            by_wind.interp(wind_m_s=7).to_netcdf(self.folder / "between.nc")
+            for source in (by_wind.interp(wind_m_s=7), self.folder / "between.nc"):
+                with self.assertRaisesRegex(dolp.InputError, "sigma = .* is not the sigma of wind_m_s = 7, as after interpolating"):
+                    dolp.lookup(source, **point)
+            self.assertEqual(float(dolp.lookup(self.folder / "part.nc", **point).stokes_u), float(right.stokes_u))
         directional = sea.with_({"surface.wind_model": "directional"})
         for call in (lambda: dolp.Scene(dolp.table(directional, **point).drop_vars("wind_m_s")),
                      lambda: dolp.table(directional, sigma=[0.1, 0.2], **point)):
-            with self.assertRaisesRegex(dolp.InputError, "sigma without wind_m_s: .*directional.*give wind_m_s"):
+            with self.assertRaisesRegex(dolp.InputError, "sigma: .*directional.*give only wind_m_s"):
                 call()
         for keys in ({"sigma": 0.1, "surface.wind_m_s": 5}, {"wind_m_s": 5, "surface.sigma": 0.1}):
             with self.assertRaisesRegex(dolp.InputError, "cannot be combined"):
@@ -223,6 +226,17 @@ class Axes(PackageCase):
                 self.assertEqual(scenes[0][key], scenes[1][key])
             self.assertEqual(scenes[0]["surface.q"], axes["q"])
             self.assertEqual(dolp.Scene(self.folder / "t.nc", {"surface.q": 4})["surface.q"], 4)
+
+    def test_a_table_over_a_key_keeps_the_key_of_its_scene(self):
+        zenith = "surroundings.zenith_temperature_K"
+        sky = self.scene.with_({"surroundings": None}).with_({zenith: 210, "surroundings.horizon_temperature_K": 290})
+        table = dolp.table(sky, theta_deg=[20, 60], evaluator="cpu", **{zenith: [200, 220]})
+        self.assertEqual(dolp.Scene(table)[zenith], 210)
+        right = dolp.evaluate(sky.with_({zenith: 220}), theta_deg=60, evaluator="cpu")
+        part = table.sel({zenith: 220})
+        part.to_netcdf(self.folder / "part.nc")
+        for source in (part, self.folder / "part.nc"):
+            self.assertEqual(float(dolp.lookup(source, theta_deg=60, evaluator="cpu").dolp), float(right.dolp))
 
     def test_results_over_keys_have_the_scene(self):
         scene = self.scene.with_({"surface.masking": "v-cavity"})

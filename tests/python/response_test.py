@@ -65,6 +65,8 @@ class Response(PackageCase):
         self.assertEqual(dolp.moments(response, r_s=layers * mean, r_p=layers * mean).rho_q.dims, ("theta", "sigma", "q", "layer"))
         several = dolp.moments(response.sel(theta=60), n=[1.3, 1.5, 4], k=0.05)
         self.assertEqual(several.rho_i.dims, ("sigma", "q", "n"))
+        crossed = dolp.moments(response, n=xr.DataArray([1.3, 1.5], dims="a"), k=xr.DataArray([0.05], dims="b"))
+        self.assertEqual(crossed.rho_i.dims, ("theta", "sigma", "q", "a", "b"))
         self.assertEqual(float(several.rho_i.sel(n=1.5)), float(expected.rho_i.sel(theta=60)))
         elsewhere = mean.assign_coords(beta=mean.beta + 1)
         for arguments, message in (({}, "needs either n"), ({"n": 1.5, "r_s": mean, "r_p": mean}, "needs either n"),

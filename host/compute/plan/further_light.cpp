@@ -22,7 +22,8 @@ constexpr double kLargestTheta_deg = 89.9;  // at 90 degrees the light of all bo
 constexpr double kSteepest = 1e6;           // steeper slopes would make the width of the groove 0
 constexpr int kMostBounces = 10;            // the light that is left then leaves; steep grooves have little weight
 
-// Intervals between the known angles of GrooveFacet.
+// Intervals between the known angles of GrooveFacet. They are enough for an estimate: with films of up to 1000 um, the
+// status 32 of 1 in 30 entries differed from that with the exact reflection.
 constexpr double kLeastIntervals = 32.0;
 constexpr double kIntervalsPerFringe = 16.0;
 constexpr double kMostIntervals = 256.0;
@@ -149,8 +150,7 @@ Arc second_bounce_arc(double cot_theta, double t) {
 }
 
 /// Sum over the azimuths of both sides, per unit of steeper_share().
-Light light_of_slope(const CosSin& theta, double t, const GrooveFacet& facet,
-                     const std::array<Node, kNodes>& nodes) {
+Light light_of_slope(const CosSin& theta, double t, const GrooveFacet& facet, const std::array<Node, kNodes>& nodes) {
   const Arc arc = second_bounce_arc(theta.cos / theta.sin, t);
   Light sum;
   for (const auto& [from, to] : {std::pair{arc.first, arc.kink}, std::pair{arc.kink, arc.last}}) {

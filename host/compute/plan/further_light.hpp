@@ -10,7 +10,7 @@
 
 namespace dolp {
 
-/// Reflection by a facet at any angle. Of facets under films it knows a few angles and interpolates linearly.
+/// Reflection by a facet at any angle. For a facet under films, a few angles are known, with linear interpolation.
 class GrooveFacet {
  public:
   explicit GrooveFacet(const FacetOptics& optics);

@@ -172,7 +172,8 @@ double dolp_with(const PointResult& result, double more_i, double more_q) {
 }  // namespace
 
 double polarisation_angle_deg(double q, double u) {
-  if (u == 0.0) return q > 0.0 ? 0.0 : q < 0.0 ? kRightAngle_deg : kNan;
+  if (u == 0.0 && !(std::abs(q) > 0.0)) return kNan;
+  if (u == 0.0) return q > 0.0 ? 0.0 : kRightAngle_deg;
   const double angle_deg = 90.0 / pi * std::atan2(u, q);
   const double positive_deg = angle_deg < 0.0 ? angle_deg + 180.0 : angle_deg;
   return positive_deg == 180.0 ? 0.0 : positive_deg;  // a tiny negative angle is rounded to 180
@@ -315,10 +316,10 @@ PointResult Radiometry::assemble(const View& view, std::span<const Moments> mome
     kirchhoff.push_back(kirchhoff_emissivity(reflectances[j]));
   for (std::size_t j = 0; (model == EmissionModel::kDirect || has_bracket) && j < moments.size(); ++j)
     direct.push_back(direct_emissivity(scene_.surface, moments[j], cos_theta, view.diffuse[j].rho));
-  const PerSample<Emissivity>& emissivities = model == EmissionModel::kMoments  ? kirchhoff
-                                              : model == EmissionModel::kDirect ? direct
-                                                                                : view.fresnel;
-  Stokes sum = stokes_sum(kept_rule_, reflectances, emissivities, model, cos_theta, !bistatic);
+  const PerSample<Emissivity>* emissivities = &kirchhoff;
+  if (model == EmissionModel::kDirect) emissivities = &direct;
+  if (model == EmissionModel::kFresnel) emissivities = &view.fresnel;
+  Stokes sum = stokes_sum(kept_rule_, reflectances, *emissivities, model, cos_theta, !bistatic);
   Stokes sky;
   add_sky(sky, scene_.surface, kept_rule_, sky_, view.diffuse, moments, cos_theta);
   if (kept_rule_.diffuse) sky.i += kept_rule_.diffuse->surroundings + view.cos_source * kept_rule_.diffuse->irradiance;
@@ -342,7 +343,7 @@ PointResult Radiometry::assemble(const View& view, std::span<const Moments> mome
   result[kAlbedo] = moments.front().albedo / cos_theta;
   result[kRhoErrorEstimate] = relative_bound(mean.error, mean.rho_i);
   set_dolp(result, sum);
-  if (scene_.emission) add_emissivity(result, emissivities, view.mean_weights);
+  if (scene_.emission) add_emissivity(result, *emissivities, view.mean_weights);
   if (has_bracket) {
     const Bracket between = bracket(scene_, kept_rule_, reflectances, direct, sky, cos_theta);
     result[kDolpLow] = between.low;
@@ -351,7 +352,7 @@ PointResult Radiometry::assemble(const View& view, std::span<const Moments> mome
   }
   if (!scene_.surface.has_only_direct()) {
     result.model_change =
-        change_by_model(scene_, kept_rule_, moments, reflectances, emissivities, cos_theta) / std::abs(sum.i);
+        change_by_model(scene_, kept_rule_, moments, reflectances, *emissivities, cos_theta) / std::abs(sum.i);
   }
   if (result.model_change > kLargestModelChange) result.status |= kModelInaccurate;
   if (sum.i <= 0.0) result.status |= kIntensityNotPositive;

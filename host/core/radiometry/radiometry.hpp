@@ -79,7 +79,7 @@ class Radiometry {
   /// `optics` affects fresnel emission and a polarised diffuse part. In bistatic mode the source is at theta_i.
   View view(const Direction& direction, const Optics& optics, double cos_theta_i = 0.0) const;
 
-  /// Like the other point(), also for entries with their own n or k. In bistatic mode `moments` and rho belong to the
+  /// The result at a view, also for entries with their own n or k. In bistatic mode `moments` and rho belong to the
   /// view, and `scattered` has one element per sample of rule(). If rho diverges, dolp is NaN, too.
   PointResult point(const View& view, std::span<const Moments> moments,
                     std::span<const Scattered> scattered = {}) const;

@@ -49,7 +49,10 @@ MeanWeights mean_weights(const SpectralRule& rule, double cos_theta) {
   }
   MeanWeights weights;
   for (const SpectralSample& sample : rule.samples) {
-    weights.list.push_back(emitted != 0.0 ? sample.emitted : incident != 0.0 ? incident_light(sample) : sample.width);
+    double weight = sample.width;
+    if (incident != 0.0) weight = incident_light(sample);
+    if (emitted != 0.0) weight = sample.emitted;
+    weights.list.push_back(weight);
     weights.total += weights.list.back();
   }
   if (rule.diffuse && emitted == 0.0 && incident != 0.0)

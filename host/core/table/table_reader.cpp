@@ -395,15 +395,20 @@ std::vector<Attribute> read_attributes(const fs::path& path) {
 
 std::vector<std::pair<std::string, double>> read_lone_values(const fs::path& path) {
   const Reader reader(path);
-  const bool has_wind = is_lone(reader, kWind.name);
-  std::vector<std::pair<std::string, double>> values;
-  const auto add = [&](const char* column, const char* name) {
-    if (is_lone(reader, name)) values.emplace_back(column, read_numbers(reader, name, 1).front());
-  };
-  if (has_wind) add(kWind.column, kWind.name);
+  std::vector<std::pair<std::string, std::string>> names = {{kWind.name, kWind.column}};  // and columns
   for (const Axis axis : kAllAxes) {
-    const bool follows_wind = has_wind && axis == Axis::kSigma;
-    if (!describe(axis).has_labels && !follows_wind) add(describe(axis).column, describe(axis).name);
+    if (!describe(axis).has_labels) names.emplace_back(describe(axis).name, describe(axis).column);
+  }
+  int variables = 0;
+  reader.call("the variables", nc_inq_nvars, &variables);
+  for (int i = 0; i < variables; ++i) {
+    std::array<char, NC_MAX_NAME + 1> name{};
+    reader.call("the variables", nc_inq_varname, i, name.data());
+    if (std::string_view(name.data()).find('.') != std::string_view::npos) names.emplace_back(name.data(), name.data());
+  }
+  std::vector<std::pair<std::string, double>> values;
+  for (const auto& [name, column] : names) {
+    if (is_lone(reader, name)) values.emplace_back(column, read_numbers(reader, name, 1).front());
   }
   return values;
 }

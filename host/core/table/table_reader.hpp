@@ -42,7 +42,7 @@ class TableReader {
 std::vector<Attribute> read_attributes(const std::filesystem::path& path);
 
 /// In a part of a table that xarray saved, axes may have one value and no dimension. Returns the columns of these axes,
-/// such as "sigma", with their values; wind_m_s instead of sigma if the part has both.
+/// such as "sigma", or keys of a scene, such as "path.transmittance", with their values.
 std::vector<std::pair<std::string, double>> read_lone_values(const std::filesystem::path& path);
 
 }  // namespace dolp

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <variant>
 
 #include "api/impl.hpp"
@@ -43,16 +44,42 @@ void check_has_material(const Scene& scene, const std::string& name, const std::
   }
 }
 
+/// The values of the axes and keys that have one value and no dimension in the file of a part of a table. Errors:
+/// InputError if the slopes of a part are not those of its wind.
+std::vector<Setting> lone_settings(const SceneValues& scene, const std::filesystem::path& path) {
+  const std::vector<std::pair<std::string, double>> values = read_lone_values(path);
+  const auto find = [&](std::string_view name) {
+    return std::ranges::find(values, name, [](auto& v) { return v.first; });
+  };
+  const WindModel model = scene.surface.wind_model;
+  const auto wind = find(kWind.column), sigma = find("sigma");
+  if (wind == values.end() && sigma != values.end() && model == WindModel::kDirectional)
+    throw InputError(path.string() + ": has a sigma without its wind_m_s, which gives the slopes along and across");
+  if (wind != values.end() && sigma != values.end()) {
+    constexpr double kRounding = 1e-6;  // a coordinate may have become single precision
+    const double expected = sigma_in_wind(wind->second, model);
+    if (!(std::abs(sigma->second - expected) <= kRounding * expected))
+      throw InputError(fmt::format("{}: sigma = {:g} is not the sigma of wind_m_s = {:g}, as after interpolating",
+                                   path.string(), sigma->second, wind->second));
+  }
+  std::vector<Setting> settings;
+  for (const auto& [name, value] : values) {
+    if (name == "sigma" && wind != values.end()) continue;
+    const bool is_key = name.find('.') != std::string::npos;
+    settings.push_back(is_key ? Setting{name, value} : Setting{"grid." + name, std::vector{value}});
+  }
+  return settings;
+}
+
 }  // namespace
 
 Scene Scene::from_file(const std::filesystem::path& path, const std::vector<Setting>& settings) {
   if (path.extension() == ".nc" || is_table_file(path.string())) {
     const Scene scene = from_attributes(read_attributes(path), path.string());
     check_has_material(scene, path.string(), settings);
-    std::vector<Setting> all;
-    for (const auto& [column, value] : read_lone_values(path)) all.push_back({"grid." + column, std::vector{value}});
-    all.insert(all.end(), settings.begin(), settings.end());
-    return all.empty() ? scene : scene.with(all);
+    const std::vector<Setting> lone = lone_settings(scene.impl_->scene, path);
+    const Scene part = lone.empty() ? scene : scene.with(lone).for_points();
+    return settings.empty() ? part : part.with(settings);
   }
   if (path.extension() == ".csv" || path.extension() == ".npy") check_may_hold_scene(path.string());
   return Scene(std::make_shared<const Impl>(Impl{read_scene(path.string(), settings)}));

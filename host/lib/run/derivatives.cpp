@@ -22,8 +22,9 @@ namespace dolp {
 namespace {
 
 constexpr double kStepTolerance = 1e-8;
-constexpr double kStep = 0.01;      // the error of order h^4 and the bounds of the results over h are then similar
-constexpr double kLeastStep = 0.1;  // of the usual step
+constexpr double kStep = 0.01;  // the error of order h^4 and the bounds of the results over h are then similar
+// A step is at least this share of the usual step. A shorter one would make the bounds of the results too large.
+constexpr double kLeastStep = 1e-3;
 constexpr const char* kThetaKey = "grid.theta_deg";
 constexpr const char* kWavelengthKey = "spectrum.wavelength_um";
 

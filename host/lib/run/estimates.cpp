@@ -189,8 +189,8 @@ SceneEntries drawn_entries(const SceneEntries& entries, std::size_t count) {
 }
 
 std::string Looked::text() const {
-  if (wavelengths == 1) return fmt::format("{} entries", entries);
-  return fmt::format("{} entries and {} wavelengths of the band", entries, wavelengths);
+  const std::string counted = fmt::format("{} {}", entries, entries == 1 ? "entry" : "entries");
+  return wavelengths == 1 ? counted : fmt::format("{} and {} wavelengths of the band", counted, wavelengths);
 }
 
 Influences add_influences(std::vector<Effect>& rows, const SceneValues& scene, const SceneEntries& entries,

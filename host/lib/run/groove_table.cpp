@@ -18,13 +18,14 @@ namespace {
 
 // Shapes with a smaller sigma count as this one: only the tails of their slopes reach a second facet.
 constexpr double kLeastSigma = 0.01;
-constexpr double kLeastK = 0.01;           // differences of k far below this number do not change the reflection
-constexpr double kLeastReflected = 1e-12;  // replaces i = 0 and 1 - i = 0, whose logits do not exist
-constexpr std::size_t kOpticsAtOnce = 2;
+constexpr double kLeastK = 0.01;              // differences of k far below this number do not change the reflection
+constexpr double kLeastReflected = 1e-12;     // replaces i = 0 and 1 - i = 0, whose logits do not exist
+constexpr std::size_t kWavelengthNodes = 32;  // of bare media, whose light changes slowly with the wavelength
+constexpr std::size_t kOpticsAtOnce = 2;      // a thread's start takes as long as the light of about one
 constexpr std::array kShapeAxes = {Axis::kSigma, Axis::kQ};
 
-/// The nodes of an axis are `most` Chebyshev-Lobatto points of `to(value)`; `from` is the inverse of `to`. An axis with
-/// at most twice as many values has its values as nodes.
+/// The nodes of an axis are Chebyshev-Lobatto points of `to(value)`; `from` is the inverse of `to`. An axis with at
+/// most `most` values has its values as nodes.
 struct Scale {
   std::size_t most = 1;
   std::function<double(double)> to, from;
@@ -48,7 +49,7 @@ GrooveTable::AxisNodes polynomial_nodes(const std::vector<double>& values, const
   const auto [low, high] = std::ranges::minmax(places);
   const auto count = static_cast<Eigen::Index>(scale.most);
   const auto size = static_cast<Eigen::Index>(values.size());
-  if (size <= 2 * count) {
+  if (size <= count) {
     std::ranges::transform(places, places.begin(), scale.from);
     return {places, Eigen::MatrixXd::Identity(size, size)};
   }
@@ -76,14 +77,19 @@ GrooveTable::GrooveTable(const SceneValues& scene, const SceneEntries& grid, con
   }
   const PerAxis counts = axis_counts(axes);
   bands_ = counts[Axis::kBand];
-  wavelengths_ = counts[Axis::kWavelength];
+  place_wavelengths(scene, grid);
+  const std::size_t own_first = grid.first()[Axis::kWavelength], own_count = grid.counts()[Axis::kWavelength];
   std::vector<GroupOptics> all;
-  for (std::size_t i = 0; i < counts[Axis::kMaterial] * bands_ * wavelengths_; ++i) {
+  for (std::size_t i = 0; i < counts[Axis::kMaterial] * bands_ * wavelength_nodes_.size(); ++i) {
+    const std::size_t wavelength = wavelength_nodes_[i % wavelength_nodes_.size()];
+    const std::size_t outer = i / wavelength_nodes_.size();
     SceneVariant variant;
-    if (!axes[Axis::kMaterial].empty()) variant.material = static_cast<std::uint32_t>(i / (bands_ * wavelengths_));
-    if (!axes[Axis::kBand].empty()) variant.band = static_cast<std::uint32_t>(i / wavelengths_ % bands_);
-    if (!axes[Axis::kWavelength].empty()) variant.wavelength_um = axes[Axis::kWavelength][i % wavelengths_];
-    add_block(variant, grid, rules, all);
+    if (!axes[Axis::kMaterial].empty()) variant.material = static_cast<std::uint32_t>(outer / bands_);
+    if (!axes[Axis::kBand].empty()) variant.band = static_cast<std::uint32_t>(outer % bands_);
+    if (!axes[Axis::kWavelength].empty()) variant.wavelength_um = axes[Axis::kWavelength][wavelength];
+    blocks_.emplace_back();
+    const bool is_used = scene.surface.is_bare() || wavelength - own_first < own_count;
+    if (is_used) add_optics(variant, grid, rules, all);
   }
   parallel_for(all.size(), kOpticsAtOnce, [&](std::size_t i) { fill(scene, all[i]); });
 }
@@ -94,9 +100,23 @@ std::size_t GrooveTable::node_count(std::span<const Axis> axes) const {
   return count;
 }
 
-void GrooveTable::add_block(const SceneVariant& variant, const SceneEntries& grid, const SpectralRules& rules,
-                            std::vector<GroupOptics>& all) {
-  Block& block = blocks_.emplace_back();
+void GrooveTable::place_wavelengths(const SceneValues& scene, const SceneEntries& grid) {
+  const std::vector<double>& um = grid.whole_axes()[Axis::kWavelength];
+  const std::size_t size = std::max<std::size_t>(um.size(), 1);
+  const bool is_bare = scene.surface.is_bare();
+  std::size_t count = size;
+  if (is_bare) count = grid.has_own_index() ? 1 : std::min(kWavelengthNodes, size);
+  for (std::size_t i = 0; i < count; ++i) wavelength_nodes_.push_back(count == 1 ? 0 : i * (size - 1) / (count - 1));
+  wavelengths_.resize(size);
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    const std::size_t first = wavelength_nodes_[i], last = wavelength_nodes_[i + 1];
+    for (std::size_t j = first; j <= last; ++j) wavelengths_[j] = {i, (um[j] - um[first]) / (um[last] - um[first])};
+  }
+}
+
+void GrooveTable::add_optics(const SceneVariant& variant, const SceneEntries& grid, const SpectralRules& rules,
+                             std::vector<GroupOptics>& all) {
+  Block& block = blocks_.back();
   const std::vector<FacetOptics> samples = rules.at(variant)->indices();
   std::size_t index_node = 0;
   for (const double n : axes_[Axis::kN].nodes) {
@@ -133,15 +153,21 @@ void GrooveTable::fill(const SceneValues& scene, const GroupOptics& own) {
 }
 
 void GrooveTable::Reader::begin_direction(const PerAxis& on) {
-  const Block& block = table_.blocks_[table_.block_at(on)];
-  const auto rows = static_cast<Eigen::Index>(block.groups * table_.axes_[Axis::kSigma].nodes.size());
-  const auto columns = static_cast<Eigen::Index>(table_.axes_[Axis::kQ].nodes.size());
-  groups_ = block.groups;
-  logits_.setZero(rows, columns);
-  quotients_.setZero(rows, columns);
-  const auto size = static_cast<std::size_t>(rows * columns);
+  const WavelengthPlace& wavelength = table_.wavelengths_[on[Axis::kWavelength]];
+  const std::size_t outer = on[Axis::kMaterial] * table_.bands_ + on[Axis::kBand];
+  const std::size_t before = outer * table_.wavelength_nodes_.size() + wavelength.node;
+  groups_ = table_.blocks_[wavelength.share < 1.0 ? before : before + 1].groups;
+  logits_.setZero(static_cast<Eigen::Index>(groups_ * table_.axes_[Axis::kSigma].nodes.size()),
+                  static_cast<Eigen::Index>(table_.axes_[Axis::kQ].nodes.size()));
+  quotients_.setZero(logits_.rows(), logits_.cols());
+  if (wavelength.share < 1.0) add_block(table_.blocks_[before], 1.0 - wavelength.share, on);
+  if (wavelength.share > 0.0) add_block(table_.blocks_[before + 1], wavelength.share, on);
+}
+
+void GrooveTable::Reader::add_block(const Block& block, double share, const PerAxis& on) {
+  const auto size = static_cast<std::size_t>(logits_.size());
   for (std::size_t node = 0; node < table_.node_count(kOuterAxes); ++node) {
-    double weight = 1.0;
+    double weight = share;
     std::size_t rest = node;
     for (const Axis axis : std::views::reverse(kOuterAxes)) {
       const Eigen::MatrixXd& weights = table_.axes_[axis].weights;
@@ -150,8 +176,8 @@ void GrooveTable::Reader::begin_direction(const PerAxis& on) {
     }
     if (weight == 0.0) continue;
     using Nodes = Eigen::Map<const RowMajor>;
-    logits_ += weight * Nodes(block.logits.data() + node * size, rows, columns);
-    quotients_ += weight * Nodes(block.quotients.data() + node * size, rows, columns);
+    logits_ += weight * Nodes(block.logits.data() + node * size, logits_.rows(), logits_.cols());
+    quotients_ += weight * Nodes(block.quotients.data() + node * size, logits_.rows(), logits_.cols());
   }
 }
 

@@ -13,17 +13,25 @@
 
 namespace dolp {
 
-/// further_light() for the entries of a grid. It is computed at a few nodes of each axis and interpolated.
-/// Accuracy: bit 32 of a grid differs from that of points at less than 1 % of the entries (tests ModelChange_Grid*).
+/// further_light() for the entries of a grid. It is computed at a few nodes of each axis and interpolated; but for
+/// films and measured reflectances at each wavelength, because of their fringes. Accuracy: bit 32 of a grid differs
+/// from that of points at less than 1 % of the entries (tests ModelChange_Grid*).
 class GrooveTable {
  public:
-  /// `grid`: the whole grid of a run. All of its parts get the same values.
+  /// `grid`: the grid of a run. Runs of other parts of the whole grid get the same values.
   GrooveTable(const SceneValues& scene, const SceneEntries& grid, const SpectralRules& rules);
 
   /// Nodes of an axis, and for each value of the axis the weights with which values at the nodes add up.
   struct AxisNodes {
     std::vector<double> nodes;
     Eigen::MatrixXd weights;  ///< values of the axis x nodes
+  };
+
+  /// ln(i / (1 - i)) and q / (i (1 - i)) for one material, band and wavelength.
+  /// Shape: nodes of kOuterAxes x groups x sigma x q.
+  struct Block {
+    std::size_t groups = 0;
+    std::vector<double> logits, quotients;
   };
 
   /// Reads entries of a part of the grid. It keeps what neighbouring entries share, so each thread needs its own.
@@ -35,6 +43,7 @@ class GrooveTable {
 
    private:
     void begin_direction(const PerAxis& on);
+    void add_block(const Block& block, double share, const PerAxis& on);
     void begin_row(std::size_t position);
 
     const GrooveTable& table_;
@@ -49,11 +58,10 @@ class GrooveTable {
  private:
   static constexpr std::array kOuterAxes = {Axis::kN, Axis::kK, Axis::kTheta};
 
-  /// ln(i / (1 - i)) and q / (i (1 - i)) for one material, band and wavelength.
-  /// Shape: nodes of kOuterAxes x groups x sigma x q.
-  struct Block {
-    std::size_t groups = 0;
-    std::vector<double> logits, quotients;
+  /// A wavelength of the axis lies between two of wavelength_nodes_, at this share of the way from `node` to the next.
+  struct WavelengthPlace {
+    std::size_t node = 0;
+    double share = 0.0;
   };
   /// The optics of one group at one node of n and k.
   struct GroupOptics {
@@ -64,18 +72,18 @@ class GrooveTable {
   };
 
   std::size_t node_count(std::span<const Axis> axes) const;
-  std::size_t block_at(const PerAxis& on_axes) const {
-    return (on_axes[Axis::kMaterial] * bands_ + on_axes[Axis::kBand]) * wavelengths_ + on_axes[Axis::kWavelength];
-  }
-  /// Begins a block. Appends its optics to `all`.
-  void add_block(const SceneVariant& variant, const SceneEntries& grid, const SpectralRules& rules,
-                 std::vector<GroupOptics>& all);
+  void place_wavelengths(const SceneValues& scene, const SceneEntries& grid);
+  /// Gives the last block its size, and appends its optics to `all`.
+  void add_optics(const SceneVariant& variant, const SceneEntries& grid, const SpectralRules& rules,
+                  std::vector<GroupOptics>& all);
   void fill(const SceneValues& scene, const GroupOptics& own);
 
   Axis zenith_axis_;  ///< moment_axis() of the scene; its nodes are in axes_[kTheta]
   AxisArray<AxisNodes> axes_;
-  std::vector<Block> blocks_;  ///< for each material, for each band, for each wavelength
-  std::size_t bands_ = 1, wavelengths_ = 1;
+  std::vector<Block> blocks_;  ///< for each material, for each band, for each of wavelength_nodes_
+  std::size_t bands_ = 1;
+  std::vector<std::size_t> wavelength_nodes_;  ///< positions on the axis; {0} if the grid has no wavelengths
+  std::vector<WavelengthPlace> wavelengths_;   ///< for each value of the axis
 };
 
 }  // namespace dolp

@@ -242,7 +242,8 @@ void PartRequests::request_moments() {
     std::size_t span = 0;
   };
   const bool is_grid = selection_.part.is_grid();
-  const bool has_all_shapes = members_have_all_shapes_ = selection_.is_whole_grid();
+  const bool has_all_shapes = selection_.is_whole_grid();
+  members_have_all_shapes_ = has_all_shapes;
   moments_.is_scattered = !is_grid;
   if (is_grid) request_shapes(selection_.part);
   members_per_span_ = has_all_shapes ? selection_.part.entries_per_direction() : 1;

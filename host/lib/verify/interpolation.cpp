@@ -109,6 +109,7 @@ class Forecast {
     forecast.error = error(axis, sorted, places);
     const double first = forecast.error.largest;
     const std::size_t guess = needed(values, first, 2.0);
+    forecast.needed_values = guess;
     if (guess == 0 || guess == values) return forecast;
     const SortedAxis other(respaced(sorted, guess));
     std::vector<Place> again = spread_places(other, cells);

@@ -111,7 +111,7 @@ def _at(values: xr.DataArray, theta: np.ndarray) -> np.ndarray:
                          f"theta, or give one value for each normal, with shape {theta.shape}, over dimensions with other names")
     if "theta" not in values.coords:
         raise InputError("result: its dimension theta has no zeniths of the camera (theta is of the source in bistatic mode); "
-                         f"give one value for each normal, with shape {theta.shape}")
+                         f"give one value for each normal, with shape {theta.shape}, over dimensions with other names")
     known, first = np.unique(values.theta.values, return_index=True)
     within = (theta >= known[0] - BEYOND_DEG) & (theta <= known[-1] + BEYOND_DEG)
     return np.where(within, np.interp(theta, known, np.atleast_1d(values.values)[first]), np.nan)

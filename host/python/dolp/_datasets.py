@@ -87,12 +87,15 @@ def concatenated(tables: list[xr.Dataset], key: str, values: np.ndarray) -> xr.D
 
 def common_attributes(results: list[dict[Any, Any]], keys: Iterable[str]) -> dict[Any, Any]:
     """The attributes that are equal in all results of scenes that differ only in `keys`, and the overrides of the scene
-    but `keys`."""
+    without the last one of each of `keys`, which is that of the result."""
     first = results[0]
     common = {name: value for name, value in first.items() if name != "scene_hash" and all(other.get(name) == value for other in results)}
     if "scene_overrides" in first:
-        starts = tuple(f"{key}=" for key in keys)
-        common["scene_overrides"] = "\n".join(line for line in first["scene_overrides"].split("\n") if not line.startswith(starts))
+        lines = first["scene_overrides"].split("\n")
+        for key in keys:
+            last = max((i for i, line in enumerate(lines) if line.startswith(f"{key}=")), default=None)
+            lines = [line for i, line in enumerate(lines) if i != last]
+        common["scene_overrides"] = "\n".join(lines)
     return common
 
 
@@ -119,8 +122,8 @@ def check_slopes(what: str, scene: _native.Scene, names: Iterable[str]) -> None:
     """Errors: InputError if `names` contain slopes, and the scene has a directional wind, which they would replace."""
     for name in names:
         if name in ("sigma", "sigma_cross") and scene.value("surface.wind_model") == "directional":
-            raise InputError(f"{what}: {name} without wind_m_s: in the scene slopes along and across follow from the wind "
-                             f'(surface.wind_model = "directional"); give wind_m_s, or take scene.with_({{"surface.{name}": ...}})')
+            raise InputError(f"{what}: {name}: in the scene slopes along and across follow from the wind "
+                             f'(surface.wind_model = "directional"); give only wind_m_s, or take scene.with_({{"surface.sigma": ...}})')
 
 
 def read_scene(table: xr.Dataset) -> _native.Scene:

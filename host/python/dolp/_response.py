@@ -118,8 +118,10 @@ def _check_entries(response: xr.Dataset) -> None:
 
 
 def _index(n: Array, k: Array | None) -> xr.DataArray:
-    given = {"n": n} if k is None else {"n": n, "k": k}
-    frame, columns = columns_of(given if np.iscomplexobj(n) else {"k": 0.0, **given})
+    given = {"n": n}
+    if k is not None or not np.iscomplexobj(n):
+        given["k"] = 0.0 if k is None else k
+    frame, columns = columns_of(given)
     if not (np.all(columns["n"] > 0) and np.all(columns["k"] >= 0)):
         raise InputError("moments: n must be above 0, and k from 0 on")
     index = np.broadcast_to(columns["n"] + 1j * columns["k"], int(np.prod(frame.shape))).reshape(frame.shape)

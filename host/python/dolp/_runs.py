@@ -147,7 +147,8 @@ def lookup(table: Path | xr.Dataset, *, evaluator: str | None = None, device: st
 
     `table`: the file of a table (.nc), or a Dataset with a table or a part of one. Only its attributes and the values of
     its axes count, so it may be a slice, or may be interpolated, averaged or edited.
-    A file of a part of a table, which xarray wrote, counts as the whole table: read it by xarray.open_dataset.
+    In a file of a part of a table, which xarray wrote, axes without a dimension count, as in `t.sel(q=8)`. An axis that
+    kept its dimension counts with the values of the whole table.
     `points` and the other arguments: as for `evaluate`. An axis with one value in the table, such as q in `t.sel(q=8)`,
     gives the value of points that do not name it. For another tolerance or precision, change the table's scene, as in
     `dolp.evaluate(dolp.Scene(t, {"accuracy.tolerance": 1e-6}).for_points(), theta_deg=33)`.

@@ -53,8 +53,7 @@ TEST(FurtherLight, AnyShapeAndMaterial_IsWhatAllBouncesAddToOne) {
       if (lost < kLeastLost) continue;
       ++compared;
       const double expected = (all[i].r_i - single[i].r_i) / lost;
-      const FurtherLight light =
-          further_light(distribution, point.theta_deg, point.shape, GrooveFacet(point.index));
+      const FurtherLight light = further_light(distribution, point.theta_deg, point.shape, GrooveFacet(point.index));
       EXPECT_NEAR(light.i, expected, kAccuracy * expected) << "entry " << i;
       const double q = (all[i].r_q - single[i].r_q) / lost;
       EXPECT_NEAR(light.q, q, kAccuracy * expected) << "entry " << i;

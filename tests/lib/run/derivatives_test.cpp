@@ -240,6 +240,28 @@ TEST(Derivatives, ByTheWavelength_AreThoseBetweenTwoRows) {
   }
 }
 
+// Points and tables have a wavelength of their own for each entry. The rows of PMMA are 0.01 um apart here.
+TEST(Derivatives, ByWavelengthsOfPointsAndAxes_AreThoseBetweenTwoRows) {
+  const std::vector<std::string> plastic = {"surface.n={}", "surface.k={}", "surface.material=\"PMMA acrylic\"",
+                                            "surroundings=none", "accuracy.tolerance=1e-9"};
+  const auto with_axis = [&](const std::string& um) {
+    return parse(kScene, joined(plastic, std::vector<std::string>{"grid.theta_deg=[60]", "grid.wavelength_um=" + um}));
+  };
+  const SceneValues scene = with_axis("[8.471,8.61789,8.7123]");
+  const SceneValues before = with_axis("[8.47099,8.61788,8.71229]"), after = with_axis("[8.47101,8.6179,8.71231]");
+  const SceneEntries points = point_entries(
+      scene, parse_points("wavelength_um\n8.471\n8.61789\n8.7123\n", "p.csv", PointsKind::kDirections, {}));
+  CpuEvaluator evaluator;
+  const auto by_points = derivatives_with(scene, points, {"spectrum.wavelength_um"}, evaluator);
+  const auto by_axis = derivatives_with(scene, {"spectrum.wavelength_um"});
+  const std::vector<PointResult> low = results_of(before), high = results_of(after);
+  for (std::size_t i = 0; i < low.size(); ++i) {
+    const double expected = (high[i][Quantity::kQOverI] - low[i][Quantity::kQOverI]) / 2e-5;
+    for (const auto& found : {by_points, by_axis}) EXPECT_NEAR(found[1][i], expected, found[2][i] + 1e-3) << i;
+    EXPECT_LT(by_axis[2][i], 0.01 * std::abs(expected)) << i;
+  }
+}
+
 // Total reflection begins at n = sin(60 degrees) = 0.866, within the step from 0.87.
 TEST(Derivatives, WithAKinkWithinTheStep_HaveItInTheirError) {
   const std::vector<std::string> mirror = {"surface.k=0", "surface.sigma=0", "grid.sigma=[0]",

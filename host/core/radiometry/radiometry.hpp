@@ -67,7 +67,7 @@ class Radiometry {
 
   const Optics& optics() const { return optics_; }
 
-  /// What the results of one direction share.
+  /// Numbers that all results of one direction share.
   struct View {
     Direction direction;
     double cos_source = 0.0;  ///< cosine of the zenith of the source; in hemispherical mode, of the direction

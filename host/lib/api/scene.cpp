@@ -45,7 +45,7 @@ void check_has_material(const Scene& scene, const std::string& name, const std::
 }
 
 /// The values of the axes and keys that have one value and no dimension in the file of a part of a table. Errors:
-/// InputError if the slopes of a part are not those of its wind.
+/// InputError if a part has slopes that do not follow from its wind.
 std::vector<Setting> lone_settings(const SceneValues& scene, const std::filesystem::path& path) {
   const std::vector<std::pair<std::string, double>> values = read_lone_values(path);
   const auto find = [&](std::string_view name) {

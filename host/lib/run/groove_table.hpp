@@ -14,8 +14,8 @@
 namespace dolp {
 
 /// further_light() for the entries of a grid. It is computed at a few nodes of each axis and interpolated; but for
-/// films and measured reflectances at each wavelength, because of their fringes. Accuracy: bit 32 of a grid differs
-/// from that of points at less than 1 % of the entries (tests ModelChange_Grid*).
+/// films and measured reflectances at each wavelength, because of their fringes. Accuracy: a grid and points differ in
+/// bit 32 at less than 1 % of the entries (tests ModelChange_Grid*).
 class GrooveTable {
  public:
   /// `grid`: the grid of a run. Runs of other parts of the whole grid get the same values.

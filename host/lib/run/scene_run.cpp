@@ -174,7 +174,7 @@ class MemberResults {
   std::vector<Scattered> beams_;
   std::optional<GrooveTable::Reader> grooves_;
   std::vector<FurtherLight> further_;
-  // Of the last entry:
+  // The next members belong to the last entry.
   std::uint32_t variant_ = 0;
   std::optional<OpticalConstants> index_;
   Radiometry::Optics own_optics_;  ///< with index_
